@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include <Eigen/Core>
+
+namespace conelane {
+
+/// A position or a vector in the map frame [m].
+using Point = Eigen::Vector2d;
+
+/// Two lengths closer than this count as equal [m]; the one tolerance of MinDist and End, equation (7).
+inline constexpr double kTieTolerance_m = 1e-9;
+
+/// z component of a x b; positive where b points to the left of a.
+[[nodiscard]] inline double cross(const Point& a, const Point& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Closed segment between two points; zero length is allowed.
+struct Segment {
+    Point from;
+    Point to;
+};
+
+/// The point of a segment nearest to a query.
+struct FootPoint {
+    Point point;
+    double parameter;   ///< position on the segment, 0 at `from`, 1 at `to`; 0 on a segment of zero length
+    double distance_m;  ///< from the query
+};
+[[nodiscard]] FootPoint foot_point(const Point& query, const Segment& segment);
+
+/// Smallest distance of two closed segments, and whether it is attained between an end of one and an end of
+/// the other (End of equation (7)). A tie within kTieTolerance_m between a pair of ends and an interior point
+/// counts as between ends; so do touching ends. Crossing and overlapping segments have distance 0.
+struct SegmentDistance {
+    double distance_m;
+    bool between_ends;
+};
+[[nodiscard]] SegmentDistance segment_distance(const Segment& a, const Segment& b);
+
+/// Whether two closed segments have a point in common; touching counts, and so does collinear overlap.
+/// Exact in the signs of the orientation determinants, no tolerance.
+[[nodiscard]] bool segments_intersect(const Segment& a, const Segment& b);
+
+/// Whether two segments cross at a single point that is interior to both; touching does not count.
+[[nodiscard]] bool segments_cross(const Segment& a, const Segment& b);
+
+/// Angle at `middle` between the rays to `a` and `b`, in [0, pi] rad; straight on is pi. 0 where a ray has no
+/// length.
+[[nodiscard]] double interior_angle(const Point& a, const Point& middle, const Point& b);
+
+/// Signed angle from direction `before` to direction `after`, in (-pi, pi] rad, positive to the left; 0 where
+/// a direction has no length.
+[[nodiscard]] double turning_angle(const Point& before, const Point& after);
+
+/// Sum of the segment lengths [m]; a closed polyline includes the segment from the last vertex to the first.
+[[nodiscard]] double polyline_length_m(std::span<const Point> vertices, bool closed = false);
+
+/// The point of a polyline nearest to a query. The first one along the polyline wins a tie.
+struct PolylineFoot {
+    Point point;
+    std::size_t segment;  ///< index of the segment's first vertex; 0 where there is one vertex only
+    double arc_length_m;  ///< along the polyline from its first vertex
+    double distance_m;    ///< from the query
+};
+/// Precondition: at least one vertex.
+[[nodiscard]] PolylineFoot foot_on_polyline(const Point& query, std::span<const Point> vertices,
+                                            bool closed = false);
+
+}  // namespace conelane

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace conelane {
+
+/// A value that no scene, parameter set or option may hold. `what()` is "KEY: REASON"; readers add file and
+/// line.
+class InvalidInput : public std::invalid_argument {
+  public:
+    InvalidInput(const std::string& key, const std::string& reason)
+        : std::invalid_argument(key + ": " + reason), key_(key) {}
+
+    /// The key as the file formats spell it, such as "cones[3].x".
+    [[nodiscard]] const std::string& key() const { return key_; }
+
+  private:
+    std::string key_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <numbers>
+#include <span>
+#include <string_view>
+
+namespace conelane {
+
+/// Which pairs of paths are a lane graph.
+enum class Pairing {
+    near_far,  ///< each path joins a near endpoint with a far one
+    paper,  ///< as printed: one path between the near endpoints and one between the far ones is allowed too
+};
+[[nodiscard]] std::string_view to_string(Pairing pairing);
+
+/// The symbols of the RLD paper. The defaults were found by hand on recorded tracks (the paper prints none).
+struct RldParameters {
+    double d_e = 3.2;                   ///< expected spacing of a boundary's cones [m]
+    double d_t = 1.7;                   ///< spacing threshold [m]
+    double theta_e = std::numbers::pi;  ///< expected interior angle [rad]
+    double theta_t = 0.9;               ///< angle threshold [rad]
+    double w_s = 0.4;                   ///< weight of the spacing cost (18)
+    double w_t = 0.5;                   ///< weight of the angle cost (20)
+    double w_p = 1.2;                   ///< weight of the heading cost (25)
+    double w_b = 1.0;                   ///< benefit of an edge (29)
+    double d_min = 2.5;                 ///< smallest distance between opposite boundaries (7) [m]
+    double d_h = 6.0;                   ///< radius of the heading constraint (9) [m]
+    double theta_heading = 1.2;         ///< largest angle of the heading constraint (9) [rad]
+    double d_near = 6.0;                ///< radius that splits near from far endpoints (11) [m]
+    double d_max = 16.0;                ///< largest distance between the far endpoints (17) [m]
+    double s_crit = 2.5;                ///< largest spacing cost of an edge (27)
+    double t_crit = 4.0;                ///< largest angle cost of two adjacent edges (28)
+    Pairing pairing = Pairing::near_far;
+};
+
+/// One numeric parameter: how files spell it, where it is, and what it may be.
+struct RldParameterField {
+    std::string_view key;
+    double RldParameters::*value;
+    std::string_view unit;  ///< "m", "rad" or "1"
+    double lowest;
+    double highest;
+    bool lowest_allowed;  ///< whether `lowest` itself is valid; `highest` always is
+    std::string_view meaning;
+};
+/// All numeric parameters in the order of the file format.
+[[nodiscard]] std::span<const RldParameterField> rld_parameter_fields();
+
+/// Throws InvalidInput naming the first parameter that is not finite or out of its range.
+void validate(const RldParameters& parameters);
+
+}  // namespace conelane

@@ -1,0 +1,101 @@
+#include "model/geometry.hpp"
+
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(FootPoint, LiesInsideTheSegmentOrAtItsNearerEnd) {
+    const Segment along_x{{0, 0}, {4, 0}};
+    EXPECT_DOUBLE_EQ(foot_point({1, 2}, along_x).parameter, 0.25);
+    EXPECT_DOUBLE_EQ(foot_point({1, 2}, along_x).distance_m, 2.0);
+    EXPECT_DOUBLE_EQ(foot_point({-3, 4}, along_x).distance_m, 5.0);
+    EXPECT_DOUBLE_EQ(foot_point({7, -4}, along_x).parameter, 1.0);
+}
+
+TEST(FootPoint, OfASegmentWithoutLengthIsItsOnlyPoint) {
+    const FootPoint foot = foot_point({3, 4}, {{0, 0}, {0, 0}});
+    EXPECT_DOUBLE_EQ(foot.parameter, 0.0);
+    EXPECT_DOUBLE_EQ(foot.distance_m, 5.0);
+}
+
+TEST(SegmentDistance, BetweenEnds) {
+    const SegmentDistance d = segment_distance({{0, 0}, {1, 0}}, {{2, 0}, {3, 1}});
+    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
+    EXPECT_TRUE(d.between_ends);
+}
+
+TEST(SegmentDistance, FromAnEndToTheInside) {
+    const SegmentDistance d = segment_distance({{0, 0}, {4, 0}}, {{2, 1}, {2, 5}});
+    EXPECT_DOUBLE_EQ(d.distance_m, 1.0);
+    EXPECT_FALSE(d.between_ends);
+}
+
+TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {
+    const SegmentDistance facing = segment_distance({{0, 0}, {4, 0}}, {{0, 3}, {4, 3}});
+    EXPECT_DOUBLE_EQ(facing.distance_m, 3.0);
+    EXPECT_TRUE(facing.between_ends);
+    // Shifted along, the ends face the inside of the other segment but the distance is not that of two ends.
+    EXPECT_FALSE(segment_distance({{0, 0}, {4, 0}}, {{1, 3}, {5, 3}}).between_ends);
+}
+
+TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveNone) {
+    const SegmentDistance crossing = segment_distance({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}});
+    EXPECT_DOUBLE_EQ(crossing.distance_m, 0.0);
+    EXPECT_FALSE(crossing.between_ends);
+    const SegmentDistance end_on_inside = segment_distance({{0, 0}, {4, 0}}, {{2, 0}, {2, 3}});
+    EXPECT_DOUBLE_EQ(end_on_inside.distance_m, 0.0);
+    EXPECT_FALSE(end_on_inside.between_ends);
+    const SegmentDistance end_on_end = segment_distance({{0, 0}, {4, 0}}, {{4, 0}, {5, 3}});
+    EXPECT_DOUBLE_EQ(end_on_end.distance_m, 0.0);
+    EXPECT_TRUE(end_on_end.between_ends);
+    const SegmentDistance overlap = segment_distance({{0, 0}, {4, 0}}, {{1, 0}, {9, 0}});
+    EXPECT_DOUBLE_EQ(overlap.distance_m, 0.0);
+    EXPECT_FALSE(overlap.between_ends);
+}
+
+TEST(Crossing, IsProperOnly) {
+    EXPECT_TRUE(segments_cross({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}}));
+    EXPECT_FALSE(segments_cross({{0, 0}, {4, 0}}, {{2, 0}, {2, 3}}));
+    EXPECT_TRUE(segments_intersect({{0, 0}, {4, 0}}, {{2, 0}, {2, 3}}));
+    EXPECT_TRUE(segments_intersect({{0, 0}, {4, 0}}, {{1, 0}, {9, 0}}));
+    EXPECT_FALSE(segments_intersect({{0, 0}, {4, 0}}, {{5, 0}, {9, 0}}));
+    EXPECT_FALSE(segments_intersect({{0, 0}, {4, 0}}, {{0, 1}, {4, 1}}));
+}
+
+TEST(Angle, InteriorIsPiStraightOnAndZeroWhereTheBoundaryFoldsBack) {
+    EXPECT_DOUBLE_EQ(interior_angle({0, 0}, {1, 0}, {2, 0}), kPi);
+    EXPECT_DOUBLE_EQ(interior_angle({0, 0}, {1, 0}, {1, 1}), kPi / 2);
+    EXPECT_DOUBLE_EQ(interior_angle({0, 0}, {1, 0}, {1, -1}), kPi / 2);
+    EXPECT_DOUBLE_EQ(interior_angle({0, 0}, {1, 0}, {0, 0}), 0.0);
+}
+
+TEST(Angle, TurningIsPositiveToTheLeftAndPiForAUTurn) {
+    EXPECT_DOUBLE_EQ(turning_angle({1, 0}, {0, 1}), kPi / 2);
+    EXPECT_DOUBLE_EQ(turning_angle({1, 0}, {0, -2}), -kPi / 2);
+    EXPECT_DOUBLE_EQ(turning_angle({1, 0}, {-1, 0}), kPi);
+    EXPECT_DOUBLE_EQ(turning_angle({1, 0}, {-1, -0.0}), kPi);
+    EXPECT_DOUBLE_EQ(turning_angle({0, 0}, {-1, 0}), 0.0);
+}
+
+TEST(Polyline, LengthAndFoot) {
+    const std::vector<Point> square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    EXPECT_DOUBLE_EQ(polyline_length_m(square), 6.0);
+    EXPECT_DOUBLE_EQ(polyline_length_m(square, true), 8.0);
+    EXPECT_DOUBLE_EQ(foot_on_polyline({3, 1}, square).arc_length_m, 3.0);
+    const PolylineFoot open = foot_on_polyline({-1, 0.5}, square);
+    EXPECT_DOUBLE_EQ(open.arc_length_m, 0.0);
+    const PolylineFoot closing = foot_on_polyline({-1, 0.5}, square, true);
+    EXPECT_DOUBLE_EQ(closing.arc_length_m, 7.5);
+    EXPECT_DOUBLE_EQ(closing.distance_m, 1.0);
+    EXPECT_EQ(closing.segment, 3u);
+    EXPECT_DOUBLE_EQ(foot_on_polyline({1, 1}, std::vector<Point>{{1, 4}}).distance_m, 3.0);
+}
+
+}  // namespace
+}  // namespace conelane
