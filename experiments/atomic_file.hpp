@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+
+namespace conelane::experiments {
+
+/// A file that appears under its name whole or not at all: it is written under a temporary name in the same
+/// folder and renamed by `commit`. Destroyed without `commit`, it leaves the target as it was. A target that
+/// is no regular file, such as a pipe or /dev/stdout, is written directly.
+class AtomicFile {
+  public:
+    /// Throws InputError naming the target where it cannot be written.
+    explicit AtomicFile(const std::filesystem::path& target);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    [[nodiscard]] std::ostream& stream() { return stream_; }
+
+    /// Closes the file and gives it its name. Throws InputError naming the target where that fails, be it
+    /// that the disk is full.
+    void commit();
+
+  private:
+    std::filesystem::path target_;     ///< as the caller spelled it, for messages
+    std::filesystem::path place_;      ///< where the file goes: the target with symbolic links followed
+    std::filesystem::path temporary_;  ///< empty where the target is written directly or is in place
+    std::ofstream stream_;
+};
+
+}  // namespace conelane::experiments

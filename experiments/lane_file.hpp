@@ -1,0 +1,32 @@
+#pragma once
+
+#include "model/lane.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A line of a `*.lanes.jsonl` file: what a method answered on a scene, and how fast.
+struct LaneRecord {
+    std::string scene;
+    std::string method;
+    LaneAnswer answer;
+    double latency_ms = 0.0;             ///< from the scene in memory to the lane in memory
+    std::optional<std::size_t> nearest;  ///< size of the cone set the method was given; absent: all cones
+};
+
+/// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside
+/// what is no such JSON, where a status other than found comes with cones or a method answers a scene twice
+/// with the same cone set. An absent `bound` beside an `objective` is read as minus infinity.
+[[nodiscard]] std::vector<LaneRecord> read_lanes(const std::filesystem::path& file);
+
+/// A bound of minus infinity (nothing proven) is left out. Throws InvalidInput where another number is not
+/// finite, InputError where the file cannot be written; then an old file stays as it was.
+void write_lanes(const std::filesystem::path& file, std::span<const LaneRecord> records);
+
+}  // namespace conelane::experiments

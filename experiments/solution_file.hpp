@@ -1,0 +1,40 @@
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A line of a `*.solutions.jsonl` file: the lane graph that an RLD solver answered on a scene. It is what
+/// was claimed; whether the edges are a lane graph is for the checker to say.
+struct SolutionRecord {
+    std::string scene;
+    std::string solver;
+    std::string formulation;
+    std::string status;   ///< optimal, feasible, infeasible, time_limit or error
+    std::string message;  ///< where status is error
+    std::vector<std::pair<ConeId, ConeId>> edges;
+    std::optional<double> objective;
+    std::optional<double> bound;
+    std::optional<std::int64_t> nodes;
+    double build_ms = 0.0;
+    double solve_ms = 0.0;
+};
+
+/// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside
+/// what is no such JSON, where a status other than optimal and feasible comes with edges or a solver answers
+/// a scene twice with the same formulation.
+[[nodiscard]] std::vector<SolutionRecord> read_solutions(const std::filesystem::path& file);
+
+/// A bound of minus infinity (nothing proven) is left out. Throws InvalidInput where another number is not
+/// finite, InputError where the file cannot be written; then an old file stays as it was.
+void write_solutions(const std::filesystem::path& file, std::span<const SolutionRecord> records);
+
+}  // namespace conelane::experiments
