@@ -192,7 +192,9 @@ double rounded(double value, double digits) {
 }  // namespace
 
 std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double every_m) {
-    if (!(every_m > 0.0) || !std::isfinite(every_m)) throw InvalidInput("every_m", "is not positive");
+    if (!(every_m >= kShortestEvery_m) || !std::isfinite(every_m)) {
+        throw InvalidInput("every_m", "is not a length of at least 0.01 m");
+    }
     const bool closed = boundaries.closed;
     Polyline left = dense_boundary(boundaries.left, closed, "left");
     Polyline right = dense_boundary(boundaries.right, closed, "right");

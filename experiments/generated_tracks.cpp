@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
+#include <boost/random/seed_seq.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 
@@ -29,9 +30,17 @@ constexpr double kStrayNearest_m = 3.4;         ///< from the centre line: outsi
 constexpr double kStrayFarthest_m = 10.0;       ///< from the centre line
 constexpr double kStrayClearance_m = 1.0;       ///< from any other cone
 
+/// Random numbers of one track: of its name and its seed, so that tracks of one seed do not resemble each
+/// other.
 class Draw {
   public:
-    explicit Draw(std::uint64_t seed) : generator_(seed) {}
+    Draw(const std::string& name, std::uint64_t seed) {
+        std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
+                                         static_cast<std::uint32_t>(seed >> 32U)};
+        for (const char letter : name) words.push_back(static_cast<unsigned char>(letter));
+        boost::random::seed_seq sequence(words.begin(), words.end());
+        generator_.seed(sequence);
+    }
     double uniform(double low, double high) {
         return boost::random::uniform_real_distribution<double>(low, high)(generator_);
     }
@@ -180,7 +189,7 @@ Track generate_track(const std::string& name, std::uint64_t seed) {
     track.name = seed == 0 ? name : fmt::format("{}@{}", name, seed);
     track.closed = layout->closed;
     const RoundedPath path(layout->centre_line, layout->closed);
-    Draw draw(seed);
+    Draw draw(name, seed);
     const HalfWidth half_width(path.length_m(), draw);
     track.left = append_boundary(track, path, half_width, 1.0, ConeColor::blue, draw);
     track.right = append_boundary(track, path, half_width, -1.0, ConeColor::yellow, draw);
