@@ -15,9 +15,10 @@ constexpr std::size_t kThreads = 4;
 /// Cones 0, 2, 4, ... on the left of a straight lane and 1, 3, 5, ... on its right, 4 m apart.
 Scene straight(std::size_t cones_a_side) {
     Scene scene;
-    for (std::size_t i = 0; i < 2 * cones_a_side; ++i) {
-        const double along_m = 2.0 + 4.0 * static_cast<double>(i / 2);
-        scene.cones.push_back({static_cast<ConeId>(i), {along_m, i % 2 == 0 ? 1.5 : -1.5}});
+    for (std::size_t i = 0; i < cones_a_side; ++i) {
+        const double along_m = 2.0 + 4.0 * static_cast<double>(i);
+        scene.cones.push_back({static_cast<ConeId>(2 * i), {along_m, 1.5}});
+        scene.cones.push_back({static_cast<ConeId>(2 * i + 1), {along_m, -1.5}});
     }
     return scene;
 }
