@@ -1,0 +1,39 @@
+# cmake -D ROOT=DIR -P includes.cmake: checks the #include lines of the sources below ROOT.
+# - Quoted includes name folder and file, and the folder is one that the including folder may depend on.
+# - Headers include no solver, Boost, parser or thread library: those stay in .cpp files, or in a header below a
+#   folder `detail`, which is private to its library.
+cmake_minimum_required(VERSION 3.25)
+
+set(model_depends_on model)
+set(solvers_depends_on model solvers)
+set(graph_search_depends_on model graph_search)
+set(experiments_depends_on model solvers graph_search experiments)
+set(tests_depends_on model solvers graph_search experiments tests)
+set(private_libraries "Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|coin/|nlopt|glpk|symphony|Highs|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+
+foreach(folder IN ITEMS model solvers graph_search experiments tests)
+    file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
+    list(FILTER files EXCLUDE REGEX "^tests/consumer/") # a project of its own
+    foreach(file IN LISTS files)
+        math(EXPR checked "${checked} + 1")
+        file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#[ \t]*include")
+        foreach(line IN LISTS lines)
+            if(line MATCHES "\"([^\"]*)\"")
+                set(included ${CMAKE_MATCH_1})
+                string(REGEX MATCH "^[^/]*" included_folder ${included})
+                if(NOT included_folder IN_LIST ${folder}_depends_on)
+                    message(SEND_ERROR "${file} may not include ${included}")
+                elseif(NOT EXISTS ${ROOT}/${included} OR included MATCHES "[.][.]/")
+                    message(SEND_ERROR "${file} includes ${included}, which is no FOLDER/FILE")
+                endif()
+            elseif(file MATCHES "[.]hpp$" AND NOT file MATCHES "/detail/"
+                   AND line MATCHES "<(${private_libraries})")
+                message(SEND_ERROR "${file} includes <${CMAKE_MATCH_1}...>, which belongs in .cpp files")
+            endif()
+        endforeach()
+    endforeach()
+endforeach()
+if(NOT checked)
+    message(FATAL_ERROR "no sources below ${ROOT}")
+endif()
+message(STATUS "${checked} files checked")

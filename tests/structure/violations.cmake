@@ -1,0 +1,46 @@
+# cmake -D SCRATCH=DIR -P violations.cmake: the other checks let pass what is right and find what is not.
+cmake_minimum_required(VERSION 3.25)
+
+# Runs a check on a tree of two files: model/scene.hpp and FILE with the line CONTENT. It must fail with a message
+# that matches COMPLAINT, or pass where that is empty.
+function(expect complaint check file content)
+    file(REMOVE_RECURSE ${SCRATCH})
+    file(WRITE ${SCRATCH}/model/scene.hpp "#pragma once\n#include <vector>\n")
+    file(WRITE ${SCRATCH}/${file} "${content}\n")
+    execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${CMAKE_CURRENT_LIST_DIR}/${check}.cmake
+                    RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_QUIET)
+    string(REGEX REPLACE "[ \n]+" " " error "${error}") # CMake breaks its messages into lines
+    if(complaint STREQUAL "" AND NOT result EQUAL 0)
+        message(SEND_ERROR "${file} with ${content}: must pass, yet: ${error}")
+    elseif(NOT complaint STREQUAL "" AND (result EQUAL 0 OR NOT error MATCHES "${complaint}"))
+        message(SEND_ERROR "${file} with ${content}: must fail with '${complaint}', yet: ${error}")
+    endif()
+endfunction()
+
+expect("" includes solvers/a.cpp "#include \"model/scene.hpp\"")
+expect("" includes tests/a.cpp "#include \"model/scene.hpp\"")
+foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
+                           "graph_search;solvers" "solvers;experiments" "graph_search;experiments"
+                           "experiments;tests")
+    list(GET direction 0 from)
+    list(GET direction 1 to)
+    expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#include \"${to}/b.hpp\"")
+endforeach()
+
+expect("solvers/a.cpp may not include scene.hpp" includes solvers/a.cpp "#include \"scene.hpp\"")
+expect("may not include ../model/scene.hpp" includes solvers/a.cpp "#include \"../model/scene.hpp\"")
+expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"solvers/../model/scene.hpp\"")
+expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"model/nothing.hpp\"")
+
+expect("" includes solvers/a.cpp "#include <CbcModel.hpp>\n#include <boost/geometry.hpp>")
+expect("" includes solvers/detail/a.hpp "#include <CbcModel.hpp>")
+expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#include <CbcModel.hpp>")
+expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#include <IpTNLP.hpp>")
+expect("includes <boost/...>, which" includes graph_search/a.hpp "#  include <boost/geometry.hpp>")
+expect("includes <nlohmann/...>, which" includes experiments/a.hpp "#include <nlohmann/json.hpp>")
+
+set(home home) # put together here, so that this file itself passes
+set(later DO)
+expect("" words model/a.cpp "// https://example.org/${home}/page, build/tmp/file, To do, \"\${dir}/tmp/x\"")
+expect("model/a.cpp:1:// see /${home}/me/file" words model/a.cpp "// see /${home}/me/file")
+expect("model/a.cpp:1:// TO${later}" words model/a.cpp "// TO${later} later")
