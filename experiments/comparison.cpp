@@ -12,8 +12,7 @@
 #include "experiments/input_error.hpp"
 #include "experiments/lane_file.hpp"
 #include "experiments/results.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/track_spec.hpp"
+#include "experiments/scene_set.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -50,32 +49,19 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 std::vector<ScoreRow> compare(const ComparisonOptions& options) {
     std::vector<const MethodEntry*> chosen;
     for (const std::string& name : options.methods) chosen.push_back(&find_method(name));
-    validate(options.scenes);
     std::error_code failure;
     std::filesystem::create_directories(options.directory, failure);
     if (failure) throw InputError(options.directory, 0, "", "cannot be made: " + failure.message());
 
-    std::vector<AnnotatedScene> scenes;
-    TrackBoundariesByName tracks;
-    for (const std::string& spec : options.tracks) {
-        for (const Track& track : load_tracks(spec)) {
-            if (!tracks.emplace(track.name, boundaries(track)).second) {
-                throw InputError("", 0, "tracks", "track '" + track.name + "' is named twice");
-            }
-            std::ranges::move(generate_scenes(track, options.scenes), std::back_inserter(scenes));
-        }
-    }
-    if (scenes.empty()) throw InputError("", 0, "tracks", "no pose on these tracks sees two cones of both boundaries");
-    const std::filesystem::path scenes_file = options.directory / "scenes.scenes.jsonl";
-    write_scenes(scenes_file, scenes);
-    write_track_boundaries(track_boundaries_path(scenes_file), tracks);
+    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    write_scene_set(options.directory / "scenes.scenes.jsonl", set);
 
     std::vector<KeyedScore> scores;
     for (const MethodEntry* method : chosen) {
-        const std::vector<LaneRecord> records = run(*method, scenes, options.run);
+        const std::vector<LaneRecord> records = run(*method, set.scenes, options.run);
         const std::filesystem::path lanes_file = options.directory / fmt::format("{}.lanes.jsonl", method->name);
         write_lanes(lanes_file, records);
-        std::ranges::move(score_records(scenes, tracks, records, lanes_file), std::back_inserter(scores));
+        std::ranges::move(score_records(set.scenes, set.tracks, records, lanes_file), std::back_inserter(scores));
     }
     std::vector<ScoreRow> rows = summarise_by_key(scores);
     write_results(options.directory / "results.jsonl", rows, describe(options));

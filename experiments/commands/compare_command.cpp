@@ -13,11 +13,13 @@ namespace conelane::experiments {
 namespace {
 
 struct Options {
-    ComparisonOptions comparison{.methods = {"rld-cbc", "clc"},
-                                 .scenes = {.false_positive_rates = {0.0, 0.1, 0.3, 0.5},
-                                            .ranges_m = {30.0},
-                                            .every_m = 4.4,
-                                            .threads = 1}};
+    Options() {
+        comparison.methods = {"rld-cbc", "clc"};
+        comparison.scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+        comparison.scenes.ranges_m = {30.0};
+        comparison.scenes.every_m = 4.4;
+    }
+    ComparisonOptions comparison;
     ParameterSource parameters;
     std::string directory;
     bool full = false;

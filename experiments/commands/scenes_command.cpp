@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,35 +6,26 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
-#include "experiments/input_error.hpp"
 #include "experiments/scene_file.hpp"
-#include "experiments/track_spec.hpp"
+#include "experiments/scene_set.hpp"
 
 namespace conelane::experiments {
 namespace {
 
 struct Options {
+    Options() {
+        scenes.false_positive_rates = {0.0};
+        scenes.ranges_m = {30.0};
+    }
     std::vector<std::string> tracks;
-    SceneOptions scenes{.false_positive_rates = {0.0}, .ranges_m = {30.0}};
+    SceneOptions scenes;
     std::string out;
 };
 
 void make_scenes(const Options& options) {
-    validate(options.scenes);
-    std::vector<AnnotatedScene> scenes;
-    TrackBoundariesByName tracks;
-    for (const std::string& spec : options.tracks) {
-        for (const Track& track : load_tracks(spec)) {
-            if (!tracks.emplace(track.name, boundaries(track)).second) {
-                throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
-            }
-            std::ranges::move(generate_scenes(track, options.scenes), std::back_inserter(scenes));
-        }
-    }
-    if (scenes.empty()) throw InputError("", 0, "--tracks", "no pose sees two cones of both boundaries");
-    write_track_boundaries(track_boundaries_path(options.out), tracks);
-    write_scenes(options.out, scenes);
-    fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", scenes.size(), tracks.size(), options.out,
+    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    write_scene_set(options.out, set);
+    fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(), options.out,
                track_boundaries_path(options.out).string());
 }
 
