@@ -1,5 +1,7 @@
 #include "experiments/track_readers.hpp"
 
+#include "experiments/centre_line.hpp"
+#include "experiments/generated_tracks.hpp"
 #include "experiments/input_error.hpp"
 #include "experiments/shortest_tour.hpp"
 #include "experiments/track_spec.hpp"
@@ -15,6 +17,7 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
@@ -26,11 +29,15 @@ class TrackFiles : public ::testing::Test {
   protected:
     void SetUp() override {
         const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-        directory_ = std::filesystem::path(::testing::TempDir()) / "conelane_tracks" / info->name();
+        directory_ = std::filesystem::path(::testing::TempDir()) /
+                     ("conelane_tracks_" + std::to_string(::getpid())) / info->name();
         std::filesystem::remove_all(directory_);
         std::filesystem::create_directories(directory_);
     }
-    void TearDown() override { std::filesystem::remove_all(directory_); }
+    void TearDown() override {
+        std::filesystem::remove_all(std::filesystem::path(::testing::TempDir()) /
+                                    ("conelane_tracks_" + std::to_string(::getpid())));
+    }
 
     std::filesystem::path write(const std::string& name, const std::string& content) const {
         std::ofstream(directory_ / name, std::ios::binary) << content;
@@ -244,6 +251,42 @@ TEST_P(EufsRings, AreOrderedFromTheStartInDrivingDirection) {
     EXPECT_EQ(oranges, 1u);
 }
 INSTANTIATE_TEST_SUITE_P(BothDirections, EufsRings, ::testing::Bool());
+
+/// A circuit written as an EUFS file forgets its order; reading finds it again, though sections pass each
+/// other.
+TEST_F(TrackFiles, EufsOrderIsThatOfTheCircuitWritten) {
+    for (const std::string& name : generated_track_names()) {
+        const Track circuit = generate_track(name, 0);
+        if (!circuit.closed) continue;
+        SCOPED_TRACE(name);
+        std::vector<std::size_t> scrambled(circuit.cones.size());
+        std::iota(scrambled.begin(), scrambled.end(), std::size_t{0});
+        boost::random::mt19937_64 generator(1);
+        for (std::size_t i = scrambled.size() - 1; i > 0; --i) {
+            std::swap(scrambled[i],
+                      scrambled[boost::random::uniform_int_distribution<std::size_t>(0, i)(generator)]);
+        }
+        std::string content = kEufsHeader;
+        for (const std::size_t index : scrambled) {
+            const Cone& cone = circuit.cones[index];
+            content += eufs_row(std::string(to_string(cone.color)), cone.position.x(), cone.position.y());
+        }
+        const Pose start = centre_line_poses(boundaries(circuit), 1.0)[20];
+        content += eufs_row("car_start", start.position.x(), start.position.y(), start.yaw_rad);
+        const Track read = read_eufs_track(write(name + ".csv", content));
+        const auto expect_order = [&](const std::vector<std::size_t>& expected,
+                                      const std::vector<std::size_t>& actual) {
+            ASSERT_EQ(actual.size(), expected.size());
+            std::vector<std::size_t> found;
+            for (const std::size_t index : actual) found.push_back(scrambled[index]);
+            std::ranges::rotate(found, std::ranges::find(found, expected.front()));
+            EXPECT_EQ(found, expected);
+        };
+        expect_order(circuit.left, read.left);
+        expect_order(circuit.right, read.right);
+        EXPECT_EQ(read.cones.size(), circuit.cones.size());
+    }
+}
 
 TEST_F(TrackFiles, EufsFaultsAreNamedByFileLineAndKey) {
     const auto error = [&](const std::string& content) {
