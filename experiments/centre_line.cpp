@@ -154,35 +154,37 @@ Polyline smoothed(const Polyline& line, bool closed, std::size_t reach) {
     return result;
 }
 
-/// The point at an arc length of a line whose vertices are equally spaced.
-class EvenLine {
+/// A polyline measured along its length.
+class MeasuredLine {
   public:
-    EvenLine(const Polyline& line, bool closed)
-        : vertices_(resampled(line, closed, kCentreSample_m)),
-          closed_(closed),
-          length_m_(polyline_length_m(vertices_, closed)),
-          gap_m_(length_m_ / static_cast<double>(closed ? vertices_.size() : vertices_.size() - 1)) {}
+    MeasuredLine(Polyline vertices, bool closed) : vertices_(std::move(vertices)), closed_(closed) {
+        const std::vector<Point>& v = vertices_;
+        for (std::size_t i = 0; i + 1 < v.size(); ++i) {
+            lengths_m_.push_back(lengths_m_.back() + (v[i + 1] - v[i]).norm());
+        }
+        if (closed) lengths_m_.push_back(lengths_m_.back() + (v.front() - v.back()).norm());
+    }
 
-    [[nodiscard]] double length_m() const { return length_m_; }
+    [[nodiscard]] double length_m() const { return lengths_m_.back(); }
 
+    /// The point at an arc length, which wraps on a closed line and is clamped on an open one.
     [[nodiscard]] Point at(double arc_length_m) const {
         if (closed_) {
-            arc_length_m -= length_m_ * std::floor(arc_length_m / length_m_);
+            arc_length_m -= length_m() * std::floor(arc_length_m / length_m());
         } else {
-            arc_length_m = std::clamp(arc_length_m, 0.0, length_m_);
+            arc_length_m = std::clamp(arc_length_m, 0.0, length_m());
         }
-        const std::size_t n = vertices_.size();
-        const double position = arc_length_m / gap_m_;
-        const auto i = std::min(static_cast<std::size_t>(position), closed_ ? n - 1 : n - 2);
-        const double share = position - static_cast<double>(i);
-        return vertices_[i] + share * (vertices_[(i + 1) % n] - vertices_[i]);
+        const auto end = std::upper_bound(lengths_m_.begin() + 1, lengths_m_.end() - 1, arc_length_m);
+        const auto i = static_cast<std::size_t>(end - lengths_m_.begin()) - 1;
+        const double segment_m = lengths_m_[i + 1] - lengths_m_[i];
+        const double share = segment_m > 0.0 ? (arc_length_m - lengths_m_[i]) / segment_m : 0.0;
+        return vertices_[i] + share * (vertices_[(i + 1) % vertices_.size()] - vertices_[i]);
     }
 
   private:
     Polyline vertices_;
     bool closed_;
-    double length_m_;
-    double gap_m_;
+    std::vector<double> lengths_m_{0.0};  ///< arc length at each vertex, and at the end of a closed line
 };
 
 double rounded(double value, double digits) {
@@ -204,7 +206,7 @@ std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double ev
         throw InvalidInput("left", "bounds no lane with the right boundary");
     }
     constexpr auto kReach = static_cast<std::size_t>(kSmoothing_m / kCentreSample_m / 2.0);
-    const EvenLine line(smoothed(resampled(midpoints, closed, kCentreSample_m), closed, kReach), closed);
+    const MeasuredLine line(smoothed(resampled(midpoints, closed, kCentreSample_m), closed, kReach), closed);
 
     std::vector<Pose> poses;
     for (std::size_t i = 0;; ++i) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
@@ -49,7 +50,8 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 /// The columns that are read, found by the header line.
 class EufsColumns {
   public:
-    EufsColumns(const std::filesystem::path& file, std::size_t line, std::string_view header) : file_(file) {
+    EufsColumns(std::filesystem::path file, std::size_t line, std::string_view header)
+        : file_(std::move(file)) {
         const std::vector<std::string_view> names = fields_of(header);
         const auto column = [&](std::string_view name) {
             const auto found = std::ranges::find(names, name);

@@ -154,8 +154,9 @@ std::vector<std::size_t> append_boundary(Track& track, const RoundedPath& path, 
 /// Cones outside the lane, drawn anew until they are clear of every section and of each other.
 void append_strays(Track& track, const RoundedPath& path, std::size_t count, Draw& draw) {
     std::vector<Point> centre_line;
-    for (double s_m = 0.0; s_m < path.length_m(); s_m += kSample_m) {
-        centre_line.push_back(path.at(s_m).position);
+    const auto samples = static_cast<std::size_t>(path.length_m() / kSample_m);
+    for (std::size_t i = 0; i <= samples; ++i) {
+        centre_line.push_back(path.at(static_cast<double>(i) * kSample_m).position);
     }
     const std::size_t wanted = track.cones.size() + count;
     while (track.cones.size() < wanted) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/core.h>
 #include <yaml-cpp/yaml.h>
@@ -58,7 +59,7 @@ class YamlFile {
     }
 
     [[nodiscard]] double coordinate(const YAML::Node& node, const std::string& key) const {
-        const double result = value<double>(node, key, "a number");
+        const auto result = value<double>(node, key, "a number");
         if (const std::string fault = coordinate_fault(result); !fault.empty()) fail(node, key, fault);
         return result;
     }
@@ -153,7 +154,7 @@ Track read_fsd_track(const std::filesystem::path& directory, int number) {
     map.require_map(map.root(), "");
     std::unordered_map<ConeId, std::size_t> index_of;
     for (const auto& entry : map.root()) {
-        const ConeId id = map.value<ConeId>(entry.first, "id", "an integer");
+        const auto id = map.value<ConeId>(entry.first, "id", "an integer");
         if (!index_of.emplace(id, track.cones.size()).second) {
             map.fail(entry.first, std::to_string(id), "id is there twice");
         }
@@ -173,7 +174,7 @@ Track read_fsd_track(const std::filesystem::path& directory, int number) {
         std::vector<std::size_t> boundary;
         for (std::size_t position = 0; position < ids.size(); ++position) {
             const std::string item_key = fmt::format("{}[{}]", key, position);
-            const ConeId id = boundaries_file.value<ConeId>(ids[position], item_key, "an integer");
+            const auto id = boundaries_file.value<ConeId>(ids[position], item_key, "an integer");
             const auto found = index_of.find(id);
             if (found == index_of.end()) {
                 boundaries_file.fail(ids[position], item_key, fmt::format("no cone has id {}", id));

@@ -100,6 +100,7 @@ std::vector<Track> fsd(const std::string& spec, const std::string& where) {
     if (numbers.empty()) numbers = fsd_numbers(directory);
     if (numbers.empty()) fail(spec, directory.string() + " holds no cone_map_N.yaml");
     std::vector<Track> tracks;
+    tracks.reserve(numbers.size());
     for (const int number : numbers) tracks.push_back(read_fsd_track(directory, number));
     return tracks;
 }

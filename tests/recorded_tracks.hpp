@@ -1,0 +1,48 @@
+#pragma once
+
+#include "experiments/track_spec.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// All recorded tracks, from the folder that the environment variable CONELANE_DATA names, else from
+/// ../shared/data beside the sources. None where there is neither.
+inline std::vector<Track> recorded_tracks() {
+    namespace fs = std::filesystem;
+    const char* const given = std::getenv("CONELANE_DATA");
+    const fs::path data =
+        given != nullptr ? fs::path(given) : fs::path(CONELANE_SOURCE_DIR).parent_path() / "shared" / "data";
+    std::vector<std::string> specs;
+    const auto add_files = [&](const std::string& kind, const std::string& extension) {
+        if (!fs::is_directory(data / kind)) return;
+        for (const fs::directory_entry& entry : fs::directory_iterator(data / kind)) {
+            if (entry.path().extension() == extension) specs.push_back(kind + ":" + entry.path().string());
+        }
+    };
+    add_files("pacsim", ".yaml");
+    add_files("eufs", ".csv");
+    if (const fs::path fsd = data / "fsd_racetrack_dataset"; fs::is_directory(fsd)) {
+        specs.push_back("fsd:" + fsd.string());
+    }
+    std::ranges::sort(specs);
+    std::vector<Track> tracks;
+    for (const std::string& spec : specs) {
+        for (Track& track : load_tracks(spec)) tracks.push_back(std::move(track));
+    }
+    return tracks;
+}
+
+}  // namespace conelane::experiments
+
+/// Skips the test where there are no recorded tracks.
+#define CONELANE_RECORDED_TRACKS_OR_SKIP(tracks)                                    \
+    const std::vector<Track> tracks = recorded_tracks();                            \
+    if (tracks.empty()) {                                                           \
+        GTEST_SKIP() << "no recorded tracks in CONELANE_DATA or in ../shared/data"; \
+    }                                                                               \
+    static_assert(true, "a semicolon follows")
