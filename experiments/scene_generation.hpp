@@ -24,7 +24,7 @@ struct SceneOptions {
     double miss_rate = 0.0;                    ///< share of visible map points not seen, in [0, 1)
     bool with_color = false;                   ///< else every cone is of unknown colour
     std::uint64_t seed = 0;                    ///< base seed
-    unsigned threads = 1;
+    unsigned threads = 1;                      ///< at most; more than there are processors are not used
 };
 
 /// Throws InvalidInput naming the option where a value is out of its range.
