@@ -1,5 +1,6 @@
 #include "experiments/scene_generation.hpp"
 
+#include "experiments/centre_line.hpp"
 #include "experiments/ground_truth.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
@@ -363,6 +364,11 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
         if (scene) scenes.push_back(*std::move(scene));
     }
     return scenes;
+}
+
+std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options) {
+    validate(options);
+    return generate_scenes(track, centre_line_poses(boundaries(track), options.every_m), options);
 }
 
 }  // namespace conelane::experiments

@@ -41,7 +41,7 @@ SegmentDistance segment_distance(const Segment& a, const Segment& b) {
         distance = std::min({foot_point(a.from, b).distance_m, foot_point(a.to, b).distance_m,
                              foot_point(b.from, a).distance_m, foot_point(b.to, a).distance_m});
     }
-    return {distance, ends <= distance + kTieTolerance_m};
+    return {distance, ends <= distance + kTieTolerance};
 }
 
 bool segments_intersect(const Segment& a, const Segment& b) {

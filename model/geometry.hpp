@@ -10,8 +10,9 @@ namespace conelane {
 /// A position or a vector in the map frame [m].
 using Point = Eigen::Vector2d;
 
-/// Two lengths closer than this count as equal [m]; the one tolerance of MinDist and End, equation (7).
-inline constexpr double kTieTolerance_m = 1e-9;
+/// Two lengths [m] closer than this count as equal, and so do a value and its limit; the one tolerance of
+/// MinDist and End, equation (7).
+inline constexpr double kTieTolerance = 1e-9;
 
 /// z component of a x b; positive where b points to the left of a.
 [[nodiscard]] inline double cross(const Point& a, const Point& b) {
@@ -33,7 +34,7 @@ struct FootPoint {
 [[nodiscard]] FootPoint foot_point(const Point& query, const Segment& segment);
 
 /// Smallest distance of two closed segments, and whether it is attained between an end of one and an end of
-/// the other (End of equation (7)). A tie within kTieTolerance_m between a pair of ends and an interior point
+/// the other (End of equation (7)). A tie within kTieTolerance between a pair of ends and an interior point
 /// counts as between ends; so do touching ends. Crossing and overlapping segments have distance 0.
 struct SegmentDistance {
     double distance_m;

@@ -444,6 +444,23 @@ TEST(SceneGeneration, BytesAreTheSameOnEveryMachine) {
               "\n");
 }
 
+TEST(SceneGeneration, WithoutPosesTheCarDrivesTheCentreLine) {
+    SceneOptions wanted = options({0.0, 0.3}, {30.0});
+    wanted.every_m = 2.0;
+    const auto scenes = generate_scenes(straight(), wanted);
+    // From x = 0 to x = 90, where the last two cones of each side are at or ahead of the car; twice.
+    ASSERT_THAT(scenes, SizeIs(92));
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const Pose& pose = scenes[i].scene.pose;
+        EXPECT_NEAR(pose.position.x(), 2.0 * static_cast<double>(i % 46), 1e-6);
+        EXPECT_NEAR(pose.position.y(), 0.0, 1e-6);
+        EXPECT_NEAR(pose.yaw_rad, 0.0, 1e-6);
+        EXPECT_EQ(scenes[i].false_positive_rate, i < 46 ? 0.0 : 0.3);
+    }
+    wanted.every_m = 0.0;
+    EXPECT_THROW(static_cast<void>(generate_scenes(straight(), wanted)), InvalidInput);
+}
+
 TEST(SceneGeneration, NamesOptionsOutOfRange) {
     const auto error = [](const std::function<void(SceneOptions&)>& change) -> std::string {
         SceneOptions wanted = options({0.0}, {30.0});

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/solution_file.hpp"
+#include "model/check.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::string solutions;
+    ParameterSource parameters;
+};
+
+/// Everything wrong with a record; nothing where it is right or claims no lane graph.
+std::vector<std::string> check_record(const SolutionRecord& record, const Scene& scene,
+                                      const RldParameters& parameters) {
+    if (record.status != "optimal" && record.status != "feasible") return {};
+    std::unordered_map<ConeId, std::size_t> index_of;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    LaneGraph graph;
+    for (const auto& [a, b] : record.edges) {
+        for (const ConeId id : {a, b}) {
+            if (!index_of.contains(id)) return {fmt::format("cone {} is not in the scene", id)};
+        }
+        graph.edges.push_back(make_edge(index_of.at(a), index_of.at(b)));
+    }
+    std::ranges::sort(graph.edges);
+    if (!record.objective) return {"there is no objective"};
+    return check(scene, parameters, graph, {record.status == "optimal", *record.objective, record.bound}).violations;
+}
+
+void check_all(const Options& options) {
+    const RldParameters parameters = options.parameters.load();
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::unordered_map<std::string, const Scene*> scene_of;
+    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
+    const std::vector<SolutionRecord> records = read_solutions(options.solutions);
+    std::size_t failed = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const auto scene = scene_of.find(records[i].scene);
+        if (scene == scene_of.end()) {
+            throw InputError(options.solutions, i + 1, "scene", "'" + records[i].scene + "' is not in the scenes file");
+        }
+        const std::vector<std::string> violations = check_record(records[i], *scene->second, parameters);
+        for (const std::string& violation : violations) fmt::print("{}: {}\n", records[i].scene, violation);
+        if (!violations.empty()) ++failed;
+    }
+    fmt::print("{} passed, {} failed\n", records.size() - failed, failed);
+    if (failed > 0) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("check", "recomputes solutions independently of all solvers; exit code 1 on a failure");
+    auto options = std::make_shared<Options>();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
+    add_parameter_options(command, options->parameters);
+    command.callback([options] { check_all(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// The sub-commands of the program `conelane`, a file each. `add_X` declares the options of X; the callback runs it.
+/// Whatever a command throws becomes one line on stderr and exit code 2.
+namespace conelane::experiments {
+
+void add_scenes_command(CLI::App& program);
+void add_methods_command(CLI::App& program);
+void add_detect_command(CLI::App& program);
+void add_solvers_command(CLI::App& program);
+void add_solve_command(CLI::App& program);
+void add_check_command(CLI::App& program);
+void add_score_command(CLI::App& program);
+void add_compare_command(CLI::App& program);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/lane_file.hpp"
+#include "experiments/results.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/score_table.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::vector<std::string> lanes;
+    std::string json;
+};
+
+void score_all(const Options& options) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    const std::filesystem::path companion = track_boundaries_path(options.scenes);
+    TrackBoundariesByName tracks;
+    if (std::filesystem::exists(companion)) {
+        tracks = read_track_boundaries(companion);
+    } else {
+        fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
+    }
+    std::vector<KeyedScore> scores;
+    for (const std::string& file : options.lanes) {
+        std::ranges::move(score_records(scenes, tracks, read_lanes(file), file), std::back_inserter(scores));
+    }
+    const std::vector<ScoreRow> rows = summarise_by_key(scores);
+    if (!options.json.empty()) {
+        const nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
+        write_results(options.json, rows, run.dump());
+    }
+    fmt::print("{}", score_table(rows));
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("score", "every measure of both papers, a table of all methods");
+    auto options = std::make_shared<Options>();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
+    command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more")->required();
+    command.add_option("--json", options->json, "write the rows as JSON lines too");
+    command.callback([options] { score_all(*options); });
+}
+
+}  // namespace conelane::experiments

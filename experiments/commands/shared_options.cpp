@@ -1,0 +1,62 @@
+#include "experiments/commands/shared_options.hpp"
+
+
+#include "experiments/parameter_file.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+constexpr unsigned kMostThreads = 1024;
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    command.add_option("--fp", options.false_positive_rates, "false positives / all points of a scene")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--range", options.ranges_m, "radius of the visible half disc [m]")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--every", options.every_m, "travel between poses [m]")->capture_default_str();
+    command.add_option("--noise", options.noise_sigma_m, "standard deviation of the seen positions [m]");
+    command
+        .add_option_function<std::vector<double>>(
+            "--pose-noise",
+            [&options](const std::vector<double>& values) {
+                options.pose_noise_lateral_m = values[0];
+                options.pose_noise_yaw_rad = values[1];
+            },
+            "standard deviations of the pose: LATERAL [m], YAW [rad]")
+        ->delimiter(',')
+        ->expected(2);
+    command.add_option("--miss", options.miss_rate, "share of the cones not seen");
+    command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
+    command.add_option("--seed", options.seed, "base seed")->capture_default_str();
+}
+
+RldParameters ParameterSource::load() const {
+    RldParameters parameters = file.empty() ? RldParameters{} : read_rld_parameters(file);
+    if (!pairing.empty()) parameters.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
+    return parameters;
+}
+
+void add_parameter_options(CLI::App& command, ParameterSource& source) {
+    command.add_option("--params", source.file, "RLD parameters (JSON); the shipped default without it");
+    command.add_option("--pairing", source.pairing, "overrides the pairing of the parameters")
+        ->check(CLI::IsMember({"paper", "near_far"}));
+}
+
+void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning) {
+    command.add_option_function<std::size_t>("--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
+        ->check(CLI::Range(1, 100000));
+}
+
+void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
+    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]")->check(CLI::PositiveNumber);
+}
+
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
+    command.add_option("--threads", threads, meaning)->check(CLI::Range(1U, kMostThreads))->capture_default_str();
+}
+
+}  // namespace conelane::experiments

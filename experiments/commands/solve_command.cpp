@@ -1,0 +1,106 @@
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/solution_file.hpp"
+#include "model/invalid_input.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "solvers/deadline.hpp"
+#include "solvers/registry.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string solver = "cbc";
+    std::string formulation = "tight";
+    std::string scenes;
+    std::string out;
+    std::optional<std::size_t> nearest;
+    ParameterSource parameters;
+    SolveLimits limits;
+};
+
+RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters, const SolveLimits& limits) {
+    try {
+        const Deadline deadline(limits.time_limit_ms);
+        const Stopwatch problem_watch;
+        const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
+        const double problem_ms = problem_watch.elapsed_ms();
+        RldReport report = solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap});
+        report.build_ms += problem_ms;
+        return report;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& failure) {
+        RldReport report;
+        report.message = failure.what();
+        return report;
+    }
+}
+
+void solve_all(const Options& options) {
+    const RldSolverEntry* entry = find_rld_solver(options.solver);
+    if (entry == nullptr) {
+        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
+    }
+    const RldParameters parameters = options.parameters.load();
+    const std::unique_ptr<RldSolver> solver =
+        entry->make(options.formulation == "paper" ? Formulation::paper : Formulation::tight);
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::vector<SolutionRecord> records;
+    records.reserve(scenes.size());
+    Progress progress(options.solver, scenes.size());
+    for (const AnnotatedScene& annotated : scenes) {
+        const Scene scene = options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+        const RldReport report = solve(*solver, scene, parameters, options.limits);
+        SolutionRecord record{scene.id, options.solver, options.formulation, std::string(to_string(report.status)),
+                              report.message, {}, report.objective, report.bound, report.nodes, report.build_ms,
+                              report.solve_ms};
+        if (report.lane_graph) {
+            for (const Edge& edge : report.lane_graph->edges) {
+                record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
+            }
+        }
+        records.push_back(std::move(record));
+        progress.advance();
+    }
+    write_solutions(options.out, records);
+}
+
+}  // namespace
+
+void add_solvers_command(CLI::App& program) {
+    program.add_subcommand("solvers", "the RLD solvers of this build")->callback([] {
+        for (const RldSolverEntry& solver : rld_solvers()) {
+            fmt::print("{:<16} {:<28} {}\n", solver.name, solver.uses_formulation ? "formulations: tight, paper" : "",
+                       solver.meaning);
+        }
+    });
+}
+
+void add_solve_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
+    auto options = std::make_shared<Options>();
+    command.add_option("--solver", options->solver, "see `conelane solvers`")->capture_default_str();
+    command.add_option("--formulation", options->formulation)
+        ->check(CLI::IsMember({"tight", "paper"}))
+        ->capture_default_str();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    command.add_option("--out", options->out, "*.solutions.jsonl")->required();
+    add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
+    add_time_limit_option(command, options->limits.time_limit_ms);
+    add_parameter_options(command, options->parameters);
+    command.callback([options] { solve_all(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,86 @@
+#include "experiments/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "experiments/atomic_file.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/lane_file.hpp"
+#include "experiments/results.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/track_spec.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+/// Everything that the numbers of a comparison depend on.
+std::string describe(const ComparisonOptions& options) {
+    nlohmann::ordered_json parameters;
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        parameters[std::string(field.key)] = options.run.method.rld_parameters.*field.value;
+    }
+    parameters["pairing"] = to_string(options.run.method.rld_parameters.pairing);
+    nlohmann::ordered_json run{{"tracks", options.tracks},
+                               {"every", options.scenes.every_m},
+                               {"noise", options.scenes.noise_sigma_m},
+                               {"pose_noise", {options.scenes.pose_noise_lateral_m, options.scenes.pose_noise_yaw_rad}},
+                               {"miss", options.scenes.miss_rate},
+                               {"color", options.scenes.with_color},
+                               {"seed", options.scenes.seed},
+                               {"threads", options.run.threads},
+                               {"rld_parameters", parameters}};
+    if (options.run.method.nearest) run["nearest"] = *options.run.method.nearest;
+    if (std::isfinite(options.run.limits.time_limit_ms)) run["time_limit_ms"] = options.run.limits.time_limit_ms;
+    return run.dump();
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    AtomicFile output(file);
+    output.stream() << text;
+    output.commit();
+}
+
+}  // namespace
+
+std::vector<ScoreRow> compare(const ComparisonOptions& options) {
+    std::vector<const MethodEntry*> chosen;
+    for (const std::string& name : options.methods) chosen.push_back(&find_method(name));
+    validate(options.scenes);
+    std::error_code failure;
+    std::filesystem::create_directories(options.directory, failure);
+    if (failure) throw InputError(options.directory, 0, "", "cannot be made: " + failure.message());
+
+    std::vector<AnnotatedScene> scenes;
+    TrackBoundariesByName tracks;
+    for (const std::string& spec : options.tracks) {
+        for (const Track& track : load_tracks(spec)) {
+            if (!tracks.emplace(track.name, boundaries(track)).second) {
+                throw InputError("", 0, "tracks", "track '" + track.name + "' is named twice");
+            }
+            std::ranges::move(generate_scenes(track, options.scenes), std::back_inserter(scenes));
+        }
+    }
+    if (scenes.empty()) throw InputError("", 0, "tracks", "no pose on these tracks sees two cones of both boundaries");
+    const std::filesystem::path scenes_file = options.directory / "scenes.scenes.jsonl";
+    write_scenes(scenes_file, scenes);
+    write_track_boundaries(track_boundaries_path(scenes_file), tracks);
+
+    std::vector<KeyedScore> scores;
+    for (const MethodEntry* method : chosen) {
+        const std::vector<LaneRecord> records = run(*method, scenes, options.run);
+        const std::filesystem::path lanes_file = options.directory / fmt::format("{}.lanes.jsonl", method->name);
+        write_lanes(lanes_file, records);
+        std::ranges::move(score_records(scenes, tracks, records, lanes_file), std::back_inserter(scores));
+    }
+    std::vector<ScoreRow> rows = summarise_by_key(scores);
+    write_results(options.directory / "results.jsonl", rows, describe(options));
+    write_text(options.directory / "table.txt", score_table(rows));
+    return rows;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,57 @@
+// The program `conelane`: one sub-command for each stage from tracks to tables.
+
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/provenance.hpp"
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+/// Messages end up in one line whatever a library put into them.
+std::string one_line(std::string text) {
+    for (char& character : text) {
+        if (character == '\n' || character == '\r') character = ' ';
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+int run(int argument_count, char** arguments) {
+    namespace experiments = conelane::experiments;
+    CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
+                     "conelane");
+    program.set_version_flag("--version", "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
+    program.require_subcommand(1);
+    experiments::add_compare_command(program);
+    experiments::add_scenes_command(program);
+    experiments::add_detect_command(program);
+    experiments::add_methods_command(program);
+    experiments::add_score_command(program);
+    experiments::add_solve_command(program);
+    experiments::add_solvers_command(program);
+    experiments::add_check_command(program);
+    try {
+        program.parse(argument_count, arguments);
+    } catch (const CLI::Success& help) {
+        return program.exit(help);
+    } catch (const CLI::RuntimeError& failed) {
+        return failed.get_exit_code();
+    } catch (const CLI::ParseError& bad_option) {
+        fmt::print(stderr, "conelane: {}\n", one_line(bad_option.what()));
+        return kBadInput;
+    } catch (const std::exception& failure) {
+        fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
+        return kBadInput;
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) { return run(argument_count, arguments); }

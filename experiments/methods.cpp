@@ -1,0 +1,67 @@
+#include "experiments/methods.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "graph_search/clc_detector.hpp"
+#include "model/invalid_input.hpp"
+#include "solvers/registry.hpp"
+#include "solvers/rld_detector.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+/// Cone-set size of the RLD paper's on-board runs.
+constexpr std::size_t kRldConeSet = 12;
+
+std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation, std::size_t nearest,
+                                       const MethodOptions& options) {
+    return make_rld_detector(find_rld_solver(solver)->make(formulation),
+                             {options.rld_parameters, options.nearest.value_or(nearest), 1e-9});
+}
+
+/// Shows its detector the nearest cones only.
+class NearestCones : public LaneDetector {
+  public:
+    NearestCones(std::unique_ptr<LaneDetector> detector, std::size_t nearest)
+        : detector_(std::move(detector)), nearest_(nearest) {}
+    LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
+        return detector_->detect(nearest_ahead(scene, nearest_), limits);
+    }
+    void reset() override { detector_->reset(); }
+
+  private:
+    std::unique_ptr<LaneDetector> detector_;
+    std::size_t nearest_;
+};
+
+std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector, std::optional<std::size_t> nearest) {
+    if (!nearest) return detector;
+    return std::make_unique<NearestCones>(std::move(detector), *nearest);
+}
+
+constexpr std::array<MethodEntry, 2> kMethods{{
+    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
+     [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
+    {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt,
+     [](const MethodOptions& options) { return cut_to(make_clc_detector({}), options.nearest); }},
+}};
+
+}  // namespace
+
+std::span<const MethodEntry> methods() { return kMethods; }
+
+const MethodEntry& find_method(std::string_view name) {
+    const auto entry = std::ranges::find(kMethods, name, &MethodEntry::name);
+    if (entry == kMethods.end()) {
+        throw InvalidInput("method", "there is no method '" + std::string(name) + "', see `conelane methods`");
+    }
+    return *entry;
+}
+
+std::optional<std::size_t> cone_set_size(const MethodEntry& method, const MethodOptions& options) {
+    return options.nearest ? options.nearest : method.nearest;
+}
+
+}  // namespace conelane::experiments

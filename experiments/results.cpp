@@ -1,0 +1,74 @@
+#include "experiments/results.hpp"
+
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "experiments/atomic_file.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/score.hpp"
+#include "model/invalid_input.hpp"
+
+namespace conelane::experiments {
+namespace {
+
+/// The row of the table: a cone-set size is part of the method's name where it is not the method's own habit.
+std::string row_name(const LaneRecord& record) {
+    return record.nearest ? record.method + " n=" + std::to_string(*record.nearest) : record.method;
+}
+
+}  // namespace
+
+std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                                      std::span<const LaneRecord> records, const std::filesystem::path& lanes_file) {
+    std::unordered_map<std::string, const AnnotatedScene*> scene_of;
+    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene);
+    std::vector<KeyedScore> scores;
+    std::map<std::string, std::size_t> answered;  // by row name
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        const LaneRecord& record = records[i];
+        const auto scene = scene_of.find(record.scene);
+        if (scene == scene_of.end()) {
+            throw InputError(lanes_file, i + 1, "scene", "'" + record.scene + "' is not in the scenes file");
+        }
+        ++answered[row_name(record)];
+        const AnnotatedScene& annotated = *scene->second;
+        if (!counts(annotated)) continue;
+        const auto track = tracks.find(annotated.track);
+        try {
+            scores.push_back({{row_name(record), annotated.false_positive_rate, annotated.range_m},
+                              score(annotated, record.answer, record.latency_ms, record.nearest,
+                                    track == tracks.end() ? nullptr : &track->second)});
+        } catch (const InvalidInput& invalid) {
+            throw InputError(lanes_file, i + 1, invalid.key(), invalid.what());
+        }
+    }
+    for (const auto& [name, count] : answered) {
+        if (count != scenes.size()) {
+            throw InputError(lanes_file, 0, "scene",
+                             name + " answers " + std::to_string(count) + " of " + std::to_string(scenes.size()) +
+                                 " scenes");
+        }
+    }
+    return scores;
+}
+
+void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows, const std::string& run) {
+    const Provenance origin = provenance();
+    AtomicFile output(file);
+    for (const ScoreRow& row : rows) {
+        nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
+        line["commit"] = origin.commit;
+        line["compiler"] = origin.compiler;
+        line["machine"] = origin.machine;
+        line["run"] = nlohmann::ordered_json::parse(run);
+        output.stream() << line.dump() << '\n';
+    }
+    output.commit();
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,52 @@
+#include "graph_search/next_vertex.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace conelane {
+namespace {
+
+double measure(double sine, double cosine) {
+    const double sum = sine + std::abs(cosine);
+    if (sum == 0.0) return 0.0;
+    return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
+}
+
+}  // namespace
+
+double turning_measure(const Point& before, const Point& after) {
+    return measure(std::abs(cross(before, after)), before.dot(after));
+}
+
+double turning_measure(double angle_rad) {
+    return measure(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
+}
+
+void NextVertexDecider::reset(const SearchGraph& graph) {
+    graph_ = &graph;
+    options_.clear();
+    ranges_.assign(graph.directed_edge_count(), Range{kUnknown, kUnknown});
+}
+
+NextVertexDecider::Range NextVertexDecider::after_start(Vertex start, const Point& heading) {
+    return sorted(start, heading);
+}
+
+NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& direction) {
+    const auto begin = static_cast<std::uint32_t>(options_.size());
+    SearchGraph::DirectedEdge edge = graph_->first_edge(vertex);
+    for (const Vertex neighbour : graph_->neighbours(vertex)) {
+        const Point segment = graph_->position(neighbour) - graph_->position(vertex);
+        const NextVertex option{neighbour, edge++, turning_measure(direction, segment)};
+        // Insertion keeps equal ones in the order of the vertices, which is that of `neighbours`.
+        options_.push_back(option);
+        std::size_t place = options_.size() - 1;
+        for (; place > begin && options_[place - 1].turning > option.turning; --place) {
+            options_[place] = options_[place - 1];
+        }
+        options_[place] = option;
+    }
+    return {begin, static_cast<std::uint32_t>(options_.size())};
+}
+
+}  // namespace conelane

@@ -1,0 +1,118 @@
+#pragma once
+
+#include "graph_search/lane_constraints.hpp"
+#include "graph_search/next_vertex.hpp"
+#include "graph_search/search_graph.hpp"
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace conelane {
+
+/// The two first vertices of a lane.
+struct StartPair {
+    Vertex left;
+    Vertex right;
+
+    bool operator==(const StartPair&) const = default;
+};
+
+struct EnumerationRules {
+    LaneBounds bounds;
+    double d_max_m = 5.5;  ///< for closing; must be that of the search graph
+    WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
+    /// Without it the search goes on where no extension can become feasible: slower, and finds the same.
+    bool backtracking = true;
+};
+
+/// What a search may spend, and what it has spent; several enumerations may draw on one.
+struct SearchBudget {
+    using Clock = std::chrono::steady_clock;
+
+    std::int64_t iteration_limit = 2500;  ///< it_max
+    Clock::time_point deadline = Clock::time_point::max();
+    std::int64_t iterations = 0;
+    bool out_of_time = false;
+
+    [[nodiscard]] bool spent() const { return iterations >= iteration_limit || out_of_time; }
+};
+
+/// A feasible path pair, as the last of the steps that built it.
+struct PathPair {
+    std::uint32_t last_step;
+    bool closed;
+    std::int64_t iteration;  ///< of the search in which it was met, from 1
+    double length_m;         ///< mean of the lengths of both boundaries
+};
+
+/// The vertices of both boundaries, from the car outward.
+using PathPairVertices = std::array<std::vector<Vertex>, 2>;
+
+/// All path pairs found, as a tree of steps: what many have in common is stored once.
+class PathPairs {
+  public:
+    void clear();
+    [[nodiscard]] const std::vector<PathPair>& found() const { return found_; }
+    [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
+
+    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+    /// Returns the number of the new step.
+    std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
+    void add_found(const PathPair& pair) { found_.push_back(pair); }
+
+  private:
+    struct Step {
+        std::uint32_t before;
+        Vertex vertex;
+        std::uint8_t side;
+    };
+    std::vector<Step> steps_;
+    std::vector<PathPair> found_;
+};
+
+/// Algorithm 2 of the CLC paper: depth-first search over pairs of simple paths, both growing at once.
+///
+/// How V is read: the recursive call gets the visited sets by value, so what a call marks holds for itself
+/// and the calls below it, and is forgotten when it returns. While V[s][c] is in use, side s ends in c by the
+/// same path, so the order in which NVD offers the neighbours of c is fixed and the visited ones are always
+/// the first of that order: a position in it stands for the whole set. A call first takes all pairs in which
+/// side s goes on from c to n, then those in which it does not, so each path pair is met exactly once.
+///
+/// One thing is added to line 11: a call also returns where the lane can become feasible only by extending a
+/// side all of whose neighbours are visited; line 22 would give up each of its further extensions one by one.
+class PathPairEnumeration {
+  public:
+    /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side, in the order
+    /// met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
+    /// which an iteration is one run of the loop in line 3. Returns whether the enumeration is complete.
+    /// Keeps memory from call to call. Precondition: `heading` is a unit vector, start.left != start.right.
+    bool run(const SearchGraph& graph, StartPair start, const Point& heading, const EnumerationRules& rules,
+             SearchBudget& budget, PathPairs& pairs);
+
+  private:
+    /// One call of EPP: the path pair it extends, by its last step, and the visited sets, by position.
+    struct Call {
+        std::array<NextVertexDecider::Range, 2> unvisited;
+        std::array<Vertex, 2> last;
+        std::array<Point, 2> direction;  ///< of the last segments
+        std::array<double, 2> length_m;
+        std::uint32_t step;
+        Side pushed;  ///< the side that was extended to get here
+    };
+
+    [[nodiscard]] Side choose_side(const Call& call) const;
+    void record(const Call& call, std::int64_t iteration, PathPairs& pairs);
+
+    const SearchGraph* graph_ = nullptr;
+    EnumerationRules rules_;
+    NextVertexDecider next_vertex_;
+    LaneConstraints constraints_;
+    std::array<std::vector<std::uint8_t>, 2> on_path_;
+    std::vector<Call> calls_;
+    std::array<std::vector<Point>, 2> closing_points_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,49 @@
+#include "graph_search/search_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace conelane {
+
+void SearchGraph::build(std::span<const Point> points, double d_max_m) {
+    points_.assign(points.begin(), points.end());
+    neighbours_.clear();
+    first_edge_.assign(1, 0);
+
+    // A sorted list of occupied square cells of width d_max. Cells stay floating-point numbers, so that no
+    // position, however far away, overflows an integer.
+    Point origin{0.0, 0.0};
+    if (!points.empty()) origin = points.front();
+    cells_.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point offset = (points[i] - origin) / d_max_m;
+        cells_.push_back({std::floor(offset.x()), std::floor(offset.y()), static_cast<Vertex>(i)});
+    }
+    std::vector<Cell> cell_of(cells_);
+    std::ranges::sort(cells_);
+
+    const double squared_d_max = d_max_m * d_max_m;
+    for (const Cell& own : cell_of) {
+        const auto first = static_cast<std::ptrdiff_t>(neighbours_.size());
+        for (const double column : {own.column - 1.0, own.column, own.column + 1.0}) {
+            const double last_row = own.row + 1.0;
+            auto cell = std::ranges::lower_bound(cells_, Cell{column, own.row - 1.0, 0});
+            for (; cell != cells_.end() && cell->column == column && cell->row <= last_row; ++cell) {
+                const double squared_distance = (points_[cell->vertex] - points_[own.vertex]).squaredNorm();
+                if (squared_distance > 0.0 && squared_distance <= squared_d_max) {
+                    neighbours_.push_back(cell->vertex);
+                }
+            }
+        }
+        std::sort(neighbours_.begin() + first, neighbours_.end());
+        // Beyond 2^53 cells a column and the next are the same number.
+        neighbours_.erase(std::unique(neighbours_.begin() + first, neighbours_.end()), neighbours_.end());
+        first_edge_.push_back(static_cast<DirectedEdge>(neighbours_.size()));
+    }
+}
+
+bool SearchGraph::adjacent(Vertex a, Vertex b) const {
+    return std::ranges::binary_search(neighbours(a), b);
+}
+
+}  // namespace conelane

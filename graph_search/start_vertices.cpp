@@ -1,0 +1,66 @@
+#include "graph_search/start_vertices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace conelane {
+namespace {
+
+struct Candidate {
+    Vertex vertex;
+    double ahead_m;
+    double left_m;
+    double distance_m;
+};
+
+struct RankedPair {
+    double asymmetry_m;
+    double distance_m;  ///< of the farther vertex
+    StartPair pair;
+};
+
+}  // namespace
+
+std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const StartVertexRules& rules) {
+    std::vector<Candidate> left;
+    std::vector<Candidate> right;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        const Point& position = scene.cones[i].position;
+        const Candidate candidate{static_cast<Vertex>(i), scene.pose.ahead_m(position),
+                                  scene.pose.left_m(position), (position - scene.pose.position).norm()};
+        if (candidate.distance_m > rules.largest_radius_m) continue;
+        if (candidate.left_m > 0.0) left.push_back(candidate);
+        if (candidate.left_m < 0.0) right.push_back(candidate);
+    }
+    std::vector<RankedPair> pairs;
+    for (const Candidate& l : left) {
+        for (const Candidate& r : right) {
+            const double apart_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m - r.left_m);
+            if (apart_m <= rules.w_min_m || apart_m >= rules.w_max_m) continue;
+            pairs.push_back({std::hypot(l.ahead_m - r.ahead_m, l.left_m + r.left_m),
+                             std::max(l.distance_m, r.distance_m),
+                             {l.vertex, r.vertex}});
+        }
+    }
+    double radius_m = rules.radius_m;
+    const auto inside = [&](const RankedPair& pair) { return pair.distance_m <= radius_m; };
+    while (radius_m < rules.largest_radius_m &&
+           static_cast<std::size_t>(std::ranges::count_if(pairs, inside)) < count) {
+        radius_m = std::min(radius_m + rules.radius_growth_m, rules.largest_radius_m);
+    }
+    std::erase_if(pairs, [&](const RankedPair& pair) { return !inside(pair); });
+    std::ranges::sort(pairs, {}, [](const RankedPair& pair) {
+        // Unordered in the two vertices, so that a mirrored scene ranks alike.
+        const auto [low, high] = std::minmax(pair.pair.left, pair.pair.right);
+        return std::tuple(pair.asymmetry_m, pair.distance_m, low, high);
+    });
+    std::vector<StartPair> best;
+    for (const RankedPair& ranked : pairs) {
+        if (best.size() == count) break;
+        best.push_back(ranked.pair);
+    }
+    return best;
+}
+
+}  // namespace conelane

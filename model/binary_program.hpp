@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// Name of a column or row: a symbol or family with up to three indices, spelt "f_3_1_7". The family outlives
+/// the program (a string literal).
+struct Label {
+    std::string_view family;
+    std::array<std::int32_t, 3> index{-1, -1, -1};  ///< -1 where absent
+};
+[[nodiscard]] std::string to_string(const Label& label);
+
+/// A linear row: lower <= sum of coefficient * column <= upper, each column at most once.
+struct ProgramRow {
+    Label label;
+    std::vector<std::pair<int, double>> terms;
+    double lower;
+    double upper;
+};
+
+/// A linear program with some columns binary, as plain data: minimise objective * x, rows within their
+/// bounds, columns within theirs. Rows are stored one after the other (compressed sparse rows).
+struct BinaryProgram {
+    struct Column {
+        Label label;
+        double objective;
+        double lower;
+        double upper;
+        bool integer;
+    };
+    struct RowBounds {
+        Label label;
+        double lower;
+        double upper;
+    };
+
+    std::vector<Column> columns;
+    std::vector<RowBounds> rows;
+    std::vector<int> row_starts{0};  ///< rows.size() + 1 positions in `entry_columns` and `entry_values`
+    std::vector<int> entry_columns;
+    std::vector<double> entry_values;
+
+    int add_column(const Label& label, double objective, bool integer, double lower = 0.0,
+                   double upper = 1.0);
+};
+
+/// Writes rows into a program; terms of the same column add up.
+class RowWriter {
+  public:
+    explicit RowWriter(BinaryProgram& program);
+
+    void begin(const Label& label, double lower, double upper);
+    void add(int column, double coefficient);
+    void end();
+
+  private:
+    BinaryProgram& program_;
+    std::vector<int> position_;  ///< of a column in the open row, -1 where it has none
+};
+
+inline constexpr double kInfinity = 1e300;  ///< an absent row bound
+
+}  // namespace conelane

@@ -1,0 +1,256 @@
+#include "model/check.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace conelane {
+namespace {
+
+// Own arithmetic throughout, in extended precision: a mistake in the builders must not repeat here.
+using Real = long double;
+constexpr Real kTie = 1e-9L;
+constexpr double kAgreement = 1e-6;
+
+struct Vector {
+    Real x;
+    Real y;
+};
+Vector operator-(const Vector& a, const Vector& b) {
+    return {a.x - b.x, a.y - b.y};
+}
+Vector along(const Vector& a, const Vector& b, Real t) {
+    return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+}
+Real dot(const Vector& a, const Vector& b) {
+    return a.x * b.x + a.y * b.y;
+}
+Real wedge(const Vector& a, const Vector& b) {
+    return a.x * b.y - a.y * b.x;
+}
+Real length(const Vector& a) {
+    return std::hypot(a.x, a.y);
+}
+
+struct Nearest {
+    Real distance;
+    Real s;  ///< position on the first segment, in [0, 1]
+    Real t;  ///< on the second
+};
+
+/// Minimises |a + s (b - a) - c - t (d - c)| over the unit square: the stationary point, else the four sides.
+Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+    const Vector u = b - a;
+    const Vector v = d - c;
+    const auto at = [&](Real s, Real t) { return Nearest{length(along(a, b, s) - along(c, d, t)), s, t}; };
+    const auto foot = [](const Vector& p, const Vector& from, const Vector& direction) {
+        const Real squared = dot(direction, direction);
+        return squared > 0 ? std::clamp(dot(p - from, direction) / squared, Real{0}, Real{1}) : Real{0};
+    };
+    std::array<Nearest, 5> candidates{at(0, foot(a, c, v)), at(1, foot(b, c, v)), at(foot(c, a, u), 0),
+                                      at(foot(d, a, u), 1), at(0, 0)};
+    const Real determinant = wedge(u, v);
+    if (determinant != 0) {
+        const Real s = wedge(c - a, v) / determinant;
+        const Real t = wedge(c - a, u) / determinant;
+        if (s >= 0 && s <= 1 && t >= 0 && t <= 1) candidates[4] = {0, s, t};
+    }
+    return *std::ranges::min_element(candidates, {}, &Nearest::distance);
+}
+
+Real fourth(Real value) {
+    return value * value * value * value;
+}
+
+class Checker {
+  public:
+    Checker(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph)
+        : scene_(scene),
+          p_(parameters),
+          graph_(graph),
+          car_{scene.pose.position.x(), scene.pose.position.y()},
+          heading_{std::cos(static_cast<Real>(scene.pose.yaw_rad)),
+                   std::sin(static_cast<Real>(scene.pose.yaw_rad))} {}
+
+    CheckReport run() {
+        if (!edges_are_simple()) return std::move(report_);
+        degrees_and_endpoints();
+        paths_and_pairing();
+        widths();
+        costs();
+        return std::move(report_);
+    }
+
+  private:
+    [[nodiscard]] Vector position(std::size_t cone) const {
+        return {scene_.cones[cone].position.x(), scene_.cones[cone].position.y()};
+    }
+    [[nodiscard]] std::string name(std::size_t cone) const { return std::to_string(scene_.cones[cone].id); }
+    [[nodiscard]] std::string name(const Edge& edge) const {
+        return "{" + name(edge.i) + ", " + name(edge.j) + "}";
+    }
+    [[nodiscard]] bool is_near(std::size_t cone) const {
+        return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
+    }
+    void violated(std::string what) { report_.violations.push_back(std::move(what)); }
+
+    bool edges_are_simple() {
+        std::set<std::pair<std::size_t, std::size_t>> seen;
+        for (const Edge& edge : graph_.edges) {
+            if (edge.i >= scene_.cones.size() || edge.j >= scene_.cones.size()) {
+                violated("an edge ends in no cone of the scene");
+                return false;
+            }
+            if (edge.i == edge.j) violated("edge " + name(edge) + " is a loop");
+            if (!seen.emplace(std::min(edge.i, edge.j), std::max(edge.i, edge.j)).second) {
+                violated("edge " + name(edge) + " is there twice");
+            }
+            neighbours_[edge.i].push_back(edge.j);
+            neighbours_[edge.j].push_back(edge.i);
+        }
+        return report_.violations.empty();
+    }
+
+    void degrees_and_endpoints() {
+        std::vector<std::size_t> near_ends, far_ends;
+        for (const auto& [cone, others] : neighbours_) {
+            if (others.size() > 2)
+                violated("(2) cone " + name(cone) + " has degree " + std::to_string(others.size()));
+            if (others.size() == 1) (is_near(cone) ? near_ends : far_ends).push_back(cone);
+        }
+        const std::size_t ends = near_ends.size() + far_ends.size();
+        if (ends != 4) violated("(3) " + std::to_string(ends) + " endpoints instead of 4");
+        if (near_ends.size() != 2)
+            violated("(11) " + std::to_string(near_ends.size()) + " near endpoints instead of 2");
+        for (std::size_t a = 0; a < far_ends.size(); ++a) {
+            for (std::size_t b = a + 1; b < far_ends.size(); ++b) {
+                if (length(position(far_ends[a]) - position(far_ends[b])) >
+                    static_cast<Real>(p_.d_max) + kTie) {
+                    violated("(17) far endpoints " + name(far_ends[a]) + " and " + name(far_ends[b]) +
+                             " are more than d_max apart");
+                }
+            }
+        }
+    }
+
+    /// Components by flooding: a component with as many edges as cones holds a cycle.
+    void paths_and_pairing() {
+        std::set<std::size_t> visited;
+        for (const auto& [start, unused] : neighbours_) {
+            if (visited.contains(start)) continue;
+            std::vector<std::size_t> open{start}, component;
+            visited.insert(start);
+            while (!open.empty()) {
+                const std::size_t cone = open.back();
+                open.pop_back();
+                component.push_back(cone);
+                for (const std::size_t next : neighbours_[cone]) {
+                    if (visited.insert(next).second) open.push_back(next);
+                }
+            }
+            std::size_t degrees = 0;
+            std::size_t near_ends = 0;
+            for (const std::size_t cone : component) {
+                degrees += neighbours_[cone].size();
+                if (neighbours_[cone].size() == 1 && is_near(cone)) ++near_ends;
+            }
+            if (degrees / 2 >= component.size()) violated("(5) a cycle through cone " + name(start));
+            if (p_.pairing == Pairing::near_far && near_ends == 2) {
+                violated("pairing: the path through cone " + name(start) + " joins both near endpoints");
+            }
+        }
+    }
+
+    void widths() {
+        for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
+            for (std::size_t f = e + 1; f < graph_.edges.size(); ++f) {
+                const Edge& a = graph_.edges[e];
+                const Edge& b = graph_.edges[f];
+                if (a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j) continue;
+                const std::array<Vector, 4> at{position(a.i), position(a.j), position(b.i), position(b.j)};
+                const Nearest nearest = nearest_points(at[0], at[1], at[2], at[3]);
+                const Real ends = std::min({length(at[0] - at[2]), length(at[0] - at[3]),
+                                            length(at[1] - at[2]), length(at[1] - at[3])});
+                if (nearest.distance < static_cast<Real>(p_.d_min) - kTie && ends > nearest.distance + kTie) {
+                    violated("(6) edges " + name(a) + " and " + name(b) + " are closer than d_min");
+                }
+            }
+        }
+    }
+
+    void costs() {
+        Real sum = 0;
+        int along_heading = 0;
+        for (const Edge& edge : graph_.edges) {
+            const Vector from = position(edge.i);
+            const Vector to = position(edge.j);
+            const Vector v = to - from;
+            const Real spacing = fourth((length(v) - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
+            if (spacing > static_cast<Real>(p_.s_crit) + kTie)
+                violated("(27) edge " + name(edge) + " exceeds s_crit");
+            if (length(v) == 0) violated("edge " + name(edge) + " has no length");
+            const Real across = std::abs(wedge(v, heading_));
+            const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
+            sum += static_cast<Real>(p_.w_s) * spacing +
+                   static_cast<Real>(p_.w_p) * fourth(across / car_distance) - static_cast<Real>(p_.w_b);
+            const bool close =
+                nearest_points(from, to, car_, car_).distance <= static_cast<Real>(p_.d_h) + kTie;
+            const Real angle = std::atan2(across, std::abs(dot(v, heading_)));
+            if (close && angle <= static_cast<Real>(p_.theta_heading) + kTie) ++along_heading;
+        }
+        if (along_heading < 2)
+            violated("(9) " + std::to_string(along_heading) + " edges along the heading instead of 2");
+        for (const auto& [cone, others] : neighbours_) {
+            for (std::size_t a = 0; a < others.size(); ++a) {
+                for (std::size_t b = a + 1; b < others.size(); ++b) {
+                    const Vector to_a = position(others[a]) - position(cone);
+                    const Vector to_b = position(others[b]) - position(cone);
+                    const Real angle = std::atan2(std::abs(wedge(to_a, to_b)), dot(to_a, to_b));
+                    const Real cost =
+                        fourth((angle - static_cast<Real>(p_.theta_e)) / static_cast<Real>(p_.theta_t));
+                    if (cost > static_cast<Real>(p_.t_crit) + kTie)
+                        violated("(28) the angle at cone " + name(cone) + " exceeds t_crit");
+                    sum += static_cast<Real>(p_.w_t) * cost;
+                }
+            }
+        }
+        report_.objective = static_cast<double>(sum);
+    }
+
+    const Scene& scene_;
+    const RldParameters& p_;
+    const LaneGraph& graph_;
+    Vector car_;
+    Vector heading_;
+    std::map<std::size_t, std::vector<std::size_t>> neighbours_;
+    CheckReport report_;
+};
+
+}  // namespace
+
+CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph) {
+    return Checker(scene, parameters, graph).run();
+}
+
+CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph,
+                  const Claim& claim) {
+    CheckReport report = check(scene, parameters, graph);
+    if (!report.objective) return report;
+    const double tolerance = kAgreement * std::max(1.0, std::abs(*report.objective));
+    if (!(std::abs(claim.objective - *report.objective) <= tolerance)) {
+        report.violations.push_back("objective " + std::to_string(claim.objective) + " is claimed, " +
+                                    std::to_string(*report.objective) + " is right");
+    }
+    if (claim.bound && !(*claim.bound <= *report.objective + tolerance)) {
+        report.violations.emplace_back("the bound is above the objective");
+    }
+    if (claim.optimal &&
+        !(claim.bound && *report.objective - *claim.bound <= claim.absolute_gap + tolerance)) {
+        report.violations.emplace_back("optimal is claimed without a bound within the gap");
+    }
+    return report;
+}
+
+}  // namespace conelane

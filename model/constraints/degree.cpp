@@ -1,0 +1,27 @@
+#include "model/constraints/families.hpp"
+
+namespace conelane::constraints {
+
+void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient) {
+    context.rows.add(context.columns.inlier[cone], 2.0 * coefficient);
+    for (const std::size_t edge : context.problem.incident[cone]) {
+        context.rows.add(context.columns.edge[edge], -coefficient);
+    }
+}
+
+void inlier_degree(const FamilyContext& context) {
+    const auto& [problem, columns, rows] = context;
+    for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
+        const auto index = static_cast<std::int32_t>(cone);
+        rows.begin({"inlier_has_edge", {index}}, -kInfinity, 0.0);  // (1)
+        rows.add(columns.inlier[cone], 1.0);
+        for (const std::size_t edge : problem.incident[cone]) rows.add(columns.edge[edge], -1.0);
+        rows.end();
+        rows.begin({"degree_at_most_two", {index}}, -kInfinity, 0.0);  // (2)
+        rows.add(columns.inlier[cone], -2.0);
+        for (const std::size_t edge : problem.incident[cone]) rows.add(columns.edge[edge], 1.0);
+        rows.end();
+    }
+}
+
+}  // namespace conelane::constraints

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "model/formulation.hpp"
+
+#include <vector>
+
+/// The constraint families of the RLD model, one file each; `formulation.cpp` says which of them make a
+/// formulation.
+namespace conelane::constraints {
+
+/// Adds coefficient * m_i to the open row, m_i = 2 g_i - A_i (10): 1 where the cone is an endpoint, else 0.
+void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient);
+
+// degree.cpp
+void inlier_degree(const FamilyContext& context);  ///< (1)(2): g_i <= A_i <= 2 g_i
+// endpoints.cpp
+void four_endpoints(const FamilyContext& context);  ///< (3)
+void two_paths(const FamilyContext& context);       ///< (4), implied by (3)
+void near_endpoints(const FamilyContext& context);  ///< (11)
+// far_distance.cpp
+void far_marks(const FamilyContext& context);     ///< (12)
+void far_distance(const FamilyContext& context);  ///< (13)-(17)
+void far_pairs(const FamilyContext& context);     ///< (12)-(17) without u
+// width.cpp
+void width_pairs(const FamilyContext& context);    ///< (6)-(8)
+void width_cliques(const FamilyContext& context);  ///< (6)-(8) merged into cliques
+// heading.cpp
+void heading(const FamilyContext& context);  ///< (9)
+// angles.cpp
+void turn_products(const FamilyContext& context);  ///< (22)(23)
+void turn_flow(const FamilyContext& context);      ///< (1)(2)(22)(23)(28), tightened
+// high_cost.cpp
+void edge_limits(const FamilyContext& context);  ///< (27)
+void turn_limits(const FamilyContext& context);  ///< (28)
+
+/// Rows of a family that is too large to write out, found where an integral point violates them. Pure
+/// functions of the problem and the chosen edges (by problem edge).
+
+// no_cycles.cpp
+/// (5): a row for every cycle that the chosen edges form. Precondition: no cone has more than two of them.
+[[nodiscard]] std::vector<ProgramRow> separate_cycles(const LaneGraphProblem& problem,
+                                                      const ColumnMap& columns,
+                                                      const std::vector<bool>& chosen);
+// pairing.cpp
+/// Pairing near_far: a row for every chosen path between two near endpoints.
+[[nodiscard]] std::vector<ProgramRow> separate_near_near(const LaneGraphProblem& problem,
+                                                         const ColumnMap& columns,
+                                                         const std::vector<bool>& chosen);
+
+}  // namespace conelane::constraints

@@ -1,0 +1,78 @@
+#include "model/constraints/families.hpp"
+
+#include <cstdint>
+
+namespace conelane::constraints {
+namespace {
+
+/// Edges as vertices, joined where both cannot be chosen; adjacency as bit rows.
+class ConflictGraph {
+  public:
+    explicit ConflictGraph(std::size_t edges) : words_((edges + 63) / 64), bits_(edges * words_, 0) {}
+
+    void join(std::size_t a, std::size_t b) {
+        row(a)[b / 64] |= bit(b);
+        row(b)[a / 64] |= bit(a);
+    }
+    [[nodiscard]] std::size_t words() const { return words_; }
+    [[nodiscard]] std::uint64_t* row(std::size_t edge) { return bits_.data() + edge * words_; }
+    static std::uint64_t bit(std::size_t edge) { return std::uint64_t{1} << (edge % 64); }
+
+  private:
+    std::size_t words_;
+    std::vector<std::uint64_t> bits_;
+};
+
+}  // namespace
+
+void width_pairs(const FamilyContext& context) {
+    for (const auto& [first, second] : context.problem.conflicts) {
+        context.rows.begin({"width", {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)}},
+                           -kInfinity, 1.0);
+        context.rows.add(context.columns.edge[first], 1.0);
+        context.rows.add(context.columns.edge[second], 1.0);
+        context.rows.end();
+    }
+}
+
+// Every width conflict ends up in one of greedily grown cliques of the graph of width conflicts and forbidden
+// turns (28); each clique is one row. Forbidden turns alone need no row here, `turn_flow` excludes them.
+void width_cliques(const FamilyContext& context) {
+    const auto& [problem, columns, rows] = context;
+    const std::size_t edges = problem.edges.size();
+    ConflictGraph graph(edges);
+    ConflictGraph uncovered(edges);
+    for (const auto& [first, second] : problem.conflicts) {
+        graph.join(first, second);
+        uncovered.join(first, second);
+    }
+    for (const ProblemTurn& turn : problem.turns) {
+        if (turn.high_cost) graph.join(turn.edge_i, turn.edge_k);
+    }
+    std::vector<std::uint64_t> common(graph.words());
+    std::vector<std::size_t> clique;
+    std::int32_t count = 0;
+    for (const auto& [first, second] : problem.conflicts) {
+        if ((uncovered.row(first)[second / 64] & ConflictGraph::bit(second)) == 0) continue;
+        clique.assign({first, second});
+        for (std::size_t word = 0; word < common.size(); ++word) {
+            common[word] = graph.row(first)[word] & graph.row(second)[word];
+        }
+        for (std::size_t word = 0; word < common.size(); ++word) {
+            while (common[word] != 0) {
+                const std::size_t edge = word * 64 + static_cast<std::size_t>(__builtin_ctzll(common[word]));
+                clique.push_back(edge);
+                for (std::size_t w = word; w < common.size(); ++w) common[w] &= graph.row(edge)[w];
+            }
+        }
+        rows.begin({"width", {count++}}, -kInfinity, 1.0);
+        for (const std::size_t edge : clique) {
+            rows.add(columns.edge[edge], 1.0);
+            for (const std::size_t other : clique)
+                uncovered.row(edge)[other / 64] &= ~ConflictGraph::bit(other);
+        }
+        rows.end();
+    }
+}
+
+}  // namespace conelane::constraints

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "model/binary_program.hpp"
+#include "model/lane_graph_problem.hpp"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+/// Two programs with the same integer points.
+enum class Formulation {
+    paper,  ///< the rows as printed (after the errata), every variable binary
+    tight,  ///< stronger relaxation, fewer rows and columns; only edges are integer
+};
+[[nodiscard]] std::string_view to_string(Formulation formulation);
+
+/// Where the variables of a problem stand in its program; -1 where a variable is left out.
+struct ColumnMap {
+    std::vector<int> edge;     ///< a_ij by problem edge
+    std::vector<int> turn;     ///< f_ijk by problem turn
+    std::vector<int> inlier;   ///< g_i by cone
+    std::vector<int> not_far;  ///< u_i by cone
+};
+
+/// What a constraint family works on.
+struct FamilyContext {
+    const LaneGraphProblem& problem;
+    const ColumnMap& columns;
+    RowWriter& rows;
+};
+using ConstraintFamily = void (*)(const FamilyContext&);
+
+/// A formulation as a list of parts.
+struct FormulationParts {
+    EdgeExtent extent;
+    bool high_cost_turns;  ///< f columns for forbidden turns too
+    bool far_marks;        ///< u columns
+    bool all_integer;
+    std::span<const ConstraintFamily> families;
+};
+[[nodiscard]] const FormulationParts& parts(Formulation formulation);
+
+}  // namespace conelane

@@ -1,0 +1,70 @@
+#include "model/lane_graph_model.hpp"
+
+#include "model/constraints/families.hpp"
+
+namespace conelane {
+
+LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation) : problem_(problem) {
+    const FormulationParts& formulation_parts = parts(formulation);
+    const bool all_integer = formulation_parts.all_integer;
+    const auto index = [](std::size_t value) { return static_cast<std::int32_t>(value); };
+    program_.columns.reserve(problem.edges.size() + problem.turns.size() + 2 * problem.cone_count);
+
+    columns_.edge.reserve(problem.edges.size());
+    for (const ProblemEdge& edge : problem.edges) {
+        columns_.edge.push_back(program_.add_column({"a", {index(edge.i), index(edge.j)}}, edge.cost, true));
+    }
+    columns_.turn.reserve(problem.turns.size());
+    for (const ProblemTurn& turn : problem.turns) {
+        if (turn.high_cost && !formulation_parts.high_cost_turns) {
+            columns_.turn.push_back(-1);
+            continue;
+        }
+        const ProblemEdge& a = problem.edges[turn.edge_i];
+        const ProblemEdge& b = problem.edges[turn.edge_k];
+        columns_.turn.push_back(
+            program_.add_column({"f",
+                                 {index(a.i == turn.middle ? a.j : a.i), index(turn.middle),
+                                  index(b.i == turn.middle ? b.j : b.i)}},
+                                turn.cost, all_integer));
+    }
+    for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
+        columns_.inlier.push_back(program_.add_column({"g", {index(cone)}}, 0.0, all_integer));
+    }
+    if (formulation_parts.far_marks) {
+        for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
+            columns_.not_far.push_back(program_.add_column({"u", {index(cone)}}, 0.0, all_integer));
+        }
+    }
+    RowWriter rows(program_);
+    for (const ConstraintFamily family : formulation_parts.families) family({problem, columns_, rows});
+}
+
+std::vector<bool> LaneGraphModel::chosen_edges(std::span<const double> point) const {
+    std::vector<bool> chosen(problem_.edges.size());
+    for (std::size_t edge = 0; edge < chosen.size(); ++edge) {
+        chosen[edge] = point[static_cast<std::size_t>(columns_.edge[edge])] > 0.5;
+    }
+    return chosen;
+}
+
+LaneGraph LaneGraphModel::decode(std::span<const double> point) const {
+    LaneGraph graph;
+    for (std::size_t edge = 0; edge < problem_.edges.size(); ++edge) {
+        if (point[static_cast<std::size_t>(columns_.edge[edge])] > 0.5) {
+            graph.edges.push_back({problem_.edges[edge].i, problem_.edges[edge].j});
+        }
+    }
+    return graph;
+}
+
+std::vector<ProgramRow> LaneGraphModel::separate(std::span<const double> point) const {
+    const std::vector<bool> chosen = chosen_edges(point);
+    std::vector<ProgramRow> rows = constraints::separate_cycles(problem_, columns_, chosen);
+    if (rows.empty() && problem_.parameters.pairing == Pairing::near_far) {
+        rows = constraints::separate_near_near(problem_, columns_, chosen);
+    }
+    return rows;
+}
+
+}  // namespace conelane

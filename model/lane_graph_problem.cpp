@@ -1,0 +1,152 @@
+#include "model/lane_graph_problem.hpp"
+
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace conelane {
+namespace {
+
+double fourth_power(double value) {
+    const double square = value * value;
+    return square * square;
+}
+
+/// A value that ties with its limit counts as within it.
+bool within(double value, double limit) {
+    return value <= limit + kTieTolerance;
+}
+
+ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const RldParameters& p, std::size_t i,
+                              std::size_t j, double length) {
+    const Point& from = scene.cones[i].position;
+    const Point& to = scene.cones[j].position;
+    const Point v = to - from;
+    const double across = std::abs(cross(v, heading));
+    const Point midpoint = 0.5 * (from + to);
+    const double car_distance = std::max((midpoint - scene.pose.position).norm(), kShortestCarDistance_m);
+    const double spacing_cost = fourth_power((length - p.d_e) / p.d_t);  // (18)
+    const double heading_cost = fourth_power(across / car_distance);     // (25)
+    const double acute_angle = std::atan2(across, std::abs(v.dot(heading)));
+    const double edge_distance = foot_point(scene.pose.position, {from, to}).distance_m;
+    return {i,
+            j,
+            spacing_cost,
+            heading_cost,
+            p.w_s * spacing_cost + p.w_p * heading_cost - p.w_b,
+            within(edge_distance, p.d_h) && within(acute_angle, p.theta_heading),
+            !within(spacing_cost, p.s_crit) || length == 0.0};
+}
+
+/// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends.
+void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
+    struct Disc {
+        Point middle;
+        double radius;
+    };
+    std::vector<Disc> discs;
+    std::vector<Segment> segments;
+    discs.reserve(problem.edges.size());
+    segments.reserve(problem.edges.size());
+    for (const ProblemEdge& edge : problem.edges) {
+        segments.push_back({scene.cones[edge.i].position, scene.cones[edge.j].position});
+        const Segment& segment = segments.back();
+        discs.push_back({0.5 * (segment.from + segment.to), 0.5 * (segment.to - segment.from).norm()});
+    }
+    const double d_min = problem.parameters.d_min;
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        const ProblemEdge& a = problem.edges[e];
+        for (std::size_t other = e + 1; other < problem.edges.size(); ++other) {
+            const ProblemEdge& b = problem.edges[other];
+            const double reach = discs[e].radius + discs[other].radius + d_min;
+            if ((discs[e].middle - discs[other].middle).squaredNorm() > reach * reach) continue;
+            if (a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j) continue;
+            const SegmentDistance gap = segment_distance(segments[e], segments[other]);
+            if (gap.distance_m < d_min - kTieTolerance && !gap.between_ends) {
+                problem.conflicts.emplace_back(e, other);
+            }
+        }
+    }
+}
+
+void find_turns(const Scene& scene, LaneGraphProblem& problem) {
+    const RldParameters& p = problem.parameters;
+    const auto other_end = [&](std::size_t edge, std::size_t cone) {
+        const ProblemEdge& e = problem.edges[edge];
+        return e.i == cone ? e.j : e.i;
+    };
+    for (std::size_t middle = 0; middle < problem.cone_count; ++middle) {
+        const std::vector<std::size_t>& incident = problem.incident[middle];
+        for (std::size_t first = 0; first < incident.size(); ++first) {
+            for (std::size_t second = first + 1; second < incident.size(); ++second) {
+                // Ascending edges at a cone have ascending other ends.
+                const double angle = interior_angle(
+                    scene.cones[other_end(incident[first], middle)].position, scene.cones[middle].position,
+                    scene.cones[other_end(incident[second], middle)].position);
+                const double angle_cost = fourth_power((angle - p.theta_e) / p.theta_t);  // (20)
+                problem.turns.push_back({incident[first], incident[second], middle, angle_cost,
+                                         p.w_t * angle_cost, !within(angle_cost, p.t_crit)});
+            }
+        }
+    }
+}
+
+}  // namespace
+
+LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
+    validate(scene);
+    validate(parameters);
+    LaneGraphProblem problem;
+    const std::size_t n = scene.cones.size();
+    problem.cone_count = n;
+    problem.parameters = parameters;
+    const Point heading = scene.pose.heading();
+
+    problem.near.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
+    }
+    problem.incident.resize(n);
+    if (extent == EdgeExtent::all_pairs) problem.distance_m.assign(n, std::vector<double>(n, 0.0));
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
+            if (!problem.near[i] && !problem.near[j] && !within(distance, parameters.d_max)) {
+                problem.far_apart.emplace_back(i, j);
+            }
+            if (extent == EdgeExtent::all_pairs) {
+                problem.distance_m[i][j] = problem.distance_m[j][i] = distance;
+            } else if (!within(fourth_power((distance - parameters.d_e) / parameters.d_t),
+                               parameters.s_crit) ||
+                       distance == 0.0) {
+                continue;
+            }
+            problem.incident[i].push_back(problem.edges.size());
+            problem.incident[j].push_back(problem.edges.size());
+            problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
+        }
+    }
+    find_turns(scene, problem);
+    find_conflicts(scene, problem);
+    return problem;
+}
+
+double objective(const LaneGraphProblem& problem, const LaneGraph& graph) {
+    std::vector<bool> chosen(problem.edges.size(), false);
+    double sum = 0.0;
+    std::size_t found = 0;
+    for (std::size_t e = 0; e < problem.edges.size() && found < graph.edges.size(); ++e) {
+        const Edge edge{problem.edges[e].i, problem.edges[e].j};
+        if (!std::ranges::binary_search(graph.edges, edge)) continue;
+        chosen[e] = true;
+        ++found;
+        sum += problem.edges[e].cost;
+    }
+    for (const ProblemTurn& turn : problem.turns) {
+        if (chosen[turn.edge_i] && chosen[turn.edge_k]) sum += turn.cost;
+    }
+    return sum;
+}
+
+}  // namespace conelane

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "model/lane_graph.hpp"
+#include "model/rld_parameters.hpp"
+#include "model/scene.hpp"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// The car's distance to an edge's midpoint is at least this in (25): the cost has a pole where it is 0 [m].
+inline constexpr double kShortestCarDistance_m = 0.5;
+
+/// An edge of the problem and its numbers. Cone indices i < j.
+struct ProblemEdge {
+    std::size_t i;
+    std::size_t j;
+    double spacing_cost;  ///< s_ij (18), without weight
+    double heading_cost;  ///< p_ij (25), without weight
+    double cost;          ///< w_s s_ij + w_p p_ij - w_b (29)
+    bool along_heading;   ///< h_ij of (9)
+    bool high_cost;       ///< s_ij > s_crit (27): never chosen
+};
+
+/// Two edges that meet in a cone, {i, middle} and {middle, k} with i < k, as indices into `edges`.
+struct ProblemTurn {
+    std::size_t edge_i;
+    std::size_t edge_k;
+    std::size_t middle;
+    double angle_cost;  ///< t_ijk (20), without weight
+    double cost;        ///< w_t t_ijk
+    bool high_cost;     ///< t_ijk > t_crit (28): never both chosen
+};
+
+/// Which edges a problem lists.
+enum class EdgeExtent {
+    candidates,  ///< those that (27) allows
+    all_pairs,   ///< all n (n - 1) / 2, as the printed model has them
+};
+
+/// The numbers of one scene: geometry becomes numbers here, once. Edges are in the paper's order
+/// (column-major lower triangle); an edge of zero length is high-cost whatever its spacing cost.
+struct LaneGraphProblem {
+    std::size_t cone_count = 0;
+    RldParameters parameters;
+    std::vector<ProblemEdge> edges;
+    std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
+    std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
+    std::vector<bool> near;                                      ///< r_i of (11)
+    std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
+    std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only
+    std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending
+};
+
+/// Throws InvalidInput where the scene or the parameters are not valid.
+[[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
+                                            EdgeExtent extent = EdgeExtent::candidates);
+
+/// Objective (29) of a lane graph: edge costs plus the costs of all turns it takes. Precondition: every edge
+/// is listed in the problem.
+[[nodiscard]] double objective(const LaneGraphProblem& problem, const LaneGraph& graph);
+
+}  // namespace conelane

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/binary_program.hpp"
+#include "solvers/solve_report.hpp"
+
+#include <memory>
+#include <span>
+
+namespace conelane {
+
+/// One program loaded into a MILP solver; rows may be added between solves. Serves one thread.
+class MilpSession {
+  public:
+    virtual ~MilpSession() = default;
+
+    /// Solves the program as it stands. A returned point is integral within 1e-6 on integer columns.
+    [[nodiscard]] virtual MilpReport solve(const SolveLimits& limits) = 0;
+    virtual void add_rows(std::span<const ProgramRow> rows) = 0;
+};
+
+/// A solver of binary programs; it never sees cones.
+class MilpSolver {
+  public:
+    virtual ~MilpSolver() = default;
+    [[nodiscard]] virtual std::unique_ptr<MilpSession> load(const BinaryProgram& program) const = 0;
+};
+
+}  // namespace conelane

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "model/formulation.hpp"
+#include "solvers/rld_solver.hpp"
+
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace conelane {
+
+/// A solver by its name.
+struct RldSolverEntry {
+    std::string_view name;
+    std::string_view meaning;
+    bool uses_formulation;  ///< else the formulation is ignored
+    std::unique_ptr<RldSolver> (*make)(Formulation formulation);
+};
+
+/// All solvers of this build.
+[[nodiscard]] std::span<const RldSolverEntry> rld_solvers();
+
+/// The entry of that name, or nullptr.
+[[nodiscard]] const RldSolverEntry* find_rld_solver(std::string_view name);
+
+}  // namespace conelane

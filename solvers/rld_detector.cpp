@@ -1,0 +1,70 @@
+#include "solvers/rld_detector.hpp"
+
+#include "model/lane_graph_problem.hpp"
+#include "solvers/deadline.hpp"
+
+#include <utility>
+
+namespace conelane {
+namespace {
+
+LaneStatus lane_status(SolveStatus status) {
+    switch (status) {
+        case SolveStatus::optimal:
+        case SolveStatus::feasible:
+            return LaneStatus::found;
+        case SolveStatus::infeasible:
+            return LaneStatus::none;
+        case SolveStatus::time_limit:
+            return LaneStatus::time_limit;
+        case SolveStatus::error:
+            break;
+    }
+    return LaneStatus::error;
+}
+
+class RldDetector : public LaneDetector {
+  public:
+    RldDetector(std::unique_ptr<RldSolver> solver, const RldDetectorOptions& options)
+        : solver_(std::move(solver)), options_(options) {}
+
+    LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
+        return options_.nearest ? solve(nearest_ahead(scene, *options_.nearest), limits)
+                                : solve(scene, limits);
+    }
+
+  private:
+    LaneAnswer solve(const Scene& scene, const DetectionLimits& limits) {
+        const Deadline deadline(limits.time_limit_ms);
+        const LaneGraphProblem problem = make_problem(scene, options_.parameters, solver_->extent());
+        const RldReport report = solver_->solve(problem, {deadline.remaining_ms(), options_.absolute_gap});
+        LaneAnswer answer;
+        answer.status = lane_status(report.status);
+        answer.message = report.message;
+        if (answer.status != LaneStatus::found) return answer;
+        std::optional<Lane> lane = report.lane_graph ? to_lane(*report.lane_graph, scene) : std::nullopt;
+        if (!lane) {
+            answer.status = LaneStatus::error;
+            answer.message = "the solver's edges are no lane graph";
+            return answer;
+        }
+        answer.lane = std::move(*lane);
+        if (report.objective && report.bound) {
+            answer.optimality =
+                Optimality{*report.objective, *report.bound, report.status == SolveStatus::optimal};
+        }
+        return answer;
+    }
+
+    std::unique_ptr<RldSolver> solver_;
+    RldDetectorOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
+                                                const RldDetectorOptions& options) {
+    return std::make_unique<RldDetector>(std::move(solver), options);
+}
+
+}  // namespace conelane

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "model/lane_graph_problem.hpp"
+#include "solvers/solve_report.hpp"
+
+namespace conelane {
+
+/// Anything that solves a lane-graph problem. An instance serves one thread.
+class RldSolver {
+  public:
+    virtual ~RldSolver() = default;
+
+    /// The extent that `solve` wants its problems to be made with.
+    [[nodiscard]] virtual EdgeExtent extent() const { return EdgeExtent::candidates; }
+
+    /// Building the program is inside the time limit. Throws nothing but std::bad_alloc.
+    [[nodiscard]] virtual RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) = 0;
+};
+
+}  // namespace conelane

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "model/lane_graph.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+enum class SolveStatus {
+    optimal,     ///< the objective is within the absolute gap of the bound
+    feasible,    ///< stopped at the time limit with an incumbent
+    infeasible,  ///< proven to have no solution
+    time_limit,  ///< stopped at the time limit without an incumbent
+    error,       ///< see the message
+};
+[[nodiscard]] std::string_view to_string(SolveStatus status);
+
+/// The same for every solver.
+struct SolveLimits {
+    double time_limit_ms = std::numeric_limits<double>::infinity();  ///< wall clock, from the call
+    double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal
+};
+
+/// What a MILP solver answers. Absent values are unknown.
+struct MilpReport {
+    SolveStatus status = SolveStatus::error;
+    std::vector<double> point;    ///< the incumbent by column; empty without one
+    std::optional<double> bound;  ///< proven lower bound of the objective
+    std::int64_t nodes = 0;       ///< branch-and-bound nodes; 0 where the first relaxation was integral
+    std::string message;
+};
+
+/// What an RLD solver answers.
+struct RldReport {
+    SolveStatus status = SolveStatus::error;
+    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible
+    std::optional<double> objective;      ///< recomputed from the lane graph
+    std::optional<double> bound;          ///< proven lower bound
+    std::int64_t nodes = 0;
+    int rounds = 0;         ///< times the program was solved; one more than rounds of separated rows
+    double build_ms = 0.0;  ///< making the program from the problem
+    double solve_ms = 0.0;
+    std::string message;
+};
+
+}  // namespace conelane

@@ -1,0 +1,121 @@
+#include "experiments/score_table.hpp"
+
+#include "experiments/published_figures.hpp"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+KeyedScore keyed(const std::string& method, std::optional<double> rate, std::optional<double> range_m,
+                 Category category, double iou) {
+    SceneScore score;
+    score.category = category;
+    score.iou = iou;
+    score.divergence_known = true;
+    score.latency_ms = 12.5;
+    return {{method, rate, range_m}, score};
+}
+
+std::vector<std::vector<std::string>> words_of_lines(const std::string& text) {
+    std::vector<std::vector<std::string>> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        std::istringstream words(line);
+        lines.emplace_back();
+        for (std::string word; words >> word;) lines.back().push_back(word);
+    }
+    return lines;
+}
+
+TEST(SummariseByKey, GroupsMethodsInOrderOfAppearanceThenRateThenRange) {
+    const std::vector<ScoreRow> rows = summarise_by_key(std::vector<KeyedScore>{
+        keyed("rld", 0.3, 50, Category::none, 0),
+        keyed("clc", 0.1, 30, Category::ground_truth, 1),
+        keyed("rld", 0.3, 30, Category::none, 0),
+        keyed("rld", 0.1, 50, Category::none, 0),
+        keyed("rld", {}, {}, Category::none, 0),
+        keyed("rld", 0.3, 50, Category::ground_truth, 1),
+    });
+    std::vector<ScoreKey> keys;
+    for (const ScoreRow& row : rows) keys.push_back(row.key);
+    EXPECT_THAT(keys, testing::ElementsAre(ScoreKey{"rld", {}, {}}, ScoreKey{"rld", 0.1, 50},
+                                           ScoreKey{"rld", 0.3, 30}, ScoreKey{"rld", 0.3, 50},
+                                           ScoreKey{"clc", 0.1, 30}));
+    EXPECT_EQ(rows[3].summary.scenes, 2u);
+    EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou, 0.5);
+}
+
+TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
+    const std::vector<ScoreRow> rows = summarise_by_key(std::vector<KeyedScore>{
+        keyed("clc", 0.3, 30, Category::near_ground_truth, 0.9),
+        keyed("clc", 0.3, 30, Category::diverging_below_20, 0.2),
+    });
+    const std::string table = score_table(rows);
+    const auto lines = words_of_lines(table);
+    ASSERT_EQ(lines.size(), 7u) << table;
+    EXPECT_THAT(lines[1], testing::ElementsAre("clc", "30.0", "30", "2", "0.0", "50.0", "0.0", "0.0", "50.0",
+                                               "0.0", "50.0", "55.0", "-", "-", "-", "12.50", "12.50",
+                                               "12.50", "12.50", "12.50"));
+    EXPECT_THAT(lines[3],
+                testing::ElementsAre("CLC", "paper", "30.0", "30+50", "-", "9.3", "85.1", "0.8", "4.1", "0.7",
+                                     "-", "99.3", "93.2", "-", "13.4", "-", "<5", "-", "-", "-", "12"));
+    EXPECT_THAT(table, HasSubstr("96.38"));
+    EXPECT_THAT(table, HasSubstr(">90"));
+    EXPECT_THAT(lines[6], testing::IsSupersetOf({"n=12", "97.19", "71.79", "155.88"}));
+    // Columns are aligned: every line but the title of the published part is as long as the first.
+    std::istringstream stream(table);
+    std::string first;
+    std::getline(stream, first);
+    int as_long = 0;
+    for (std::string line; std::getline(stream, line);) as_long += line.size() == first.size() ? 1 : 0;
+    EXPECT_EQ(as_long, 5);
+}
+
+TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
+    KeyedScore unknown = keyed("clc", {}, {}, Category::near_ground_truth, 0.9);
+    unknown.score.divergence_known = false;
+    const std::string table = score_table(summarise_by_key(std::vector<KeyedScore>{unknown}));
+    const auto lines = words_of_lines(table);
+    EXPECT_THAT(lines[1],
+                testing::ElementsAre("clc", "-", "-", "1", "0.0", "-", "-", "-", "-", "0.0", "-", "90.0", "-",
+                                     "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
+    EXPECT_THAT(table, HasSubstr("1 scenes were scored without"));
+    EXPECT_THAT(table, HasSubstr("34.5")) << "without a rate of its own, all published ones";
+}
+
+TEST(SummaryJson, IsOneLineWithoutUnknownMeasures) {
+    const auto rows = summarise_by_key(
+        std::vector<KeyedScore>{keyed("new\nline \xff", 0.5, 30, Category::ground_truth, 1)});
+    const std::string line = summary_json(rows.front());
+    EXPECT_THAT(line, Not(HasSubstr("\n")));
+    const auto json = nlohmann::json::parse(line);
+    EXPECT_EQ(json.at("false_positive_rate"), 0.5);
+    EXPECT_EQ(json.at("range"), 30.0);
+    EXPECT_EQ(json.at("share").at("ground_truth"), 1.0);
+    EXPECT_EQ(json.at("share").size(), kCategoryCount);
+    EXPECT_EQ(json.at("latency_ms").at("p99"), 12.5);
+    EXPECT_FALSE(json.contains("accurate_share"));
+    EXPECT_FALSE(json.contains("solved_share"));
+}
+
+TEST(PublishedFigures, CategoriesOfARateSumToAllAndToTheStatedSuccess) {
+    for (const PublishedClcRow& row : kPublishedClc) {
+        const double success =
+            row.ground_truth + row.near_ground_truth + row.too_short + row.diverging_from_20;
+        EXPECT_NEAR(success, row.success, 0.15) << row.false_positive_rate;
+        EXPECT_NEAR(success + row.diverging_below_20, 100.0, 0.15) << row.false_positive_rate;
+    }
+}
+
+}  // namespace
+}  // namespace conelane::experiments

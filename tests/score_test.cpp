@@ -1,0 +1,439 @@
+#include "experiments/score.hpp"
+
+#include "experiments/annotated_scene.hpp"
+#include "model/invalid_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kLatency_ms = 3.0;
+
+/// A straight lane along +x, cones every 4 m from x = 0 to 36: left ids 1..10, right ids 101..110. The car
+/// stands 1 m before it.
+AnnotatedScene straight_scene(double width_m = 3.5) {
+    AnnotatedScene scene;
+    scene.scene.id = "straight";
+    scene.scene.pose.position = {-1, 0};
+    Lane ground_truth;
+    for (int i = 0; i < 10; ++i) {
+        scene.scene.cones.push_back({.id = 1 + i, .position = {4.0 * i, width_m / 2}});
+        scene.scene.cones.push_back({.id = 101 + i, .position = {4.0 * i, -width_m / 2}});
+        ground_truth.left.push_back(1 + i);
+        ground_truth.right.push_back(101 + i);
+    }
+    scene.ground_truth = ground_truth;
+    return scene;
+}
+
+/// The boundaries of straight_scene() go on behind and ahead of what is visible.
+const TrackBoundaries kTrack{{{-20, 1.75}, {80, 1.75}}, {{-20, -1.75}, {80, -1.75}}, false};
+
+LaneAnswer found(Lane lane) {
+    LaneAnswer answer;
+    answer.status = LaneStatus::found;
+    answer.lane = std::move(lane);
+    return answer;
+}
+
+SceneScore scored(const AnnotatedScene& scene, const Lane& lane) {
+    return score(scene, found(lane), kLatency_ms, std::nullopt, &kTrack);
+}
+
+void add_cone(AnnotatedScene& scene, ConeId id, const Point& position) {
+    scene.scene.cones.push_back({.id = id, .position = position});
+}
+
+/// The ground truth with `id` on the left between the cones at x = 4 * (after - 1) and the next one.
+Lane with_inserted(const AnnotatedScene& scene, int after, ConeId id) {
+    Lane lane = *scene.ground_truth;
+    lane.left.insert(lane.left.begin() + after, id);
+    return lane;
+}
+
+Lane truncated(const AnnotatedScene& scene, std::size_t cones) {
+    Lane lane = *scene.ground_truth;
+    lane.left.resize(cones);
+    lane.right.resize(cones);
+    return lane;
+}
+
+TEST(Score, TheGroundTruthFedBack) {
+    const AnnotatedScene scene = straight_scene();
+    const SceneScore result = scored(scene, *scene.ground_truth);
+    EXPECT_EQ(result.category, Category::ground_truth);
+    EXPECT_TRUE(result.success());
+    EXPECT_EQ(result.iou, 1.0);
+    EXPECT_DOUBLE_EQ(result.lane_length_m, 36.0);
+    EXPECT_DOUBLE_EQ(result.ground_truth_length_m, 36.0);
+    EXPECT_TRUE(result.divergence_known);
+    EXPECT_FALSE(result.divergence_distance_m);
+    ASSERT_TRUE(result.accuracy);
+    EXPECT_TRUE(result.accurate());
+    EXPECT_FALSE(result.solved_to_optimality);
+    EXPECT_FALSE(result.enumeration);
+    EXPECT_DOUBLE_EQ(result.latency_ms, kLatency_ms);
+}
+
+TEST(Score, SwappedSides) {
+    const AnnotatedScene scene = straight_scene();
+    const SceneScore result = scored(scene, {scene.ground_truth->right, scene.ground_truth->left});
+    EXPECT_EQ(result.category, Category::diverging_below_20);
+    EXPECT_EQ(result.iou, 0.0);
+    EXPECT_EQ(result.divergence_distance_m, 0.0);
+    EXPECT_FALSE(result.success());
+    EXPECT_TRUE(result.accuracy->cones);
+    EXPECT_FALSE(result.accuracy->sides);
+}
+
+TEST(Score, ATruncatedLaneIsTooShortBelowThreeQuarters) {
+    const AnnotatedScene scene = straight_scene();
+    const SceneScore at_24_m = scored(scene, truncated(scene, 7));
+    EXPECT_EQ(at_24_m.category, Category::too_short);
+    EXPECT_TRUE(at_24_m.success());
+    EXPECT_NEAR(at_24_m.iou, 24.0 / 36.0, 1e-12);
+    EXPECT_FALSE(at_24_m.accuracy->cones);
+    EXPECT_EQ(scored(scene, truncated(scene, 8)).category, Category::near_ground_truth);
+
+    Lane at_27_m = truncated(scene, 7);  // sides of 24 m and 30 m: three quarters exactly
+    at_27_m.right.insert(at_27_m.right.end(), 111);
+    AnnotatedScene longer = scene;
+    add_cone(longer, 111, {30, -1.75});
+    EXPECT_EQ(scored(longer, at_27_m).category, Category::near_ground_truth);
+}
+
+TEST(Score, OneFalsePositiveWithinAMetreIsNearGroundTruthAndAccurate) {
+    AnnotatedScene scene = straight_scene();
+    add_cone(scene, 201, {18, 2.25});
+    add_cone(scene, 202, {22, 2.25});
+    const Lane one = with_inserted(scene, 5, 201);
+    const SceneScore result = scored(scene, one);
+    EXPECT_EQ(result.category, Category::near_ground_truth);
+    EXPECT_NEAR(result.iou, 126.0 / 127.0, 1e-9) << "a triangle of 4 m by 0.5 m beside 36 m by 3.5 m";
+    EXPECT_TRUE(result.accurate());
+
+    Lane two = one;
+    two.left.insert(two.left.begin() + 7, 202);
+    EXPECT_FALSE(scored(scene, two).accuracy->cones);
+    Lane replaced = one;
+    std::erase(replaced.left, 5);
+    EXPECT_FALSE(scored(scene, replaced).accuracy->cones) << "one wrong and one missed";
+    Lane missed = *scene.ground_truth;
+    std::erase(missed.left, 5);
+    EXPECT_TRUE(scored(scene, missed).accurate());
+    EXPECT_EQ(scored(scene, missed).category, Category::near_ground_truth);
+}
+
+TEST(Score, AFalsePositiveFartherOutDivergesAtTheConeBefore) {
+    AnnotatedScene scene = straight_scene();
+    add_cone(scene, 201, {18, 3});
+    add_cone(scene, 202, {22, 3});
+    const SceneScore at_16_m = scored(scene, with_inserted(scene, 5, 201));
+    EXPECT_EQ(at_16_m.category, Category::diverging_below_20);
+    EXPECT_EQ(at_16_m.divergence_distance_m, 16.0);
+    EXPECT_TRUE(at_16_m.accurate()) << "one cone differs and the lane is wide enough everywhere";
+    const SceneScore at_20_m = scored(scene, with_inserted(scene, 6, 202));
+    EXPECT_EQ(at_20_m.category, Category::diverging_from_20);
+    EXPECT_EQ(at_20_m.divergence_distance_m, 20.0);
+    EXPECT_TRUE(at_20_m.success());
+
+    Lane short_too = with_inserted(scene, 5, 201);
+    short_too.left.resize(6);
+    short_too.right.resize(6);
+    EXPECT_EQ(scored(scene, short_too).category, Category::diverging_below_20) << "before too short";
+}
+
+TEST(Score, WithoutAnnotatedBoundariesDivergenceIsUnknown) {
+    AnnotatedScene scene = straight_scene();
+    add_cone(scene, 201, {18, 3});
+    const SceneScore result =
+        score(scene, found(with_inserted(scene, 5, 201)), kLatency_ms, std::nullopt, nullptr);
+    EXPECT_FALSE(result.divergence_known);
+    EXPECT_FALSE(result.divergence_distance_m);
+    EXPECT_EQ(result.category, Category::near_ground_truth);
+    EXPECT_EQ(score(scene, found(truncated(scene, 3)), kLatency_ms, std::nullopt, nullptr).category,
+              Category::too_short);
+}
+
+TEST(Accuracy, NoTwoEdgesCross) {
+    const AnnotatedScene scene = straight_scene();
+    Lane changed_over = *scene.ground_truth;  // the sides change places from the fourth cone on
+    for (std::size_t i = 3; i < changed_over.left.size(); ++i) {
+        std::swap(changed_over.left[i], changed_over.right[i]);
+    }
+    EXPECT_FALSE(scored(scene, changed_over).accuracy->crossings);
+    EXPECT_TRUE(scored(scene, changed_over).accuracy->cones);
+    EXPECT_TRUE(scored(scene, changed_over).accuracy->sides);
+
+    AnnotatedScene loop = straight_scene();  // edges (1, 201) and (202, 2) of one boundary cross
+    add_cone(loop, 201, {4, 3.75});
+    add_cone(loop, 202, {0, 3.75});
+    Lane looped = *loop.ground_truth;
+    looped.left.insert(looped.left.begin() + 1, {201, 202});
+    EXPECT_FALSE(scored(loop, looped).accuracy->crossings);
+}
+
+TEST(Accuracy, BoundsOfTheWidthAreAllowed) {
+    const auto width_kept = [](double width_m) {
+        const AnnotatedScene scene = straight_scene(width_m);
+        return scored(scene, *scene.ground_truth).accuracy->width;
+    };
+    EXPECT_TRUE(width_kept(2.5));
+    EXPECT_FALSE(width_kept(2.49));
+    EXPECT_TRUE(width_kept(6.5));
+    EXPECT_FALSE(width_kept(6.51));
+}
+
+TEST(Accuracy, AVertexTooFarFromTheOtherBoundaryBreaksTheWidth) {
+    const AnnotatedScene scene = straight_scene();
+    Lane lane = *scene.ground_truth;
+    lane.right.resize(9);  // the last left cone is sqrt(4^2 + 3.5^2) m away
+    EXPECT_TRUE(scored(scene, lane).accurate());
+    lane.right.resize(8);
+    EXPECT_FALSE(scored(scene, lane).accuracy->width);
+}
+
+TEST(Accuracy, TheCarIsBetweenTheBoundaries) {
+    AnnotatedScene scene = straight_scene();
+    const auto sides = [&] { return scored(scene, *scene.ground_truth).accuracy->sides; };
+    scene.scene.pose.position = {10, 1.7};
+    EXPECT_TRUE(sides());
+    scene.scene.pose.position = {10, 1.75};
+    EXPECT_FALSE(sides()) << "on the boundary";
+    scene.scene.pose.position = {10, 3};
+    EXPECT_FALSE(sides()) << "left of the lane";
+    scene.scene.pose.position = {10, -3};
+    EXPECT_FALSE(sides()) << "right of the lane";
+    scene.scene.pose = {{10, 0}, std::numbers::pi};
+    EXPECT_FALSE(sides()) << "against the driving direction";
+}
+
+TEST(Accuracy, IsHeldAgainstTheGroundTruthOfTheMethodsConeSet) {
+    const AnnotatedScene scene = straight_scene();
+    const LaneAnswer four_pairs = found(truncated(scene, 4));
+    const SceneScore of_eight = score(scene, four_pairs, kLatency_ms, 8, &kTrack);
+    EXPECT_TRUE(of_eight.accurate());
+    EXPECT_EQ(of_eight.category, Category::too_short) << "the other measures know all that is visible";
+    EXPECT_FALSE(score(scene, four_pairs, kLatency_ms, 12, &kTrack).accurate());
+    EXPECT_FALSE(score(scene, four_pairs, kLatency_ms, 3, &kTrack).accuracy)
+        << "three cones hold no ground truth, so accuracy does not count";
+}
+
+/// A circuit of 24 cones a side about (0, 0), radii 20 m and 16.5 m, the car on it at (18, 0).
+struct Circuit {
+    AnnotatedScene scene;
+    TrackBoundaries boundaries;
+};
+Circuit circuit(bool clockwise) {
+    Circuit result;
+    result.scene.scene.id = "circuit";
+    result.scene.scene.pose = {{18, -1}, clockwise ? -std::numbers::pi / 2 : std::numbers::pi / 2};
+    Lane ground_truth;
+    ground_truth.closed = true;
+    for (int i = 0; i < 24; ++i) {
+        const double angle_rad = (clockwise ? -1 : 1) * i * std::numbers::pi / 12;
+        const Point direction(std::cos(angle_rad), std::sin(angle_rad));
+        const Point left = (clockwise ? 20.0 : 16.5) * direction;
+        const Point right = (clockwise ? 16.5 : 20.0) * direction;
+        result.scene.scene.cones.push_back({.id = i, .position = left});
+        result.scene.scene.cones.push_back({.id = 100 + i, .position = right});
+        result.boundaries.left.push_back(left);
+        result.boundaries.right.push_back(right);
+        ground_truth.left.push_back(i);
+        ground_truth.right.push_back(100 + i);
+    }
+    result.scene.ground_truth = ground_truth;
+    return result;
+}
+
+TEST(Score, AClosedCircuitInBothDrivingDirections) {
+    for (const bool clockwise : {true, false}) {
+        SCOPED_TRACE(clockwise ? "clockwise" : "counter-clockwise");
+        const auto [scene, boundaries] = circuit(clockwise);
+        const auto scored_here = [&, &s = scene, &b = boundaries](const Lane& lane) {
+            return score(s, found(lane), kLatency_ms, std::nullopt, &b);
+        };
+        const SceneScore whole = scored_here(*scene.ground_truth);
+        EXPECT_EQ(whole.category, Category::ground_truth);
+        EXPECT_EQ(whole.iou, 1.0);
+        EXPECT_TRUE(whole.accurate());
+
+        Lane open = *scene.ground_truth;
+        open.closed = false;
+        const SceneScore without_last_stretch = scored_here(open);
+        EXPECT_EQ(without_last_stretch.category, Category::near_ground_truth);
+        EXPECT_NEAR(without_last_stretch.iou, 23.0 / 24.0, 1e-6);
+
+        Lane swapped = *scene.ground_truth;
+        std::swap(swapped.left, swapped.right);
+        EXPECT_EQ(scored_here(swapped).iou, 0.0);
+        EXPECT_EQ(scored_here(swapped).category, Category::diverging_below_20);
+    }
+}
+
+TEST(Score, FailuresScoreNothing) {
+    const AnnotatedScene scene = straight_scene();
+    for (const LaneStatus status : {LaneStatus::none, LaneStatus::time_limit, LaneStatus::error}) {
+        SCOPED_TRACE(to_string(status));
+        LaneAnswer answer;
+        answer.status = status;
+        answer.optimality = Optimality{.objective = -3.0, .bound = -3.0, .optimal = true};
+        const SceneScore result = score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
+        EXPECT_EQ(result.category, Category::none);
+        EXPECT_FALSE(result.success());
+        EXPECT_EQ(result.iou, 0.0);
+        EXPECT_TRUE(result.accuracy) << "the scene still counts";
+        EXPECT_FALSE(result.accurate());
+        EXPECT_EQ(result.solved_to_optimality, false);
+        EXPECT_DOUBLE_EQ(result.latency_ms, kLatency_ms);
+    }
+    EXPECT_EQ(scored(scene, {}).category, Category::none) << "found, but no cone";
+}
+
+TEST(Score, SolvedToOptimalityNeedsTimeAndGap) {
+    const AnnotatedScene scene = straight_scene();
+    const auto solved = [&](double bound, double latency_ms) {
+        LaneAnswer answer = found(*scene.ground_truth);
+        answer.optimality = Optimality{.objective = 0.0, .bound = bound, .optimal = true};
+        return score(scene, answer, latency_ms, std::nullopt, &kTrack).solved_to_optimality;
+    };
+    EXPECT_EQ(solved(0.0, 400.0), true);
+    EXPECT_EQ(solved(0.0, 400.1), false);
+    EXPECT_EQ(solved(-1e-5, 3.0), true);
+    EXPECT_EQ(solved(-1.1e-5, 3.0), false);
+    EXPECT_EQ(solved(-std::numeric_limits<double>::infinity(), 3.0), false);
+}
+
+TEST(Score, Enumeration) {
+    const AnnotatedScene scene = straight_scene();
+    Lane all_but_one = *scene.ground_truth;
+    std::erase(all_but_one.left, 5);  // straight on: the same region
+    LaneAnswer answer = found(truncated(scene, 7));
+    answer.enumeration = Enumeration{.iterations = 90, .complete = true, .candidates = {}};
+    const SceneScore without = score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
+    ASSERT_TRUE(without.enumeration);
+    EXPECT_EQ(without.enumeration->iterations, 90);
+    EXPECT_TRUE(without.enumeration->complete);
+    EXPECT_FALSE(without.enumeration->best_iou);
+    EXPECT_FALSE(without.enumeration->first_near_ground_truth_iteration);
+
+    answer.enumeration->candidates = {{truncated(scene, 4), 3}, {truncated(scene, 7), 20}};
+    const SceneScore far = score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
+    EXPECT_NEAR(far.enumeration->best_iou.value(), 24.0 / 36.0, 1e-12);
+    EXPECT_FALSE(far.enumeration->first_near_ground_truth_iteration);
+
+    answer.enumeration->candidates.push_back({all_but_one, 41});
+    answer.enumeration->candidates.push_back({*scene.ground_truth, 57});
+    const SceneScore near = score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
+    EXPECT_EQ(near.enumeration->best_iou, 1.0);
+    EXPECT_EQ(near.enumeration->first_near_ground_truth_iteration, 41);
+}
+
+TEST(Score, AConeThatIsNotInTheSceneIsNamed) {
+    const auto key_of = [](const AnnotatedScene& scene, const LaneAnswer& answer) -> std::string {
+        try {
+            (void)score(scene, answer, kLatency_ms, std::nullopt, &kTrack);
+        } catch (const InvalidInput& error) {
+            EXPECT_THAT(error.what(), testing::HasSubstr("999"));
+            EXPECT_THAT(error.what(), testing::HasSubstr("straight"));
+            return error.key();
+        }
+        return "accepted";
+    };
+    const AnnotatedScene scene = straight_scene();
+    EXPECT_EQ(key_of(scene, found({{1, 2}, {101, 102, 999}})), "right[2]");
+    LaneAnswer candidate = found(*scene.ground_truth);
+    candidate.enumeration = Enumeration{1, true, {{*scene.ground_truth, 1}, {Lane{{999}, {101}}, 2}}};
+    EXPECT_EQ(key_of(scene, candidate), "candidates[1].left[0]");
+    AnnotatedScene broken = scene;
+    broken.ground_truth->left[1] = 999;
+    EXPECT_EQ(key_of(broken, found(*scene.ground_truth)), "ground_truth.left[1]");
+}
+
+TEST(Score, OnlyScenesWithTwoConesOnEachSideCount) {
+    AnnotatedScene scene = straight_scene();
+    EXPECT_TRUE(counts(scene));
+    scene.ground_truth->right.resize(1);
+    EXPECT_FALSE(counts(scene));
+    EXPECT_THROW((void)scored(scene, {{1, 2}, {101, 102}}), InvalidInput);
+    scene.ground_truth.reset();
+    EXPECT_FALSE(counts(scene));
+    EXPECT_THROW((void)scored(scene, {{1, 2}, {101, 102}}), InvalidInput);
+}
+
+TEST(Score, DegenerateLanesAreScoredAsTheyStand) {
+    const AnnotatedScene scene = straight_scene();
+    for (const Lane& lane : std::vector<Lane>{{{1}, {101}},
+                                              {{1, 2, 3}, {}},
+                                              {{}, {101}},
+                                              {{1, 1, 1}, {101, 101}},
+                                              {{1, 2, 1, 2}, {101, 102, 101}},
+                                              {{1, 2}, {1, 2}},
+                                              {{1}, {1}, true}}) {
+        const SceneScore result = scored(scene, lane);
+        EXPECT_LT(result.iou, 0.2);
+        EXPECT_FALSE(result.accurate());
+    }
+    Lane repeated = *scene.ground_truth;
+    repeated.left.insert(repeated.left.begin(), 1);
+    const SceneScore result = scored(scene, repeated);
+    EXPECT_EQ(result.iou, 1.0);
+    EXPECT_EQ(result.category, Category::near_ground_truth);
+    EXPECT_TRUE(result.accurate());
+}
+
+TEST(Summary, KeepsFailuresInEveryMean) {
+    const AnnotatedScene scene = straight_scene();
+    std::vector<SceneScore> scores;
+    LaneAnswer right = found(*scene.ground_truth);
+    right.optimality = Optimality{-1.0, -1.0, true};
+    right.enumeration = Enumeration{10, true, {{*scene.ground_truth, 4}}};
+    scores.push_back(score(scene, right, 10.0, std::nullopt, &kTrack));
+    LaneAnswer shortened = found(truncated(scene, 7));
+    shortened.optimality = Optimality{-1.0, -2.0, false};
+    shortened.enumeration = Enumeration{2500, false, {{truncated(scene, 7), 9}}};
+    scores.push_back(score(scene, shortened, 20.0, std::nullopt, &kTrack));
+    scores.push_back(score(scene, LaneAnswer{}, 60.0, std::nullopt, &kTrack));
+    scores.push_back(score(scene, right, 30.0, 3, nullptr));  // accuracy does not count
+
+    const ScoreSummary summary = summarise(scores);
+    EXPECT_EQ(summary.scenes, 4u);
+    EXPECT_EQ(summary.divergence_unknown, 1u);
+    EXPECT_THAT(summary.category_share, testing::ElementsAre(0.25, 0.5, 0.0, 0.0, 0.25, 0.0));
+    EXPECT_DOUBLE_EQ(summary.share(Category::too_short), 0.25);
+    EXPECT_DOUBLE_EQ(summary.success_share, 0.75);
+    EXPECT_NEAR(summary.mean_iou, (1.0 + 2.0 / 3.0 + 0.0 + 1.0) / 4.0, 1e-12);
+    EXPECT_EQ(summary.accuracy_scenes, 3u);
+    EXPECT_DOUBLE_EQ(summary.accurate_share.value(), 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(summary.solved_share.value(), 0.5);
+    EXPECT_DOUBLE_EQ(summary.complete_share.value(), 0.5);
+    EXPECT_NEAR(summary.best_candidate_mean_iou.value(), (1.0 + 2.0 / 3.0 + 0.0 + 1.0) / 4.0, 1e-12);
+    EXPECT_DOUBLE_EQ(summary.best_candidate_near_share.value(), 0.5);
+    EXPECT_DOUBLE_EQ(summary.latency.median_ms, 25.0);
+    EXPECT_DOUBLE_EQ(summary.latency.share_within_budget, 0.75);
+}
+
+TEST(Summary, LeavesOutWhatNoMethodStates) {
+    const AnnotatedScene scene = straight_scene();
+    const std::vector<SceneScore> scores{score(scene, found(*scene.ground_truth), 1.0, 3, &kTrack)};
+    const ScoreSummary summary = summarise(scores);
+    EXPECT_FALSE(summary.accurate_share);
+    EXPECT_FALSE(summary.solved_share);
+    EXPECT_FALSE(summary.complete_share);
+    EXPECT_FALSE(summary.best_candidate_mean_iou);
+    EXPECT_FALSE(summary.best_candidate_near_share);
+    EXPECT_THROW((void)summarise({}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
