@@ -122,7 +122,7 @@ struct Run {
 Run run_ahead(const Course& course, const std::vector<std::size_t>& side, const std::vector<Point>& polyline,
               const std::vector<Sight>& sights, const Point& car) {
     const PolylineFoot foot = foot_on_polyline(car, polyline, course.track.closed);
-    const bool at_vertex = (foot.point - polyline[foot.segment]).norm() <= kTieTolerance_m;
+    const bool at_vertex = (foot.point - polyline[foot.segment]).norm() <= kTieTolerance;
     // An open boundary of one cone has no next vertex; its only vertex is the foot.
     const std::size_t first = at_vertex ? foot.segment : foot.segment + 1;
     const std::size_t steps = course.track.closed ? side.size() : side.size() - first;
