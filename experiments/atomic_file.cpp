@@ -81,9 +81,9 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
-    errno = 0;
     stream_.close();
-    if (!stream_) fail(target_, errno != 0 ? errno : EIO);
+    // The stream does not keep the reason of a write that failed before.
+    if (!stream_) throw InputError(target_, 0, "", "cannot be written to its end");
     if (temporary_.empty()) return;
     std::error_code error;
     fs::rename(temporary_, place_, error);

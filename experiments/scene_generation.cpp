@@ -1,5 +1,6 @@
 #include "experiments/scene_generation.hpp"
 
+#include "experiments/centre_line.hpp"
 #include "experiments/ground_truth.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
@@ -18,6 +19,7 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -346,7 +348,8 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
     const Course course = make_course(track, options);
     const std::size_t rates = options.false_positive_rates.size();
     std::vector<std::optional<AnnotatedScene>> made(options.ranges_m.size() * rates * poses.size());
-    oneapi::tbb::task_arena arena(static_cast<int>(options.threads));
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
         oneapi::tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t job) {
             const std::size_t pose = job % poses.size();
@@ -361,6 +364,11 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
         if (scene) scenes.push_back(*std::move(scene));
     }
     return scenes;
+}
+
+std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options) {
+    validate(options);
+    return generate_scenes(track, centre_line_poses(boundaries(track), options.every_m), options);
 }
 
 }  // namespace conelane::experiments

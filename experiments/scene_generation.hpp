@@ -16,7 +16,7 @@ namespace conelane::experiments {
 struct SceneOptions {
     std::vector<double> false_positive_rates;  ///< false positives / all points of the scene, in [0, 0.99]
     std::vector<double> ranges_m;              ///< radius of the visible half disc, in [0.1, 1000]
-    double every_m = 1.1;                      ///< travel between poses
+    double every_m = 1.1;                      ///< travel between poses, in [0.01, 1000]
     std::optional<std::size_t> nearest;        ///< keep this many cones ahead, at least one; all where absent
     double noise_sigma_m = 0.0;                ///< Gaussian, on each coordinate of a seen map point
     double pose_noise_lateral_m = 0.0;         ///< Gaussian, across the heading
@@ -24,7 +24,7 @@ struct SceneOptions {
     double miss_rate = 0.0;                    ///< share of visible map points not seen, in [0, 1)
     bool with_color = false;                   ///< else every cone is of unknown colour
     std::uint64_t seed = 0;                    ///< base seed
-    unsigned threads = 1;
+    unsigned threads = 1;                      ///< at most; more than there are processors are not used
 };
 
 /// Throws InvalidInput naming the option where a value is out of its range.
@@ -41,5 +41,9 @@ void validate(const SceneOptions& options);
 /// m.
 [[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
                                                           const SceneOptions& options);
+
+/// The same along the track's centre line, a pose every `every_m` of travel (see centre_line_poses, whose
+/// InvalidInput it passes on).
+[[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options);
 
 }  // namespace conelane::experiments
