@@ -182,9 +182,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
     std::size_t unknown = 0;
     for (const ScoreRow& row : rows) unknown += row.summary.divergence_unknown;
     if (unknown > 0) {
-        table += fmt::format(
-            "{} scenes were scored without the boundaries of their track: no divergence is seen there\n",
-            unknown);
+        table += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
+                             unknown);
     }
     table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
     std::ranges::for_each(published, write);

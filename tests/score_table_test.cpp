@@ -89,7 +89,7 @@ TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
     EXPECT_THAT(lines[1],
                 testing::ElementsAre("clc", "-", "-", "1", "0.0", "-", "-", "-", "-", "0.0", "-", "90.0", "-",
                                      "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
-    EXPECT_THAT(table, HasSubstr("1 scenes were scored without"));
+    EXPECT_THAT(table, HasSubstr("scenes scored without the boundaries of their track: 1\n"));
     EXPECT_THAT(table, HasSubstr("34.5")) << "without a rate of its own, all published ones";
 }
 

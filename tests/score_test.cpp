@@ -2,8 +2,8 @@
 
 #include "experiments/annotated_scene.hpp"
 #include "model/invalid_input.hpp"
+#include "tests/straight_scene.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,57 +16,6 @@
 
 namespace conelane::experiments {
 namespace {
-
-constexpr double kLatency_ms = 3.0;
-
-/// A straight lane along +x, cones every 4 m from x = 0 to 36: left ids 1..10, right ids 101..110. The car
-/// stands 1 m before it.
-AnnotatedScene straight_scene(double width_m = 3.5) {
-    AnnotatedScene scene;
-    scene.scene.id = "straight";
-    scene.scene.pose.position = {-1, 0};
-    Lane ground_truth;
-    for (int i = 0; i < 10; ++i) {
-        scene.scene.cones.push_back({.id = 1 + i, .position = {4.0 * i, width_m / 2}});
-        scene.scene.cones.push_back({.id = 101 + i, .position = {4.0 * i, -width_m / 2}});
-        ground_truth.left.push_back(1 + i);
-        ground_truth.right.push_back(101 + i);
-    }
-    scene.ground_truth = ground_truth;
-    return scene;
-}
-
-/// The boundaries of straight_scene() go on behind and ahead of what is visible.
-const TrackBoundaries kTrack{{{-20, 1.75}, {80, 1.75}}, {{-20, -1.75}, {80, -1.75}}, false};
-
-LaneAnswer found(Lane lane) {
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = std::move(lane);
-    return answer;
-}
-
-SceneScore scored(const AnnotatedScene& scene, const Lane& lane) {
-    return score(scene, found(lane), kLatency_ms, std::nullopt, &kTrack);
-}
-
-void add_cone(AnnotatedScene& scene, ConeId id, const Point& position) {
-    scene.scene.cones.push_back({.id = id, .position = position});
-}
-
-/// The ground truth with `id` on the left between the cones at x = 4 * (after - 1) and the next one.
-Lane with_inserted(const AnnotatedScene& scene, int after, ConeId id) {
-    Lane lane = *scene.ground_truth;
-    lane.left.insert(lane.left.begin() + after, id);
-    return lane;
-}
-
-Lane truncated(const AnnotatedScene& scene, std::size_t cones) {
-    Lane lane = *scene.ground_truth;
-    lane.left.resize(cones);
-    lane.right.resize(cones);
-    return lane;
-}
 
 TEST(Score, TheGroundTruthFedBack) {
     const AnnotatedScene scene = straight_scene();
@@ -163,70 +112,6 @@ TEST(Score, WithoutAnnotatedBoundariesDivergenceIsUnknown) {
     EXPECT_EQ(result.category, Category::near_ground_truth);
     EXPECT_EQ(score(scene, found(truncated(scene, 3)), kLatency_ms, std::nullopt, nullptr).category,
               Category::too_short);
-}
-
-TEST(Accuracy, NoTwoEdgesCross) {
-    const AnnotatedScene scene = straight_scene();
-    Lane changed_over = *scene.ground_truth;  // the sides change places from the fourth cone on
-    for (std::size_t i = 3; i < changed_over.left.size(); ++i) {
-        std::swap(changed_over.left[i], changed_over.right[i]);
-    }
-    EXPECT_FALSE(scored(scene, changed_over).accuracy->crossings);
-    EXPECT_TRUE(scored(scene, changed_over).accuracy->cones);
-    EXPECT_TRUE(scored(scene, changed_over).accuracy->sides);
-
-    AnnotatedScene loop = straight_scene();  // edges (1, 201) and (202, 2) of one boundary cross
-    add_cone(loop, 201, {4, 3.75});
-    add_cone(loop, 202, {0, 3.75});
-    Lane looped = *loop.ground_truth;
-    looped.left.insert(looped.left.begin() + 1, {201, 202});
-    EXPECT_FALSE(scored(loop, looped).accuracy->crossings);
-}
-
-TEST(Accuracy, BoundsOfTheWidthAreAllowed) {
-    const auto width_kept = [](double width_m) {
-        const AnnotatedScene scene = straight_scene(width_m);
-        return scored(scene, *scene.ground_truth).accuracy->width;
-    };
-    EXPECT_TRUE(width_kept(2.5));
-    EXPECT_FALSE(width_kept(2.49));
-    EXPECT_TRUE(width_kept(6.5));
-    EXPECT_FALSE(width_kept(6.51));
-}
-
-TEST(Accuracy, AVertexTooFarFromTheOtherBoundaryBreaksTheWidth) {
-    const AnnotatedScene scene = straight_scene();
-    Lane lane = *scene.ground_truth;
-    lane.right.resize(9);  // the last left cone is sqrt(4^2 + 3.5^2) m away
-    EXPECT_TRUE(scored(scene, lane).accurate());
-    lane.right.resize(8);
-    EXPECT_FALSE(scored(scene, lane).accuracy->width);
-}
-
-TEST(Accuracy, TheCarIsBetweenTheBoundaries) {
-    AnnotatedScene scene = straight_scene();
-    const auto sides = [&] { return scored(scene, *scene.ground_truth).accuracy->sides; };
-    scene.scene.pose.position = {10, 1.7};
-    EXPECT_TRUE(sides());
-    scene.scene.pose.position = {10, 1.75};
-    EXPECT_FALSE(sides()) << "on the boundary";
-    scene.scene.pose.position = {10, 3};
-    EXPECT_FALSE(sides()) << "left of the lane";
-    scene.scene.pose.position = {10, -3};
-    EXPECT_FALSE(sides()) << "right of the lane";
-    scene.scene.pose = {{10, 0}, std::numbers::pi};
-    EXPECT_FALSE(sides()) << "against the driving direction";
-}
-
-TEST(Accuracy, IsHeldAgainstTheGroundTruthOfTheMethodsConeSet) {
-    const AnnotatedScene scene = straight_scene();
-    const LaneAnswer four_pairs = found(truncated(scene, 4));
-    const SceneScore of_eight = score(scene, four_pairs, kLatency_ms, 8, &kTrack);
-    EXPECT_TRUE(of_eight.accurate());
-    EXPECT_EQ(of_eight.category, Category::too_short) << "the other measures know all that is visible";
-    EXPECT_FALSE(score(scene, four_pairs, kLatency_ms, 12, &kTrack).accurate());
-    EXPECT_FALSE(score(scene, four_pairs, kLatency_ms, 3, &kTrack).accuracy)
-        << "three cones hold no ground truth, so accuracy does not count";
 }
 
 /// A circuit of 24 cones a side about (0, 0), radii 20 m and 16.5 m, the car on it at (18, 0).
