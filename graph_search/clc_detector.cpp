@@ -34,6 +34,8 @@ void validate(const ClcOptions& options) {
     require(std::isfinite(options.start.largest_radius_m) &&
                 options.start.largest_radius_m >= options.start.radius_m,
             "largest_radius", "must not be below radius");
+    require(std::isfinite(options.start.distance_weight) && options.start.distance_weight >= 0.0,
+            "distance_weight", "must not be negative");
 }
 
 SearchBudget::Clock::time_point deadline(double time_limit_ms) {

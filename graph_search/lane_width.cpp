@@ -13,6 +13,9 @@ std::vector<Segment> segments_of(std::span<const Point> vertices, bool closed) {
     return segments;
 }
 
+/// From here on a foot point counts as the end of its segment: a foot exactly there may be rounded below.
+constexpr double kEndOfSegment = 1.0 - 1e-9;
+
 struct SquaredDistance {
     double value;
     double foot;  ///< parameter on the segment, in [0, 1]
@@ -137,7 +140,7 @@ void OnlineLaneWidth::push(Side side, const Point& point) {
             last_foot = distance.foot;
             nearest_to_vertex = std::min(nearest_to_vertex, distance.value);
         }
-        vertex_at_end = last_foot >= 1.0 && to_vertex_squared[n - 2] <= nearest_to_vertex;
+        vertex_at_end = last_foot >= kEndOfSegment && to_vertex_squared[n - 2] <= nearest_to_vertex;
     }
 
     // A new row for the queries of the facing boundary: the old one, lowered by what is new.
@@ -150,7 +153,7 @@ void OnlineLaneWidth::push(Side side, const Point& point) {
         const double before = facing_rows.vertex_squared[old_row + i];
         const bool nearer = to_segment_squared[i] < before;
         const double now = nearer ? to_segment_squared[i] : before;
-        const bool at_end = nearer && foot[i] >= 1.0;
+        const bool at_end = nearer && foot[i] >= kEndOfSegment;
         facing_rows.vertex_squared[new_row + i] = now;
         facing_rows.at_end[new_row + i] = at_end ? 1 : 0;
         if (now >= squared_w_max_) {

@@ -15,7 +15,7 @@ struct Candidate {
 };
 
 struct RankedPair {
-    double asymmetry_m;
+    double cost_m;
     double distance_m;  ///< of the farther vertex
     StartPair pair;
 };
@@ -38,9 +38,10 @@ std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const 
         for (const Candidate& r : right) {
             const double apart_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m - r.left_m);
             if (apart_m <= rules.w_min_m || apart_m >= rules.w_max_m) continue;
-            pairs.push_back({std::hypot(l.ahead_m - r.ahead_m, l.left_m + r.left_m),
-                             std::max(l.distance_m, r.distance_m),
-                             {l.vertex, r.vertex}});
+            const double asymmetry_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m + r.left_m);
+            const double distance_m = std::max(l.distance_m, r.distance_m);
+            pairs.push_back(
+                {asymmetry_m + rules.distance_weight * distance_m, distance_m, {l.vertex, r.vertex}});
         }
     }
     double radius_m = rules.radius_m;
@@ -53,7 +54,7 @@ std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const 
     std::ranges::sort(pairs, {}, [](const RankedPair& pair) {
         // Unordered in the two vertices, so that a mirrored scene ranks alike.
         const auto [low, high] = std::minmax(pair.pair.left, pair.pair.right);
-        return std::tuple(pair.asymmetry_m, pair.distance_m, low, high);
+        return std::tuple(pair.cost_m, low, high);
     });
     std::vector<StartPair> best;
     for (const RankedPair& ranked : pairs) {

@@ -1,0 +1,258 @@
+#include "graph_search/clc_detector.hpp"
+
+#include "model/invalid_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+LaneAnswer detect(const Scene& scene, const ClcOptions& options = {}, const DetectionLimits& limits = {}) {
+    return make_clc_detector(options)->detect(scene, limits);
+}
+
+/// Left cones have even ids, right ones odd ids, ascending in driving order, `count` a side. The lane winds
+/// with the given amplitude of its heading; it is 6 m wide, so that no boundary can cross over to the other,
+/// and `random` shifts every cone a little, so that nothing ties.
+Scene winding_lane(std::size_t count, double amplitude_rad, unsigned seed) {
+    boost::random::mt19937_64 random(seed);
+    const auto jitter = [&] { return 0.3 * (boost::random::uniform_01<double>()(random) - 0.5); };
+    Scene scene;
+    Point centre(1.5, 0.0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double heading_rad = amplitude_rad * std::sin(static_cast<double>(i) * 0.4);
+        const Point normal(-std::sin(heading_rad), std::cos(heading_rad));
+        for (const double offset_m : {3.0, -3.0}) {
+            const double dx = jitter();
+            const double dy = jitter();
+            scene.cones.push_back(
+                {static_cast<ConeId>(scene.cones.size()), centre + offset_m * normal + Point(dx, dy)});
+        }
+        centre += 3.5 * Point(std::cos(heading_rad), std::sin(heading_rad));
+    }
+    return scene;
+}
+
+Scene with_false_positives(Scene scene, std::size_t count, unsigned seed) {
+    boost::random::mt19937_64 random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = 40.0 * boost::random::uniform_01<double>()(random);
+        const double y = 40.0 * (boost::random::uniform_01<double>()(random) - 0.5);
+        scene.cones.push_back({1000 + static_cast<ConeId>(i), {x, y}});
+    }
+    return scene;
+}
+
+Scene mirrored(Scene scene) {
+    for (Cone& cone : scene.cones) cone.position.y() = -cone.position.y();
+    return scene;
+}
+
+TEST(ClcDetector, FindsAStraightLaneAmongNothingElse) {
+    Scene scene;
+    for (const double x : {1.0, 5.0, 9.0}) {
+        scene.cones.push_back({static_cast<ConeId>(10 * x), {x, 1.8}});
+        scene.cones.push_back({static_cast<ConeId>(10 * x + 1), {x, -1.8}});
+    }
+    const LaneAnswer answer = detect(scene);
+    EXPECT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(10, 50, 90));
+    EXPECT_THAT(answer.lane.right, ElementsAre(11, 51, 91));
+    EXPECT_FALSE(answer.lane.closed);
+    ASSERT_TRUE(answer.enumeration);
+    EXPECT_TRUE(answer.enumeration->complete);
+    EXPECT_THAT(answer.enumeration->candidates, IsEmpty());
+}
+
+TEST(ClcDetector, FindsAWindingLaneWhollyWhereverTheCarStands) {
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(seed);
+        Scene scene = winding_lane(9, 0.5, seed);
+        const double yaw_rad = 0.37 * seed;
+        const Point position(100.0 * seed, -50.0);
+        scene.pose = {position, yaw_rad};
+        for (Cone& cone : scene.cones) {
+            const Point p = cone.position;
+            cone.position = position + Point(std::cos(yaw_rad) * p.x() - std::sin(yaw_rad) * p.y(),
+                                             std::sin(yaw_rad) * p.x() + std::cos(yaw_rad) * p.y());
+        }
+        const LaneAnswer answer = detect(scene);
+        EXPECT_THAT(answer.lane.left, ElementsAre(0, 2, 4, 6, 8, 10, 12, 14, 16));
+        EXPECT_THAT(answer.lane.right, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15, 17));
+    }
+}
+
+TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
+    DetectionLimits limits;
+    limits.keep_candidates = true;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 12, seed);
+        std::unordered_map<ConeId, Point> position_of;
+        for (const Cone& cone : scene.cones) position_of[cone.id] = cone.position;
+        const auto points = [&](const std::vector<ConeId>& ids) {
+            std::vector<Point> boundary;
+            for (const ConeId id : ids) boundary.push_back(position_of.at(id));
+            return boundary;
+        };
+        const auto length_m = [&](const Lane& lane) {
+            return (polyline_length_m(points(lane.left), lane.closed) +
+                    polyline_length_m(points(lane.right), lane.closed)) /
+                   2.0;
+        };
+        const LaneAnswer answer = detect(scene, {}, limits);
+        ASSERT_EQ(answer.status, LaneStatus::found);
+        ASSERT_FALSE(answer.enumeration->candidates.empty());
+        std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> distinct;
+        std::int64_t iteration = 0;
+        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+            EXPECT_GE(candidate.lane.left.size(), 2u);
+            EXPECT_GE(candidate.lane.right.size(), 2u);
+            EXPECT_TRUE(satisfies_constraints(points(candidate.lane.left), points(candidate.lane.right), {}));
+            EXPECT_TRUE(distinct.insert({candidate.lane.left, candidate.lane.right}).second);
+            EXPECT_LE(iteration, candidate.iteration);
+            iteration = candidate.iteration;
+            EXPECT_LE(length_m(candidate.lane), length_m(answer.lane) + 1e-9);
+        }
+        EXPECT_LE(iteration, answer.enumeration->iterations);
+        EXPECT_LE(answer.enumeration->iterations, 2500);
+    }
+}
+
+TEST(ClcDetector, AMirroredSceneHasTheMirroredLane) {
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = with_false_positives(winding_lane(8, 0.4, seed), seed % 20, seed);
+        const LaneAnswer answer = detect(scene);
+        const LaneAnswer of_mirrored = detect(mirrored(scene));
+        EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
+        EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
+        EXPECT_EQ(answer.enumeration->iterations, of_mirrored.enumeration->iterations);
+    }
+}
+
+TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
+    Scene scene;
+    for (int i = 0; i < 6; ++i) {
+        scene.cones.push_back({2 * i, {1.0 + 4.0 * i, 1.8}});
+        scene.cones.push_back({2 * i + 1, {1.0 + 4.0 * i, -1.8}});
+    }
+    const LaneAnswer answer = detect(scene);
+    const LaneAnswer of_mirrored = detect(mirrored(scene));
+    EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
+    EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
+    EXPECT_EQ(answer.enumeration->iterations, of_mirrored.enumeration->iterations);
+}
+
+TEST(ClcDetector, AnswersTheSameOnEachCallAndInAnyOrderOfTheCones) {
+    const std::unique_ptr<LaneDetector> detector = make_clc_detector({});
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
+        const LaneAnswer first = detector->detect(scene, {});
+        EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
+        std::ranges::reverse(scene.cones);
+        const LaneAnswer reversed = detector->detect(scene, {});
+        EXPECT_EQ(reversed.lane, first.lane);
+        EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
+    }
+}
+
+TEST(ClcDetector, TriesOtherStartsWhereFalsePositivesStandAtTheCar) {
+    Scene scene;
+    for (const double x : {3.0, 7.0, 11.0, 15.0}) {
+        scene.cones.push_back({static_cast<ConeId>(10 * x), {x, 1.8}});
+        scene.cones.push_back({static_cast<ConeId>(10 * x + 1), {x, -1.8}});
+    }
+    // Out of reach of everything else, but the most symmetric pair and the nearest.
+    scene.cones.push_back({1000, {-2.7, 1.4}});
+    scene.cones.push_back({1001, {-2.7, -1.4}});
+    ClcOptions one;
+    one.starting_pairs = 1;
+    EXPECT_EQ(detect(scene, one).status, LaneStatus::none);
+    EXPECT_THAT(detect(scene).lane.left, ElementsAre(30, 70, 110, 150));
+}
+
+TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
+    Scene scene;
+    for (int i = 0; i < 12; ++i) {
+        const double angle = 2.0 * 3.14159265358979 * (i + 0.3) / 12.0;
+        for (const double radius_m : {6.0, 9.5}) {
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()),
+                                   {radius_m * std::sin(angle), 7.75 - radius_m * std::cos(angle)}});
+        }
+    }
+    const LaneAnswer answer = detect(scene);
+    EXPECT_TRUE(answer.lane.closed);
+    EXPECT_EQ(answer.lane.left.size(), 12u);
+    EXPECT_EQ(answer.lane.right.size(), 12u);
+}
+
+TEST(ClcDetector, SaysWhyThereIsNoLane) {
+    EXPECT_EQ(detect({}).status, LaneStatus::none);
+    EXPECT_TRUE(detect({}).enumeration->complete);
+    Scene one_cone_a_side;
+    one_cone_a_side.cones = {{0, {1, 1.8}}, {1, {1, -1.8}}};
+    EXPECT_EQ(detect(one_cone_a_side).status, LaneStatus::none);
+    Scene heap;
+    for (int i = 0; i < 30; ++i) heap.cones.push_back({i, {1.0, 1.5}});
+    EXPECT_EQ(detect(heap).status, LaneStatus::none);
+    DetectionLimits no_time;
+    no_time.time_limit_ms = 0.0;
+    const LaneAnswer late = detect(winding_lane(8, 0.4, 1), {}, no_time);
+    EXPECT_EQ(late.status, LaneStatus::time_limit);
+    EXPECT_THAT(late.lane.left, IsEmpty());
+    EXPECT_FALSE(late.enumeration->complete);
+}
+
+TEST(ClcDetector, WhatWasFoundInTimeIsAnAnswer) {
+    ClcOptions endless;
+    endless.iteration_limit = std::numeric_limits<std::int64_t>::max();
+    DetectionLimits limits;
+    limits.time_limit_ms = 20.0;
+    const LaneAnswer answer = detect(with_false_positives(winding_lane(20, 0.3, 3), 60, 3), endless, limits);
+    EXPECT_EQ(answer.status, LaneStatus::found);
+    EXPECT_FALSE(answer.enumeration->complete);
+    EXPECT_GT(answer.enumeration->iterations, 32);
+}
+
+TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
+    const auto key_of = [](auto change) -> std::string {
+        ClcOptions options;
+        change(options);
+        try {
+            (void)make_clc_detector(options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](ClcOptions&) {}), "accepted");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.iteration_limit = 0; }), "iteration_limit");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.d_max_m = std::numeric_limits<double>::infinity(); }), "d_max");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.bounds.phi_max_rad = 0.0; }), "phi_max");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.bounds.w_min_m = -1.0; }), "w_min");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.bounds.w_max_m = o.bounds.w_min_m; }), "w_max");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.start.radius_m = 0.0; }), "radius");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.start.radius_growth_m = 0.0; }), "radius_growth");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.start.largest_radius_m = 1.0; }), "largest_radius");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
+}
+
+}  // namespace
+}  // namespace conelane
