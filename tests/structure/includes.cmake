@@ -1,7 +1,9 @@
 # cmake -D ROOT=DIR -P includes.cmake: checks the #include lines of the sources below ROOT.
 # - Quoted includes name folder and file, and the folder is one that the including folder may depend on.
-# - Headers include no solver, Boost, parser or thread library: those stay in .cpp files, or in a header below a
-#   folder `detail`, which is private to its library.
+# - Headers of the installed libraries include no solver, Boost, parser or thread library: those stay in .cpp files,
+#   or in a header below a folder `detail`, which is private to its library.
+# - x.cpp includes x.hpp first, so compiling it shows that the header includes what it needs.
+# - Headers guard themselves by #pragma once.
 cmake_minimum_required(VERSION 3.25)
 
 set(model_depends_on model)
@@ -9,7 +11,8 @@ set(solvers_depends_on model solvers)
 set(graph_search_depends_on model graph_search)
 set(experiments_depends_on model solvers graph_search experiments)
 set(tests_depends_on model solvers graph_search experiments tests)
-set(private_libraries "Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|coin/|nlopt|glpk|symphony|Highs|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+set(private_libraries
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|symphony|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
 foreach(folder IN ITEMS model solvers graph_search experiments tests)
     file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
@@ -17,6 +20,15 @@ foreach(folder IN ITEMS model solvers graph_search experiments tests)
     foreach(file IN LISTS files)
         math(EXPR checked "${checked} + 1")
         file(STRINGS ${ROOT}/${file} lines REGEX "^[ \t]*#[ \t]*include")
+        string(REGEX REPLACE "[.]cpp$" ".hpp" own_header ${file})
+        if(file STREQUAL own_header)
+            file(STRINGS ${ROOT}/${file} guard REGEX "^#pragma once$")
+            if(NOT guard)
+                message(SEND_ERROR "${file} has no #pragma once")
+            endif()
+        elseif(EXISTS ${ROOT}/${own_header} AND NOT lines MATCHES "^#include \"${own_header}\"")
+            message(SEND_ERROR "${file} does not include ${own_header} first")
+        endif()
         foreach(line IN LISTS lines)
             if(line MATCHES "\"([^\"]*)\"")
                 set(included ${CMAKE_MATCH_1})
@@ -26,7 +38,7 @@ foreach(folder IN ITEMS model solvers graph_search experiments tests)
                 elseif(NOT EXISTS ${ROOT}/${included} OR included MATCHES "[.][.]/")
                     message(SEND_ERROR "${file} includes ${included}, which is no FOLDER/FILE")
                 endif()
-            elseif(file MATCHES "[.]hpp$" AND NOT file MATCHES "/detail/"
+            elseif(file MATCHES "^(model|solvers|graph_search)/.*[.]hpp$" AND NOT file MATCHES "/detail/"
                    AND line MATCHES "<(${private_libraries})")
                 message(SEND_ERROR "${file} includes <${CMAKE_MATCH_1}...>, which belongs in .cpp files")
             endif()

@@ -19,12 +19,13 @@ endfunction()
 
 expect("" includes solvers/a.cpp "#include \"model/scene.hpp\"")
 expect("" includes tests/a.cpp "#include \"model/scene.hpp\"")
+expect("model/a.hpp has no #pragma once" includes model/a.hpp "#include <vector>")
 foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
                            "graph_search;solvers" "solvers;experiments" "graph_search;experiments"
                            "experiments;tests")
     list(GET direction 0 from)
     list(GET direction 1 to)
-    expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#include \"${to}/b.hpp\"")
+    expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#pragma once\n#include \"${to}/b.hpp\"")
 endforeach()
 
 expect("solvers/a.cpp may not include scene.hpp" includes solvers/a.cpp "#include \"scene.hpp\"")
@@ -33,11 +34,15 @@ expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"solvers/../model/scen
 expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"model/nothing.hpp\"")
 
 expect("" includes solvers/a.cpp "#include <CbcModel.hpp>\n#include <boost/geometry.hpp>")
-expect("" includes solvers/detail/a.hpp "#include <CbcModel.hpp>")
-expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#include <CbcModel.hpp>")
-expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#include <IpTNLP.hpp>")
-expect("includes <boost/...>, which" includes graph_search/a.hpp "#  include <boost/geometry.hpp>")
-expect("includes <nlohmann/...>, which" includes experiments/a.hpp "#include <nlohmann/json.hpp>")
+expect("" includes solvers/detail/a.hpp "#pragma once\n#include <CbcModel.hpp>")
+expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#pragma once\n#include <CbcModel.hpp>")
+expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#pragma once\n#include <IpTNLP.hpp>")
+expect("includes <boost/...>, which" includes graph_search/a.hpp "#pragma once\n#  include <boost/geometry.hpp>")
+expect("" includes experiments/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
+
+expect("" includes model/scene.cpp "#include \"model/scene.hpp\"\n#include <cmath>")
+expect("model/scene.cpp does not include model/scene.hpp first" includes model/scene.cpp
+       "#include <cmath>\n#include \"model/scene.hpp\"")
 
 set(home home) # put together here, so that this file itself passes
 set(later DO)
