@@ -257,7 +257,8 @@ TEST(SceneGeneration, ColoursShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem
     track.cones[track.left[2]].color = ConeColor::orange;
     track.cones[track.left[3]].color = ConeColor::yellow;  // the recording was wrong
     SceneOptions wanted = options({0.9}, {15.0});
-    for (const Cone& cone : generate(track, {{{7.0, 0.0}, 0.0}}, wanted)[0].scene.cones) {
+    const auto colorless = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
+    for (const Cone& cone : colorless[0].scene.cones) {
         EXPECT_EQ(cone.color, ConeColor::unknown);
     }
     wanted.with_color = true;
