@@ -1,5 +1,11 @@
 #include "experiments/comparison.hpp"
 
+#include "experiments/atomic_file.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/lane_file.hpp"
+#include "experiments/results.hpp"
+#include "experiments/scene_set.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -7,12 +13,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "experiments/atomic_file.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/lane_file.hpp"
-#include "experiments/results.hpp"
-#include "experiments/scene_set.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -24,17 +24,19 @@ std::string describe(const ComparisonOptions& options) {
         parameters[std::string(field.key)] = options.run.method.rld_parameters.*field.value;
     }
     parameters["pairing"] = to_string(options.run.method.rld_parameters.pairing);
-    nlohmann::ordered_json run{{"tracks", options.tracks},
-                               {"every", options.scenes.every_m},
-                               {"noise", options.scenes.noise_sigma_m},
-                               {"pose_noise", {options.scenes.pose_noise_lateral_m, options.scenes.pose_noise_yaw_rad}},
-                               {"miss", options.scenes.miss_rate},
-                               {"color", options.scenes.with_color},
-                               {"seed", options.scenes.seed},
-                               {"threads", options.run.threads},
-                               {"rld_parameters", parameters}};
+    nlohmann::ordered_json run{
+        {"tracks", options.tracks},
+        {"every", options.scenes.every_m},
+        {"noise", options.scenes.noise_sigma_m},
+        {"pose_noise", {options.scenes.pose_noise_lateral_m, options.scenes.pose_noise_yaw_rad}},
+        {"miss", options.scenes.miss_rate},
+        {"color", options.scenes.with_color},
+        {"seed", options.scenes.seed},
+        {"threads", options.run.threads},
+        {"rld_parameters", parameters}};
     if (options.run.method.nearest) run["nearest"] = *options.run.method.nearest;
-    if (std::isfinite(options.run.limits.time_limit_ms)) run["time_limit_ms"] = options.run.limits.time_limit_ms;
+    if (std::isfinite(options.run.limits.time_limit_ms))
+        run["time_limit_ms"] = options.run.limits.time_limit_ms;
     return run.dump();
 }
 
@@ -59,9 +61,11 @@ std::vector<ScoreRow> compare(const ComparisonOptions& options) {
     std::vector<KeyedScore> scores;
     for (const MethodEntry* method : chosen) {
         const std::vector<LaneRecord> records = run(*method, set.scenes, options.run);
-        const std::filesystem::path lanes_file = options.directory / fmt::format("{}.lanes.jsonl", method->name);
+        const std::filesystem::path lanes_file =
+            options.directory / fmt::format("{}.lanes.jsonl", method->name);
         write_lanes(lanes_file, records);
-        std::ranges::move(score_records(set.scenes, set.tracks, records, lanes_file), std::back_inserter(scores));
+        std::ranges::move(score_records(set.scenes, set.tracks, records, lanes_file),
+                          std::back_inserter(scores));
     }
     std::vector<ScoreRow> rows = summarise_by_key(scores);
     write_results(options.directory / "results.jsonl", rows, describe(options));

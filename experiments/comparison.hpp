@@ -1,13 +1,13 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "experiments/methods.hpp"
 #include "experiments/runner.hpp"
 #include "experiments/scene_generation.hpp"
 #include "experiments/score_table.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace conelane::experiments {
 
@@ -19,11 +19,11 @@ struct ComparisonOptions {
     std::filesystem::path directory;
 };
 
-/// The main job. Every method on the same scenes, scored in the same way, everything on file in the directory:
-///   scenes.scenes.jsonl, scenes.tracks.json  what the methods saw, and the boundaries they are scored against
-///   METHOD.lanes.jsonl                       what they answered
-///   results.jsonl                            a line per method, rate and range, with provenance
-///   table.txt                                the same for reading
+/// The main job. Every method on the same scenes, scored in the same way, everything on file in the
+/// directory:
+///   scenes.scenes.jsonl, scenes.tracks.json  what the methods saw, and the boundaries they are scored
+///   against METHOD.lanes.jsonl                       what they answered results.jsonl a line per method,
+///   rate and range, with provenance table.txt                                the same for reading
 /// Returns the rows of the table. Throws InputError or InvalidInput.
 [[nodiscard]] std::vector<ScoreRow> compare(const ComparisonOptions& options);
 

@@ -1,13 +1,13 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
+#include "experiments/commands/commands.hpp"
+#include "experiments/provenance.hpp"
+
 #include <exception>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-
-#include "experiments/commands/commands.hpp"
-#include "experiments/provenance.hpp"
 
 namespace {
 
@@ -26,7 +26,8 @@ int run(int argument_count, char** arguments) {
     namespace experiments = conelane::experiments;
     CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
                      "conelane");
-    program.set_version_flag("--version", "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
+    program.set_version_flag("--version",
+                             "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
     program.require_subcommand(1);
     experiments::add_compare_command(program);
     experiments::add_scenes_command(program);
@@ -54,4 +55,6 @@ int run(int argument_count, char** arguments) {
 
 }  // namespace
 
-int main(int argument_count, char** arguments) { return run(argument_count, arguments); }
+int main(int argument_count, char** arguments) {
+    return run(argument_count, arguments);
+}

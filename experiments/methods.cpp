@@ -1,13 +1,13 @@
 #include "experiments/methods.hpp"
 
-#include <algorithm>
-#include <array>
-#include <string>
-
 #include "graph_search/clc_detector.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/rld_detector.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
 
 namespace conelane::experiments {
 namespace {
@@ -36,7 +36,8 @@ class NearestCones : public LaneDetector {
     std::size_t nearest_;
 };
 
-std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector, std::optional<std::size_t> nearest) {
+std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
+                                     std::optional<std::size_t> nearest) {
     if (!nearest) return detector;
     return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
@@ -50,12 +51,15 @@ constexpr std::array<MethodEntry, 2> kMethods{{
 
 }  // namespace
 
-std::span<const MethodEntry> methods() { return kMethods; }
+std::span<const MethodEntry> methods() {
+    return kMethods;
+}
 
 const MethodEntry& find_method(std::string_view name) {
     const auto entry = std::ranges::find(kMethods, name, &MethodEntry::name);
     if (entry == kMethods.end()) {
-        throw InvalidInput("method", "there is no method '" + std::string(name) + "', see `conelane methods`");
+        throw InvalidInput("method",
+                           "there is no method '" + std::string(name) + "', see `conelane methods`");
     }
     return *entry;
 }

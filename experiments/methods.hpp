@@ -1,13 +1,13 @@
 #pragma once
 
+#include "model/lane.hpp"
+#include "model/rld_parameters.hpp"
+
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
-
-#include "model/lane.hpp"
-#include "model/rld_parameters.hpp"
 
 namespace conelane::experiments {
 
@@ -20,7 +20,8 @@ struct MethodOptions {
 struct MethodEntry {
     std::string_view name;
     std::string_view meaning;
-    std::optional<std::size_t> nearest;  ///< cone-set size of its own: the nearest ahead; all cones where absent
+    std::optional<std::size_t>
+        nearest;  ///< cone-set size of its own: the nearest ahead; all cones where absent
     std::unique_ptr<LaneDetector> (*make)(const MethodOptions& options);
 };
 
@@ -31,6 +32,7 @@ struct MethodEntry {
 [[nodiscard]] const MethodEntry& find_method(std::string_view name);
 
 /// The cone-set size that the method gets under these options.
-[[nodiscard]] std::optional<std::size_t> cone_set_size(const MethodEntry& method, const MethodOptions& options);
+[[nodiscard]] std::optional<std::size_t> cone_set_size(const MethodEntry& method,
+                                                       const MethodOptions& options);
 
 }  // namespace conelane::experiments

@@ -16,7 +16,10 @@ constexpr std::chrono::milliseconds kRedraw{200};
 }  // namespace
 
 Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)), total_(total), shown_(total > 0 && isatty(STDERR_FILENO) == 1), start_(Clock::now()),
+    : what_(std::move(what)),
+      total_(total),
+      shown_(total > 0 && isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()),
       next_draw_(start_ + kRedraw) {}
 
 Progress::~Progress() {

@@ -38,8 +38,8 @@ Provenance provenance() {
     const char* const compiler = "GCC " __VERSION__;
 #endif
     return {kBuiltCommit, fmt::format("{}, {}", compiler, assertions),
-            fmt::format("{}, {} processors, {} {} {}", processor(), std::thread::hardware_concurrency(), system.sysname,
-                        system.release, system.machine)};
+            fmt::format("{}, {} processors, {} {} {}", processor(), std::thread::hardware_concurrency(),
+                        system.sysname, system.release, system.machine)};
 }
 
 }  // namespace conelane::experiments

@@ -1,17 +1,17 @@
 #include "experiments/results.hpp"
 
+#include "experiments/atomic_file.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/score.hpp"
+#include "model/invalid_input.hpp"
+
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
 #include <nlohmann/json.hpp>
-
-#include "experiments/atomic_file.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/score.hpp"
-#include "model/invalid_input.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -23,8 +23,10 @@ std::string row_name(const LaneRecord& record) {
 
 }  // namespace
 
-std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
-                                      std::span<const LaneRecord> records, const std::filesystem::path& lanes_file) {
+std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes,
+                                      const TrackBoundariesByName& tracks,
+                                      std::span<const LaneRecord> records,
+                                      const std::filesystem::path& lanes_file) {
     std::unordered_map<std::string, const AnnotatedScene*> scene_of;
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene);
     std::vector<KeyedScore> scores;
@@ -50,14 +52,15 @@ std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes, co
     for (const auto& [name, count] : answered) {
         if (count != scenes.size()) {
             throw InputError(lanes_file, 0, "scene",
-                             name + " answers " + std::to_string(count) + " of " + std::to_string(scenes.size()) +
-                                 " scenes");
+                             name + " answers " + std::to_string(count) + " of " +
+                                 std::to_string(scenes.size()) + " scenes");
         }
     }
     return scores;
 }
 
-void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows, const std::string& run) {
+void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   const std::string& run) {
     const Provenance origin = provenance();
     AtomicFile output(file);
     for (const ScoreRow& row : rows) {

@@ -1,5 +1,7 @@
 #include "experiments/runner.hpp"
 
+#include "experiments/progress.hpp"
+
 #include <chrono>
 #include <cstddef>
 #include <exception>
@@ -10,8 +12,6 @@
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
-
-#include "experiments/progress.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -60,8 +60,10 @@ std::vector<LaneRecord> run(const MethodEntry& method, std::span<const Annotated
         for (std::size_t i = starts[lap]; i < starts[lap + 1]; ++i) {
             const auto start = std::chrono::steady_clock::now();
             LaneAnswer answer = detect(*detector, scenes[i].scene, options.limits);
-            const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - start;
-            records[i] = {scenes[i].scene.id, std::string(method.name), std::move(answer), latency.count(), nearest};
+            const std::chrono::duration<double, std::milli> latency =
+                std::chrono::steady_clock::now() - start;
+            records[i] = {scenes[i].scene.id, std::string(method.name), std::move(answer), latency.count(),
+                          nearest};
             progress.advance();
         }
     };

@@ -1,12 +1,12 @@
 #include "experiments/scene_set.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "experiments/centre_line.hpp"
 #include "experiments/input_error.hpp"
 #include "experiments/scene_file.hpp"
 #include "experiments/track_spec.hpp"
+
+#include <algorithm>
+#include <iterator>
 
 namespace conelane::experiments {
 

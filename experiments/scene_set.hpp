@@ -1,11 +1,11 @@
 #pragma once
 
+#include "experiments/annotated_scene.hpp"
+#include "experiments/scene_generation.hpp"
+
 #include <filesystem>
 #include <string>
 #include <vector>
-
-#include "experiments/annotated_scene.hpp"
-#include "experiments/scene_generation.hpp"
 
 namespace conelane::experiments {
 
@@ -15,9 +15,10 @@ struct SceneSet {
     TrackBoundariesByName tracks;
 };
 
-/// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and range.
-/// Throws InputError where a track is named twice or no scene has a ground truth.
-[[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options);
+/// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and
+/// range. Throws InputError where a track is named twice or no scene has a ground truth.
+[[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
+                                      const SceneOptions& options);
 
 /// Writes the scenes file and its companion beside it.
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set);

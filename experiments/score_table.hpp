@@ -34,8 +34,8 @@ struct ScoreRow {
 /// range, absent ones first.
 [[nodiscard]] std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores);
 
-/// A table for a terminal, a line per row and a final newline. Shares in per cent, latencies in ms, "-" where a
-/// a measure is unknown. Below the rows stand the published figures of both papers, those of CLC for the
+/// A table for a terminal, a line per row and a final newline. Shares in per cent, latencies in ms, "-" where
+/// a a measure is unknown. Below the rows stand the published figures of both papers, those of CLC for the
 /// false-positive rates that the rows have (all where they have none of them).
 [[nodiscard]] std::string score_table(std::span<const ScoreRow> rows);
 

@@ -28,7 +28,7 @@ struct RldParameters {
     double d_h = 6.0;                   ///< radius of the heading constraint (9) [m]
     double theta_heading = 1.2;         ///< largest angle of the heading constraint (9) [rad]
     double d_near = 6.0;                ///< radius that splits near from far endpoints (11) [m]
-    double d_max = 6.5;                ///< largest distance between the far endpoints (17) [m]
+    double d_max = 6.5;                 ///< largest distance between the far endpoints (17) [m]
     double s_crit = 2.5;                ///< largest spacing cost of an edge (27)
     double t_crit = 4.0;                ///< largest angle cost of two adjacent edges (28)
     Pairing pairing = Pairing::near_far;

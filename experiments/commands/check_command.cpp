@@ -1,3 +1,10 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/input_error.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/solution_file.hpp"
+#include "model/check.hpp"
+
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -5,13 +12,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/solution_file.hpp"
-#include "model/check.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -37,7 +37,8 @@ std::vector<std::string> check_record(const SolutionRecord& record, const Scene&
     }
     std::ranges::sort(graph.edges);
     if (!record.objective) return {"there is no objective"};
-    return check(scene, parameters, graph, {record.status == "optimal", *record.objective, record.bound}).violations;
+    return check(scene, parameters, graph, {record.status == "optimal", *record.objective, record.bound})
+        .violations;
 }
 
 void check_all(const Options& options) {
@@ -50,7 +51,8 @@ void check_all(const Options& options) {
     for (std::size_t i = 0; i < records.size(); ++i) {
         const auto scene = scene_of.find(records[i].scene);
         if (scene == scene_of.end()) {
-            throw InputError(options.solutions, i + 1, "scene", "'" + records[i].scene + "' is not in the scenes file");
+            throw InputError(options.solutions, i + 1, "scene",
+                             "'" + records[i].scene + "' is not in the scenes file");
         }
         const std::vector<std::string> violations = check_record(records[i], *scene->second, parameters);
         for (const std::string& violation : violations) fmt::print("{}: {}\n", records[i].scene, violation);
@@ -63,8 +65,8 @@ void check_all(const Options& options) {
 }  // namespace
 
 void add_check_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("check", "recomputes solutions independently of all solvers; exit code 1 on a failure");
+    CLI::App& command = *program.add_subcommand(
+        "check", "recomputes solutions independently of all solvers; exit code 1 on a failure");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();

@@ -1,13 +1,13 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/comparison.hpp"
+#include "experiments/generated_tracks.hpp"
+
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/comparison.hpp"
-#include "experiments/generated_tracks.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -28,7 +28,8 @@ struct Options {
 void compare_all(Options& options, const CLI::App& command) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
-        for (const std::string& name : generated_track_names()) comparison.tracks.push_back("generated:" + name);
+        for (const std::string& name : generated_track_names())
+            comparison.tracks.push_back("generated:" + name);
     }
     if (options.full) {
         if (command.count("--every") == 0) comparison.scenes.every_m = 1.1;
@@ -46,9 +47,12 @@ void add_compare_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("compare", "methods on the same scenes, scored and tabled");
     auto options = std::make_shared<Options>();
     ComparisonOptions& comparison = options->comparison;
-    command.add_option("--tracks", comparison.tracks,
-                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
-    command.add_option("--methods", comparison.methods, "see `conelane methods`")->delimiter(',')->capture_default_str();
+    command.add_option(
+        "--tracks", comparison.tracks,
+        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
+    command.add_option("--methods", comparison.methods, "see `conelane methods`")
+        ->delimiter(',')
+        ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     command.add_flag("--full", options->full, "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m");
     add_nearest_option(command, comparison.run.method.nearest, "the same cone-set size for every method");

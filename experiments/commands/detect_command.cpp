@@ -1,15 +1,15 @@
-#include <memory>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/runner.hpp"
 #include "experiments/scene_file.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {

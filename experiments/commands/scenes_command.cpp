@@ -1,13 +1,13 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/scene_set.hpp"
+
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/scene_set.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -25,8 +25,8 @@ struct Options {
 void make_scenes(const Options& options) {
     const SceneSet set = make_scene_set(options.tracks, options.scenes);
     write_scene_set(options.out, set);
-    fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(), options.out,
-               track_boundaries_path(options.out).string());
+    fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(),
+               options.out, track_boundaries_path(options.out).string());
 }
 
 }  // namespace
@@ -34,12 +34,14 @@ void make_scenes(const Options& options) {
 void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
     auto options = std::make_shared<Options>();
-    command.add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+    command
+        .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep the N nearest cones ahead only");
     add_threads_option(command, options->scenes.threads, "same scenes with any number");
-    command.add_option("--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")->required();
+    command.add_option("--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
+        ->required();
     command.callback([options] { make_scenes(*options); });
 }
 

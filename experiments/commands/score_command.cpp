@@ -1,3 +1,9 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/lane_file.hpp"
+#include "experiments/results.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/score_table.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -7,12 +13,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "experiments/commands/commands.hpp"
-#include "experiments/lane_file.hpp"
-#include "experiments/results.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/score_table.hpp"
 
 namespace conelane::experiments {
 namespace {
@@ -47,7 +47,8 @@ void score_all(const Options& options) {
 }  // namespace
 
 void add_score_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("score", "every measure of both papers, a table of all methods");
+    CLI::App& command =
+        *program.add_subcommand("score", "every measure of both papers, a table of all methods");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more")->required();

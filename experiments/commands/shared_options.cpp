@@ -1,6 +1,5 @@
 #include "experiments/commands/shared_options.hpp"
 
-
 #include "experiments/parameter_file.hpp"
 
 namespace conelane::experiments {
@@ -47,16 +46,21 @@ void add_parameter_options(CLI::App& command, ParameterSource& source) {
 }
 
 void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning) {
-    command.add_option_function<std::size_t>("--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
+    command
+        .add_option_function<std::size_t>(
+            "--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
         ->check(CLI::Range(1, 100000));
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
-    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]")->check(CLI::PositiveNumber);
+    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]")
+        ->check(CLI::PositiveNumber);
 }
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
-    command.add_option("--threads", threads, meaning)->check(CLI::Range(1U, kMostThreads))->capture_default_str();
+    command.add_option("--threads", threads, meaning)
+        ->check(CLI::Range(1U, kMostThreads))
+        ->capture_default_str();
 }
 
 }  // namespace conelane::experiments

@@ -1,15 +1,15 @@
 #pragma once
 
+#include "experiments/annotated_scene.hpp"
+#include "experiments/scene_generation.hpp"
+#include "model/rld_parameters.hpp"
+
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-
-#include "experiments/annotated_scene.hpp"
-#include "experiments/scene_generation.hpp"
-#include "model/rld_parameters.hpp"
 
 /// Options that several commands have, declared once.
 namespace conelane::experiments {

@@ -1,12 +1,3 @@
-#include <exception>
-#include <memory>
-#include <new>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/progress.hpp"
@@ -16,6 +7,15 @@
 #include "model/lane_graph_problem.hpp"
 #include "solvers/deadline.hpp"
 #include "solvers/registry.hpp"
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
@@ -30,7 +30,8 @@ struct Options {
     SolveLimits limits;
 };
 
-RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters, const SolveLimits& limits) {
+RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                const SolveLimits& limits) {
     try {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch problem_watch;
@@ -61,10 +62,19 @@ void solve_all(const Options& options) {
     records.reserve(scenes.size());
     Progress progress(options.solver, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
-        const Scene scene = options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+        const Scene scene =
+            options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
         const RldReport report = solve(*solver, scene, parameters, options.limits);
-        SolutionRecord record{scene.id, options.solver, options.formulation, std::string(to_string(report.status)),
-                              report.message, {}, report.objective, report.bound, report.nodes, report.build_ms,
+        SolutionRecord record{scene.id,
+                              options.solver,
+                              options.formulation,
+                              std::string(to_string(report.status)),
+                              report.message,
+                              {},
+                              report.objective,
+                              report.bound,
+                              report.nodes,
+                              report.build_ms,
                               report.solve_ms};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
@@ -82,14 +92,15 @@ void solve_all(const Options& options) {
 void add_solvers_command(CLI::App& program) {
     program.add_subcommand("solvers", "the RLD solvers of this build")->callback([] {
         for (const RldSolverEntry& solver : rld_solvers()) {
-            fmt::print("{:<16} {:<28} {}\n", solver.name, solver.uses_formulation ? "formulations: tight, paper" : "",
-                       solver.meaning);
+            fmt::print("{:<16} {:<28} {}\n", solver.name,
+                       solver.uses_formulation ? "formulations: tight, paper" : "", solver.meaning);
         }
     });
 }
 
 void add_solve_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
+    CLI::App& command =
+        *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
     auto options = std::make_shared<Options>();
     command.add_option("--solver", options->solver, "see `conelane solvers`")->capture_default_str();
     command.add_option("--formulation", options->formulation)
