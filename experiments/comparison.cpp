@@ -1,10 +1,10 @@
 #include "experiments/comparison.hpp"
 
-#include "experiments/atomic_file.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/lane_file.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/files/lane_file.hpp"
 #include "experiments/results.hpp"
-#include "experiments/scene_set.hpp"
+#include "experiments/scenes/scene_set.hpp"
 
 #include <algorithm>
 #include <cmath>

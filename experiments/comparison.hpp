@@ -2,8 +2,8 @@
 
 #include "experiments/methods.hpp"
 #include "experiments/runner.hpp"
-#include "experiments/scene_generation.hpp"
-#include "experiments/score_table.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/scoring/score_table.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,9 +1,9 @@
 #include "experiments/results.hpp"
 
-#include "experiments/atomic_file.hpp"
-#include "experiments/input_error.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
-#include "experiments/score.hpp"
+#include "experiments/scoring/score.hpp"
 #include "model/invalid_input.hpp"
 
 #include <set>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "experiments/annotated_scene.hpp"
-#include "experiments/lane_file.hpp"
-#include "experiments/score_table.hpp"
+#include "experiments/files/lane_file.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/score_table.hpp"
 
 #include <filesystem>
 #include <span>

@@ -1,4 +1,4 @@
-#include "experiments/score.hpp"
+#include "experiments/scoring/score.hpp"
 #include "tests/straight_scene.hpp"
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "experiments/atomic_file.hpp"
+#include "experiments/files/atomic_file.hpp"
 
 #include "tests/file_test.hpp"
 

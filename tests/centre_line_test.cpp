@@ -1,7 +1,7 @@
-#include "experiments/centre_line.hpp"
+#include "experiments/tracks/centre_line.hpp"
 
-#include "experiments/boundary_matching.hpp"
-#include "experiments/generated_tracks.hpp"
+#include "experiments/tracks/boundary_matching.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
 #include "model/invalid_input.hpp"
 #include "tests/recorded_tracks.hpp"
 

@@ -1,4 +1,4 @@
-#include "experiments/divergence.hpp"
+#include "experiments/scoring/divergence.hpp"
 
 #include "model/invalid_input.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/input_error.hpp"
+#include "experiments/files/input_error.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,7 +1,7 @@
-#include "experiments/generated_tracks.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
 
-#include "experiments/rounded_path.hpp"
-#include "experiments/track_layouts.hpp"
+#include "experiments/tracks/rounded_path.hpp"
+#include "experiments/tracks/track_layouts.hpp"
 #include "model/invalid_input.hpp"
 #include "tests/boundary_checks.hpp"
 

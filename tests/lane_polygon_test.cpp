@@ -1,4 +1,4 @@
-#include "experiments/lane_polygon.hpp"
+#include "experiments/scoring/lane_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "experiments/lane_file.hpp"
-#include "experiments/parameter_file.hpp"
-#include "experiments/solution_file.hpp"
+#include "experiments/files/lane_file.hpp"
+#include "experiments/files/parameter_file.hpp"
+#include "experiments/files/solution_file.hpp"
 #include "model/invalid_input.hpp"
 #include "tests/file_test.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/track_spec.hpp"
+#include "experiments/tracks/track_spec.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,6 +1,6 @@
-#include "experiments/score_table.hpp"
+#include "experiments/scoring/score_table.hpp"
 
-#include "experiments/published_figures.hpp"
+#include "experiments/scoring/published_figures.hpp"
 
 #include <sstream>
 #include <string>

@@ -1,6 +1,6 @@
-#include "experiments/score.hpp"
+#include "experiments/scoring/score.hpp"
 
-#include "experiments/annotated_scene.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
 #include "model/invalid_input.hpp"
 #include "tests/straight_scene.hpp"
 

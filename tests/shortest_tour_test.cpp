@@ -1,4 +1,4 @@
-#include "experiments/shortest_tour.hpp"
+#include "experiments/tracks/shortest_tour.hpp"
 
 #include "tests/boundary_checks.hpp"
 

@@ -2,9 +2,9 @@
 
 #include "model/check.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "random_scenes.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/random_scenes.hpp"
 
 #include <memory>
 #include <ostream>
@@ -127,6 +127,7 @@ TEST_P(SolverContract, PairingDecidesOnANearNearPath) {
     const Scene scene = scene_of(
         {{-1.4, 1.6}, {1.8, 1.6}, {5.0, 1.6}, {9.0, -1.6}, {12.2, -1.6}, {15.4, -1.6}, {18.6, -1.6}});
     RldParameters parameters;
+    parameters.d_max = 16.0;
     EXPECT_EQ(solve(scene, parameters).status, SolveStatus::infeasible);
     parameters.pairing = Pairing::paper;
     const RldReport printed = solve(scene, parameters);

@@ -1,4 +1,4 @@
-#include "experiments/statistics.hpp"
+#include "experiments/scoring/statistics.hpp"
 
 #include "model/invalid_input.hpp"
 

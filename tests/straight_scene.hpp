@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/annotated_scene.hpp"
-#include "experiments/score.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/score.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,9 +1,9 @@
-#include "experiments/track_readers.hpp"
+#include "experiments/tracks/track_readers.hpp"
 
-#include "experiments/centre_line.hpp"
-#include "experiments/generated_tracks.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/track_spec.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/tracks/centre_line.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
+#include "experiments/tracks/track_spec.hpp"
 #include "tests/boundary_checks.hpp"
 #include "tests/recorded_tracks.hpp"
 

@@ -1,8 +1,8 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
-#include "experiments/input_error.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/solution_file.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/files/scene_file.hpp"
+#include "experiments/files/solution_file.hpp"
 #include "model/check.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison.hpp"
-#include "experiments/generated_tracks.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
 
 #include <memory>
 #include <string>

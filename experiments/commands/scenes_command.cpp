@@ -1,7 +1,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/scene_set.hpp"
+#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_set.hpp"
 
 #include <memory>
 #include <string>

@@ -1,8 +1,8 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/lane_file.hpp"
+#include "experiments/files/lane_file.hpp"
+#include "experiments/files/scene_file.hpp"
 #include "experiments/results.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/score_table.hpp"
+#include "experiments/scoring/score_table.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #include "experiments/commands/shared_options.hpp"
 
-#include "experiments/parameter_file.hpp"
+#include "experiments/files/parameter_file.hpp"
 
 namespace conelane::experiments {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/annotated_scene.hpp"
-#include "experiments/scene_generation.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scenes/scene_generation.hpp"
 #include "model/rld_parameters.hpp"
 
 #include <memory>

@@ -1,0 +1,94 @@
+#include "experiments/files/atomic_file.hpp"
+
+#include "experiments/files/input_error.hpp"
+
+#include <array>
+#include <cerrno>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Open descriptors of the process, whatever they lead to: renaming over what a shell redirected them to
+/// would take it from under the other writers.
+bool is_open_descriptor(const fs::path& target) {
+    const std::string path = target.lexically_normal().string();
+    constexpr std::array<std::string_view, 2> kNames{"/dev/stdout", "/dev/stderr"};
+    constexpr std::array<std::string_view, 2> kFolders{"/dev/fd/", "/proc/self/fd/"};
+    for (const std::string_view name : kNames) {
+        if (path == name) return true;
+    }
+    for (const std::string_view folder : kFolders) {
+        if (path.starts_with(folder)) return true;
+    }
+    return false;
+}
+
+[[noreturn]] void fail(const fs::path& target, int error) {
+    throw InputError(target, 0, "", "cannot be written: " + std::generic_category().message(error));
+}
+
+/// Creates an empty file beside `place` under a name that no other file has.
+fs::path create_temporary(const fs::path& place, const fs::path& target) {
+    for (int attempt = 0;; ++attempt) {
+        fs::path name = place;
+        name += ".tmp" + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+        const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            ::close(descriptor);
+            return name;
+        }
+        if (errno != EEXIST) fail(target, errno);
+    }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target) {
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (fs::is_directory(status)) throw InputError(target, 0, "", "is a folder, not a file");
+    if (is_open_descriptor(target) || (fs::exists(status) && !fs::is_regular_file(status))) {
+        errno = 0;
+        stream_.open(target, std::ios::binary | std::ios::app);
+        if (!stream_) fail(target, errno);
+        return;
+    }
+    if (target.filename().empty()) fail(target, EISDIR);
+    if (fs::exists(status)) place_ = fs::canonical(target);
+    temporary_ = create_temporary(place_, target);
+    if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
+    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+    if (!stream_) {
+        const int reason = errno;
+        fs::remove(temporary_, error);
+        fail(target, reason);
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (temporary_.empty()) return;
+    stream_.close();
+    std::error_code ignored;
+    fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+    stream_.close();
+    // The stream does not keep the reason of a write that failed before.
+    if (!stream_) throw InputError(target_, 0, "", "cannot be written to its end");
+    if (temporary_.empty()) return;
+    std::error_code error;
+    fs::rename(temporary_, place_, error);
+    if (error) fail(target_, error.value());
+    temporary_.clear();
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tracks/track.hpp"
+#include "model/scene.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// Which scenes a track gives. Lists hold distinct values.
+struct SceneOptions {
+    std::vector<double> false_positive_rates;  ///< false positives / all points of the scene, in [0, 0.99]
+    std::vector<double> ranges_m;              ///< radius of the visible half disc, in [0.1, 1000]
+    double every_m = 1.1;                      ///< travel between poses, in [0.01, 1000]
+    std::optional<std::size_t> nearest;        ///< keep this many cones ahead, at least one; all where absent
+    double noise_sigma_m = 0.0;                ///< Gaussian, on each coordinate of a seen map point
+    double pose_noise_lateral_m = 0.0;         ///< Gaussian, across the heading
+    double pose_noise_yaw_rad = 0.0;           ///< Gaussian
+    double miss_rate = 0.0;                    ///< share of visible map points not seen, in [0, 1)
+    bool with_color = false;                   ///< else every cone is of unknown colour
+    std::uint64_t seed = 0;                    ///< base seed
+    unsigned threads = 1;                      ///< at most; more than there are processors are not used
+};
+
+/// Throws InvalidInput naming the option where a value is out of its range.
+void validate(const SceneOptions& options);
+
+/// The scenes that a car sees along a track, with their ground truth; those without one (a run shorter than
+/// two cones) are left out. Order: range, rate, pose, so that the scenes of a lap follow one another.
+///
+/// The pose with index i in `poses` gives the scene "TRACK/pose_i/fp_RATE/range_RANGE", with a part more for
+/// each disturbance and for `nearest`. Its content depends on nothing but the track, that pose, its index,
+/// and the options that it shows: neither on other rates, ranges and poses nor on the number of threads. A
+/// cone of the track keeps its id in all scenes of one base seed; ids and order tell nothing of what a cone
+/// is. Throws InvalidInput on options out of range, and on a track or pose that is not finite or beyond 1e8
+/// m.
+[[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
+                                                          const SceneOptions& options);
+
+/// The same along the track's centre line, a pose every `every_m` of travel (see centre_line_poses, whose
+/// InvalidInput it passes on).
+[[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// The scenes of several tracks, and the boundaries that divergence is measured against.
+struct SceneSet {
+    std::vector<AnnotatedScene> scenes;
+    TrackBoundariesByName tracks;
+};
+
+/// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and
+/// range. Throws InputError where a track is named twice or no scene has a ground truth.
+[[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
+                                      const SceneOptions& options);
+
+/// Writes the scenes file and its companion beside it.
+void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,228 @@
+#include "experiments/scoring/score_table.hpp"
+
+#include "experiments/scoring/published_figures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+struct Column {
+    enum Index : std::size_t {
+        method,
+        rate,
+        range,
+        scenes,
+        ground_truth,
+        near_ground_truth,
+        too_short,
+        diverging_from_20,
+        diverging_below_20,
+        none,
+        success,
+        iou,
+        accurate,
+        complete,
+        solved,
+        median,
+        mean,
+        p95,
+        p99,
+        max,
+        count
+    };
+};
+constexpr std::array<std::string_view, Column::count> kHeader{
+    "method",    "fp %",      "range m", "scenes",    "GT %",   "near GT %",  "too short %",
+    "div>=20 %", "div<20 %",  "none %",  "success %", "IoU %",  "accurate %", "complete %",
+    "solved %",  "median ms", "mean ms", "p95 ms",    "p99 ms", "max ms"};
+using Line = std::array<std::string, Column::count>;
+constexpr std::string_view kUnknown = "-";
+
+std::string number(std::optional<double> value, int digits) {
+    return value ? fmt::format("{:.{}f}", *value, digits) : std::string(kUnknown);
+}
+
+std::string percent(std::optional<double> share) {
+    return share ? number(100.0 * *share, 1) : std::string(kUnknown);
+}
+
+Line empty_line() {
+    Line line;
+    line.fill(std::string(kUnknown));
+    return line;
+}
+
+Line line_of(const ScoreRow& row) {
+    const ScoreSummary& summary = row.summary;
+    Line line = empty_line();
+    line[Column::method] = row.key.method;
+    line[Column::rate] = percent(row.key.false_positive_rate);
+    line[Column::range] = number(row.key.range_m, 0);
+    line[Column::scenes] = fmt::format("{}", summary.scenes);
+    line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
+    line[Column::none] = percent(summary.share(Category::none));
+    // Divergence that is unknown everywhere is not a share of zero, and what rests on it is unknown too.
+    if (summary.divergence_unknown < summary.scenes) {
+        line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));
+        line[Column::too_short] = percent(summary.share(Category::too_short));
+        line[Column::diverging_from_20] = percent(summary.share(Category::diverging_from_20));
+        line[Column::diverging_below_20] = percent(summary.share(Category::diverging_below_20));
+        line[Column::success] = percent(summary.success_share);
+    }
+    line[Column::iou] = percent(summary.mean_iou);
+    line[Column::accurate] = percent(summary.accurate_share);
+    line[Column::complete] = percent(summary.complete_share);
+    line[Column::solved] = percent(summary.solved_share);
+    line[Column::median] = number(summary.latency.median_ms, 2);
+    line[Column::mean] = number(summary.latency.mean_ms, 2);
+    line[Column::p95] = number(summary.latency.p95_ms, 2);
+    line[Column::p99] = number(summary.latency.p99_ms, 2);
+    line[Column::max] = number(summary.latency.max_ms, 2);
+    return line;
+}
+
+bool has_rate(std::span<const ScoreRow> rows, double rate) {
+    constexpr double kSameRate = 1e-6;
+    return std::ranges::any_of(rows, [&](const ScoreRow& row) {
+        return row.key.false_positive_rate && std::abs(*row.key.false_positive_rate - rate) < kSameRate;
+    });
+}
+
+std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
+    std::vector<Line> lines;
+    const bool any_rate = std::ranges::any_of(
+        kPublishedClc, [&](const PublishedClcRow& row) { return has_rate(rows, row.false_positive_rate); });
+    for (const PublishedClcRow& row : kPublishedClc) {
+        if (any_rate && !has_rate(rows, row.false_positive_rate)) continue;
+        Line line = empty_line();
+        line[Column::method] = "CLC paper";
+        line[Column::rate] = percent(row.false_positive_rate);
+        line[Column::range] = "30+50";
+        line[Column::ground_truth] = number(row.ground_truth, 1);
+        line[Column::near_ground_truth] = number(row.near_ground_truth, 1);
+        line[Column::too_short] = number(row.too_short, 1);
+        line[Column::diverging_from_20] = number(row.diverging_from_20, 1);
+        line[Column::diverging_below_20] = number(row.diverging_below_20, 1);
+        line[Column::success] = number(row.success, 1);
+        line[Column::iou] = number(row.mean_iou, 1);
+        line[Column::complete] = number(row.complete, 1);
+        line[Column::median] = "<" + number(kPublishedClcMedianBelow_ms, 0);
+        line[Column::max] = number(kPublishedClcMax_ms, 0);
+        lines.push_back(line);
+    }
+    for (const PublishedRldRow& row : kPublishedRld) {
+        Line line = empty_line();
+        line[Column::method] = fmt::format("RLD paper {}", row.printed_ratio);
+        line[Column::rate] = percent(row.false_positive_rate);
+        line[Column::accurate] =
+            (row.upper_bound ? ">" : "") + number(100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
+        lines.push_back(line);
+    }
+    Line timing = empty_line();
+    timing[Column::method] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
+    timing[Column::solved] = number(kPublishedRldSolved, 2);
+    timing[Column::mean] = number(kPublishedRldMean_ms, 2);
+    timing[Column::p95] = number(kPublishedRldP95_ms, 2);
+    lines.push_back(timing);
+    return lines;
+}
+
+}  // namespace
+
+std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
+    std::map<std::string, std::size_t> method_rank;
+    using Order = std::tuple<std::size_t, std::optional<double>, std::optional<double>>;
+    std::map<Order, std::vector<SceneScore>> groups;
+    std::map<Order, ScoreKey> keys;
+    for (const KeyedScore& keyed : scores) {
+        const std::size_t rank = method_rank.emplace(keyed.key.method, method_rank.size()).first->second;
+        const Order order{rank, keyed.key.false_positive_rate, keyed.key.range_m};
+        groups[order].push_back(keyed.score);
+        keys.emplace(order, keyed.key);
+    }
+    std::vector<ScoreRow> rows;
+    for (const auto& [order, group] : groups) rows.push_back({keys.at(order), summarise(group)});
+    return rows;
+}
+
+std::string score_table(std::span<const ScoreRow> rows) {
+    Line header;
+    std::ranges::transform(kHeader, header.begin(),
+                           [](std::string_view title) { return std::string(title); });
+    std::vector<Line> own;
+    for (const ScoreRow& row : rows) own.push_back(line_of(row));
+    const std::vector<Line> published = published_lines(rows);
+
+    std::array<std::size_t, kHeader.size()> widths{};
+    const auto widen = [&](const Line& line) {
+        for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+    };
+    widen(header);
+    std::ranges::for_each(own, widen);
+    std::ranges::for_each(published, widen);
+
+    std::string table;
+    const auto write = [&](const Line& line) {
+        table += fmt::format("{:<{}}", line[Column::method], widths[Column::method]);
+        for (std::size_t i = 1; i < line.size(); ++i) table += fmt::format("  {:>{}}", line[i], widths[i]);
+        table += '\n';
+    };
+    write(header);
+    std::ranges::for_each(own, write);
+    std::size_t unknown = 0;
+    for (const ScoreRow& row : rows) unknown += row.summary.divergence_unknown;
+    if (unknown > 0) {
+        table += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
+                             unknown);
+    }
+    table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
+    std::ranges::for_each(published, write);
+    return table;
+}
+
+std::string summary_json(const ScoreRow& row) {
+    const ScoreSummary& summary = row.summary;
+    nlohmann::ordered_json json;
+    const auto put_if_known = [&](const char* key, std::optional<double> value) {
+        if (value) json[key] = *value;
+    };
+    json["method"] = row.key.method;
+    put_if_known("false_positive_rate", row.key.false_positive_rate);
+    put_if_known("range", row.key.range_m);
+    json["scenes"] = summary.scenes;
+    json["divergence_unknown"] = summary.divergence_unknown;
+    for (std::size_t i = 0; i < kCategoryCount; ++i) {
+        json["share"][std::string(to_string(static_cast<Category>(i)))] = summary.category_share[i];
+    }
+    json["success_share"] = summary.success_share;
+    json["mean_iou"] = summary.mean_iou;
+    json["accuracy_scenes"] = summary.accuracy_scenes;
+    put_if_known("accurate_share", summary.accurate_share);
+    put_if_known("solved_share", summary.solved_share);
+    put_if_known("complete_share", summary.complete_share);
+    put_if_known("best_candidate_mean_iou", summary.best_candidate_mean_iou);
+    put_if_known("best_candidate_near_share", summary.best_candidate_near_share);
+    const LatencyStatistics& latency = summary.latency;
+    json["latency_ms"] = {{"median", latency.median_ms},
+                          {"mean", latency.mean_ms},
+                          {"standard_deviation", latency.standard_deviation_ms},
+                          {"p95", latency.p95_ms},
+                          {"p99", latency.p99_ms},
+                          {"max", latency.max_ms},
+                          {"shifted_geometric_mean", latency.shifted_geometric_mean_ms}};
+    json["within_budget_share"] = latency.share_within_budget;
+    // A method name from a file may hold bytes that are not UTF-8.
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace conelane::experiments

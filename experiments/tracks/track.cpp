@@ -1,0 +1,13 @@
+#include "experiments/tracks/track.hpp"
+
+namespace conelane::experiments {
+
+TrackBoundaries boundaries(const Track& track) {
+    TrackBoundaries result;
+    result.closed = track.closed;
+    for (const std::size_t index : track.left) result.left.push_back(track.cones[index].position);
+    for (const std::size_t index : track.right) result.right.push_back(track.cones[index].position);
+    return result;
+}
+
+}  // namespace conelane::experiments
