@@ -23,10 +23,10 @@ struct ClcOptions {
 
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
 /// cones a side that has the highest score of the ranking, or without one the longest (mean length of both
-/// boundaries). Of equal ones, the one met first.
-/// Each starting pair but the last may use half of the iterations that are left. LaneAnswer::enumeration is
-/// always there; `complete`: every starting pair tried was searched to its end.
-/// Throws InvalidInput where an option is out of its range.
+/// boundaries). Of equal ones, the one met first. Each starting pair but the last may use half of the
+/// iterations that are left. LaneAnswer::enumeration is always there; `complete`: every starting pair tried
+/// was searched to its end, as far as width_backtracking follows lanes. Throws InvalidInput where an option
+/// is out of its range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_clc_detector(const ClcOptions& options);
 
 }  // namespace conelane
