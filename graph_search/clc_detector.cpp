@@ -55,6 +55,7 @@ class ClcDetector final : public LaneDetector {
         rules_.bounds = options.bounds;
         rules_.d_max_m = options.d_max_m;
         rules_.width_backtracking = options.width_backtracking;
+        rules_.with_features = options.ranking != nullptr;
     }
 
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
@@ -82,7 +83,7 @@ class ClcDetector final : public LaneDetector {
         }
         if (!pairs_.found().empty()) {
             answer.status = LaneStatus::found;
-            answer.lane = to_lane(*std::ranges::max_element(pairs_.found(), {}, &PathPair::length_m), scene);
+            answer.lane = to_lane(best(), scene);
         } else {
             answer.status = budget.out_of_time ? LaneStatus::time_limit : LaneStatus::none;
         }
@@ -90,6 +91,14 @@ class ClcDetector final : public LaneDetector {
     }
 
   private:
+    /// Of the pairs found, of which there must be one.
+    const PathPair& best() {
+        if (!options_.ranking) return *std::ranges::max_element(pairs_.found(), {}, &PathPair::length_m);
+        scores_.resize(pairs_.found().size());
+        options_.ranking->score(pairs_.features(), scores_);
+        return pairs_.found()[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
+    }
+
     Lane to_lane(const PathPair& pair, const Scene& scene) const {
         const PathPairVertices vertices = pairs_.vertices(pair);
         Lane lane;
@@ -105,6 +114,7 @@ class ClcDetector final : public LaneDetector {
     PathPairEnumeration enumeration_;
     PathPairs pairs_;
     std::vector<Point> points_;
+    std::vector<double> scores_;
 };
 
 }  // namespace

@@ -211,4 +211,24 @@ double OnlineLaneWidth::segment_width_m(Side side, std::size_t segment) const {
     return std::sqrt(rows_[side].segment_squared[rows_[side].begins.back() + segment + 1]);
 }
 
+double OnlineLaneWidth::variance() const {
+    double sum = 0.0;
+    double sum_of_squares = 0.0;
+    double count = 0.0;
+    for (const Side side : {kLeft, kRight}) {
+        const Rows& rows = rows_[side];
+        const double* const vertex_squared = rows.vertex_squared.data() + rows.begins.back();
+        const double* const segment_squared = rows.segment_squared.data() + rows.begins.back();
+        const std::size_t size = boundaries_[side].size;
+        // The first entry of the segments stands for none and is 0.
+        for (std::size_t i = 0; i < size; ++i) {
+            sum += std::sqrt(vertex_squared[i]) + std::sqrt(segment_squared[i]);
+            sum_of_squares += vertex_squared[i] + segment_squared[i];
+        }
+        count += static_cast<double>(2 * size - 1);
+    }
+    const double mean = sum / count;
+    return std::max(0.0, sum_of_squares / count - mean * mean);
+}
+
 }  // namespace conelane

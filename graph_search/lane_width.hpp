@@ -76,6 +76,8 @@ class OnlineLaneWidth {
     [[nodiscard]] const State& state() const { return states_.back(); }
     [[nodiscard]] const BoundaryArrays& boundary(Side side) const { return boundaries_[side]; }
     [[nodiscard]] double vertex_width_m(Side side, std::size_t vertex) const;
+    /// Variance of all widths, those of vertices and those of segments [m^2].
+    [[nodiscard]] double variance() const;
     [[nodiscard]] double segment_width_m(Side side, std::size_t segment) const;
 
   private:

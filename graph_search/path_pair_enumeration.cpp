@@ -16,6 +16,7 @@ constexpr std::int64_t kIterationsPerClockReading = 32;
 void PathPairs::clear() {
     steps_.clear();
     found_.clear();
+    features_.clear();
 }
 
 std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex) {
@@ -100,7 +101,12 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         Call below = call;
         below.last[side] = next.vertex;
         below.direction[side] = segment;
-        below.length_m[side] += segment.norm();
+        const double segment_m = segment.norm();
+        below.length_m[side] += segment_m;
+        if (rules_.with_features) {
+            below.segment_lengths[side].add(segment_m);
+            if (!first_segment) below.turns[side].add(turning_angle(call.direction[side], segment));
+        }
         below.step = pairs.add_step(call.step, side, next.vertex);
         below.pushed = side;
         if (extended.feasible) record(below, budget.iterations, pairs);
@@ -129,6 +135,7 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
     if (left.size < 2 || right.size < 2) return;
     const double length_m = (call.length_m[kLeft] + call.length_m[kRight]) / 2.0;
     pairs.add_found({call.step, false, iteration, length_m});
+    if (rules_.with_features) pairs.add_features(features(call, length_m));
 
     const double left_gap_m = (left.vertex(left.size - 1) - left.vertex(0)).norm();
     const double right_gap_m = (right.vertex(right.size - 1) - right.vertex(0)).norm();
@@ -140,7 +147,22 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
     }
     if (can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules_.d_max_m, rules_.bounds)) {
         pairs.add_found({call.step, true, iteration, length_m + (left_gap_m + right_gap_m) / 2.0});
+        if (rules_.with_features) {
+            pairs.add_features(lane_features(closing_points_[kLeft], closing_points_[kRight], true));
+        }
     }
+}
+
+LaneFeatures PathPairEnumeration::features(const Call& call, double length_m) const {
+    const OnlineLaneWidth& width = constraints_.width();
+    return {length_m,
+            static_cast<double>(width.boundary(kLeft).size),
+            static_cast<double>(width.boundary(kRight).size),
+            width.variance(),
+            call.segment_lengths[kLeft].variance(),
+            call.segment_lengths[kRight].variance(),
+            call.turns[kLeft].variance(),
+            call.turns[kRight].variance()};
 }
 
 }  // namespace conelane

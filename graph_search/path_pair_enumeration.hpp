@@ -2,6 +2,7 @@
 
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/next_vertex.hpp"
+#include "graph_search/ranking.hpp"
 #include "graph_search/search_graph.hpp"
 
 #include <array>
@@ -26,6 +27,7 @@ struct EnumerationRules {
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
     /// Without it the search goes on where no extension can become feasible: slower, and finds the same.
     bool backtracking = true;
+    bool with_features = false;  ///< whether PathPairs::features is filled
 };
 
 /// What a search may spend, and what it has spent; several enumerations may draw on one.
@@ -56,12 +58,15 @@ class PathPairs {
   public:
     void clear();
     [[nodiscard]] const std::vector<PathPair>& found() const { return found_; }
+    /// One entry for each pair found, where they were asked for.
+    [[nodiscard]] const std::vector<LaneFeatures>& features() const { return features_; }
     [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step.
     std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
     void add_found(const PathPair& pair) { found_.push_back(pair); }
+    void add_features(const LaneFeatures& features) { features_.push_back(features); }
 
   private:
     struct Step {
@@ -71,6 +76,7 @@ class PathPairs {
     };
     std::vector<Step> steps_;
     std::vector<PathPair> found_;
+    std::vector<LaneFeatures> features_;
 };
 
 /// Algorithm 2 of the CLC paper: depth-first search over pairs of simple paths, both growing at once.
@@ -99,12 +105,15 @@ class PathPairEnumeration {
         std::array<Vertex, 2> last;
         std::array<Point, 2> direction;  ///< of the last segments
         std::array<double, 2> length_m;
+        std::array<Moments, 2> segment_lengths;  ///< only where features are asked for
+        std::array<Moments, 2> turns;            ///< only where features are asked for
         std::uint32_t step;
         Side pushed;  ///< the side that was extended to get here
     };
 
     [[nodiscard]] Side choose_side(const Call& call) const;
     void record(const Call& call, std::int64_t iteration, PathPairs& pairs);
+    [[nodiscard]] LaneFeatures features(const Call& call, double length_m) const;
 
     const SearchGraph* graph_ = nullptr;
     EnumerationRules rules_;

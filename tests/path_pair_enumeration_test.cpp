@@ -206,8 +206,20 @@ TEST(PathPairEnumeration, BacktrackingSavesIterationsAndLosesNothing) {
     EXPECT_GT(saved, 10000);
 }
 
-// Giving up what both boundaries have left behind finds nothing infeasible, and rarely misses something; that
-// it can is why Theorem 4 needs the other rule.
+// Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
+// back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
+TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
+    const std::vector<Point> points{{0.5, 1.9},    {0.3, -1.8},   {4.11, 3.9},   {7.02, 2.64},
+                                    {2.76, -3.25}, {6.63, -2.21}, {10.58, 0.18}, {9.72, 2.98}};
+    const PathPairVertices lane{{{0, 2, 3}, {1, 4, 5, 6, 7}}};
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::proven;
+    EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 1u);
+    rules.width_backtracking = WidthBacktracking::left_behind;
+    EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 0u);
+}
+
+// Giving up what both boundaries have left behind finds nothing infeasible and rarely misses something.
 TEST(PathPairEnumeration, GivingUpWhatIsLeftBehindMissesLittle) {
     EnumerationRules rules;
     rules.width_backtracking = WidthBacktracking::left_behind;

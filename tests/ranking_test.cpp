@@ -1,0 +1,168 @@
+#include "graph_search/ranking.hpp"
+
+#include "graph_search/clc_detector.hpp"
+#include "graph_search/path_pair_enumeration.hpp"
+#include "model/invalid_input.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+/// One unit that passes the given feature on, standardised; a negative weight turns the preference round.
+RankNetWeights only_feature(std::size_t feature, float weight = 1.0F) {
+    RankNetWeights weights;
+    weights.deviation.fill(1.0);
+    weights.hidden = Eigen::Matrix<float, Eigen::Dynamic, 8>::Zero(1, 8);
+    weights.hidden(0, static_cast<Eigen::Index>(feature)) = weight;
+    weights.hidden_bias = Eigen::VectorXf::Constant(1, 1000.0F);  // far from where the unit is cut off
+    weights.output = Eigen::VectorXf::Ones(1);
+    return weights;
+}
+
+TEST(LaneFeatures, OfALaneToFollowByHand) {
+    const std::vector<Point> left{{0, 4}, {3, 4}, {8, 4}};
+    const std::vector<Point> right{{0, 0}, {4, 0}, {4, -3}};
+    const LaneFeatures features = lane_features(left, right);
+    EXPECT_DOUBLE_EQ(features[0], 7.5);
+    EXPECT_EQ(features[1], 3);
+    EXPECT_EQ(features[2], 3);
+    // Widths: left vertices 4, 4, sqrt(32); left segments 4, 4; right vertices 4, 4, 7; right segments 4, 4.
+    const double mean = (8 * 4 + std::sqrt(32.0) + 7) / 10;
+    EXPECT_NEAR(features[3], (8 * 16 + 32 + 49) / 10.0 - mean * mean, 1e-12);
+    EXPECT_DOUBLE_EQ(features[4], 1.0);
+    EXPECT_DOUBLE_EQ(features[5], 0.25);
+    EXPECT_DOUBLE_EQ(features[6], 0.0);
+    EXPECT_DOUBLE_EQ(features[7], 0.0) << "a single angle does not vary";
+}
+
+TEST(LaneFeatures, TurnsToEitherSideDiffer) {
+    const std::vector<Point> zigzag{{0, 4}, {1, 5}, {2, 4}};
+    const std::vector<Point> arc{{0, 0}, {1, 0}, {2, 1}, {2, 2}};
+    const std::vector<Point> both_ways{{0, 0}, {1, 0}, {2, 1}, {3, 1}};
+    EXPECT_NEAR(lane_features(zigzag, arc)[7], 0.0, 1e-12);
+    EXPECT_NEAR(lane_features(zigzag, both_ways)[7], std::pow(std::atan(1.0), 2), 1e-12);
+}
+
+TEST(LaneFeatures, OfAClosedLaneIncludeTheClosing) {
+    const std::vector<Point> inner{{2, 2}, {-2, 2}, {-2, -2}, {2, -2}};
+    const std::vector<Point> outer{{5, 5}, {-5, 5}, {-5, -5}, {5, -5}};
+    const LaneFeatures features = lane_features(inner, outer, true);
+    EXPECT_DOUBLE_EQ(features[0], 28.0);
+    EXPECT_NEAR(features[4], 0.0, 1e-12);
+    EXPECT_NEAR(features[6], 0.0, 1e-12);
+}
+
+TEST(LaneFeatures, OfTheEnumerationEqualTheirDefinition) {
+    std::size_t compared = 0;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(seed);
+        boost::random::mt19937_64 random(seed);
+        boost::random::uniform_real_distribution<> ahead(1.0, 25.0);
+        boost::random::uniform_real_distribution<> across(-4.0, 4.0);
+        std::vector<Point> points{{0.5, 1.9}, {0.3, -1.8}};
+        while (points.size() < 25) {
+            const double x = ahead(random);
+            points.emplace_back(x, across(random));
+        }
+        SearchGraph graph;
+        graph.build(points, 5.5);
+        EnumerationRules rules;
+        rules.with_features = true;
+        SearchBudget budget;
+        PathPairs pairs;
+        PathPairEnumeration enumeration;
+        (void)enumeration.run(graph, {0, 1}, {1.0, 0.0}, rules, budget, pairs);
+        ASSERT_EQ(pairs.features().size(), pairs.found().size());
+        for (std::size_t i = 0; i < pairs.found().size(); ++i) {
+            const PathPairVertices vertices = pairs.vertices(pairs.found()[i]);
+            std::array<std::vector<Point>, 2> boundaries;
+            for (const Side side : {kLeft, kRight}) {
+                for (const Vertex vertex : vertices[side]) boundaries[side].push_back(points[vertex]);
+            }
+            const LaneFeatures expected =
+                lane_features(boundaries[kLeft], boundaries[kRight], pairs.found()[i].closed);
+            for (std::size_t k = 0; k < expected.size(); ++k) {
+                ASSERT_NEAR(pairs.features()[i][k], expected[k], 1e-9) << "feature " << k + 1;
+            }
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 1000u);
+}
+
+TEST(RankNet, IsTwoLayersWithARectifierBetween) {
+    RankNetWeights weights;
+    weights.mean.fill(1.0);
+    weights.deviation.fill(2.0);
+    weights.hidden = Eigen::Matrix<float, Eigen::Dynamic, 8>::Zero(2, 8);
+    weights.hidden(0, 0) = 1.0F;
+    weights.hidden(1, 1) = -1.0F;
+    weights.hidden_bias.resize(2);
+    weights.hidden_bias << 0.5F, 0.0F;
+    weights.output.resize(2);
+    weights.output << 3.0F, 10.0F;
+    weights.output_bias = -1.0F;
+    // More lanes than go through at once; only the first and the last differ from the mean.
+    LaneFeatures average;
+    average.fill(1.0);
+    std::vector<LaneFeatures> lanes(150, average);
+    lanes.front()[0] = 5.0;  // standardised 2: first unit 2.5, second 0
+    lanes.back()[1] = -3.0;  // standardised -2: first unit 0.5, second 2
+    lanes[70][1] = 9.0;      // standardised 4: the second unit is cut off at 0
+    std::vector<double> scores(lanes.size());
+    make_rank_net(weights)->score(lanes, scores);
+    EXPECT_DOUBLE_EQ(scores.front(), 3 * 2.5 - 1);
+    EXPECT_DOUBLE_EQ(scores.back(), 3 * 0.5 + 10 * 2 - 1);
+    EXPECT_DOUBLE_EQ(scores[70], 3 * 0.5 - 1);
+    EXPECT_DOUBLE_EQ(scores[71], 3 * 0.5 - 1);
+}
+
+TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
+    const auto key_of = [](auto change) -> std::string {
+        RankNetWeights weights = only_feature(0);
+        change(weights);
+        try {
+            (void)make_rank_net(weights);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_EQ(key_of([](RankNetWeights&) {}), "accepted");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.hidden.resize(0, 8); }), "hidden");
+    EXPECT_EQ(key_of([&](RankNetWeights& w) { w.hidden(0, 3) = nan; }), "hidden");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.hidden_bias.resize(2); }), "hidden_bias");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.output.resize(0); }), "output");
+    EXPECT_EQ(key_of([&](RankNetWeights& w) { w.output_bias = nan; }), "output_bias");
+    EXPECT_EQ(key_of([&](RankNetWeights& w) { w.mean[7] = nan; }), "mean");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.deviation[0] = 0.0; }), "deviation");
+}
+
+TEST(RankNet, DecidesWhichCandidateTheDetectorAnswers) {
+    Scene scene;
+    for (int i = 0; i < 5; ++i) {
+        scene.cones.push_back({2 * i, {1.0 + 4.0 * i, 1.8}});
+        scene.cones.push_back({2 * i + 1, {1.0 + 4.0 * i, -1.8}});
+    }
+    const auto cones_with = [&](std::size_t feature, float weight) {
+        ClcOptions options;
+        options.ranking = make_rank_net(only_feature(feature, weight));
+        const LaneAnswer answer = make_clc_detector(options)->detect(scene, {});
+        return std::pair(answer.lane.left.size(), answer.lane.right.size());
+    };
+    EXPECT_EQ(cones_with(0, -1.0F), (std::pair<std::size_t, std::size_t>(2, 2))) << "the shortest lane";
+    const Lane longest = make_clc_detector({})->detect(scene, {}).lane;
+    EXPECT_EQ(cones_with(0, 1.0F), std::pair(longest.left.size(), longest.right.size()));
+}
+
+}  // namespace
+}  // namespace conelane
