@@ -28,7 +28,7 @@ int run(int argument_count, char** arguments) {
                      "conelane");
     program.set_version_flag("--version",
                              "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
-    program.require_subcommand(1);
+    program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
@@ -48,6 +48,10 @@ int run(int argument_count, char** arguments) {
         return kBadInput;
     } catch (const std::exception& failure) {
         fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
+        return kBadInput;
+    }
+    if (program.get_subcommands().empty()) {
+        fmt::print(stderr, "conelane: a subcommand is needed, see `conelane --help`\n");
         return kBadInput;
     }
     return 0;

@@ -14,14 +14,6 @@
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
-namespace {
-
-/// The row of the table: a cone-set size is part of the method's name where it is not the method's own habit.
-std::string row_name(const LaneRecord& record) {
-    return record.nearest ? record.method + " n=" + std::to_string(*record.nearest) : record.method;
-}
-
-}  // namespace
 
 std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes,
                                       const TrackBoundariesByName& tracks,
@@ -37,14 +29,14 @@ std::vector<KeyedScore> score_records(std::span<const AnnotatedScene> scenes,
         if (scene == scene_of.end()) {
             throw InputError(lanes_file, i + 1, "scene", "'" + record.scene + "' is not in the scenes file");
         }
-        ++answered[row_name(record)];
         const AnnotatedScene& annotated = *scene->second;
+        const ScoreKey key{record.method, annotated.false_positive_rate, annotated.range_m, record.nearest};
+        ++answered[key.method_label()];
         if (!counts(annotated)) continue;
         const auto track = tracks.find(annotated.track);
         try {
-            scores.push_back({{row_name(record), annotated.false_positive_rate, annotated.range_m},
-                              score(annotated, record.answer, record.latency_ms, record.nearest,
-                                    track == tracks.end() ? nullptr : &track->second)});
+            scores.push_back({key, score(annotated, record.answer, record.latency_ms, record.nearest,
+                                         track == tracks.end() ? nullptr : &track->second)});
         } catch (const InvalidInput& invalid) {
             throw InputError(lanes_file, i + 1, invalid.key(), invalid.what());
         }

@@ -28,8 +28,7 @@ class FileTest : public testing::Test {
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
     [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-    [[nodiscard]] std::filesystem::path file_with(const std::string& text,
-                                                  const std::string& name = "file") const {
+    std::filesystem::path file_with(const std::string& text, const std::string& name = "file") const {
         std::ofstream(path(name), std::ios::binary) << text;
         return path(name);
     }

@@ -27,11 +27,7 @@ void score_all(const Options& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     TrackBoundariesByName tracks;
-    if (std::filesystem::exists(companion)) {
-        tracks = read_track_boundaries(companion);
-    } else {
-        fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
-    }
+    if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
     std::vector<KeyedScore> scores;
     for (const std::string& file : options.lanes) {
         std::ranges::move(score_records(scenes, tracks, read_lanes(file), file), std::back_inserter(scores));
@@ -42,6 +38,7 @@ void score_all(const Options& options) {
         write_results(options.json, rows, run.dump());
     }
     fmt::print("{}", score_table(rows));
+    if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
 }
 
 }  // namespace

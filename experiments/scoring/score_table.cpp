@@ -65,7 +65,7 @@ Line empty_line() {
 Line line_of(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     Line line = empty_line();
-    line[Column::method] = row.key.method;
+    line[Column::method] = row.key.method_label();
     line[Column::rate] = percent(row.key.false_positive_rate);
     line[Column::range] = number(row.key.range_m, 0);
     line[Column::scenes] = fmt::format("{}", summary.scenes);
@@ -145,7 +145,8 @@ std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
     std::map<Order, std::vector<SceneScore>> groups;
     std::map<Order, ScoreKey> keys;
     for (const KeyedScore& keyed : scores) {
-        const std::size_t rank = method_rank.emplace(keyed.key.method, method_rank.size()).first->second;
+        const std::size_t rank =
+            method_rank.emplace(keyed.key.method_label(), method_rank.size()).first->second;
         const Order order{rank, keyed.key.false_positive_rate, keyed.key.range_m};
         groups[order].push_back(keyed.score);
         keys.emplace(order, keyed.key);
@@ -190,13 +191,18 @@ std::string score_table(std::span<const ScoreRow> rows) {
     return table;
 }
 
+std::string ScoreKey::method_label() const {
+    return nearest ? fmt::format("{} n={}", method, *nearest) : method;
+}
+
 std::string summary_json(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     nlohmann::ordered_json json;
-    const auto put_if_known = [&](const char* key, std::optional<double> value) {
+    const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) json[key] = *value;
     };
     json["method"] = row.key.method;
+    put_if_known("nearest", row.key.nearest);
     put_if_known("false_positive_rate", row.key.false_positive_rate);
     put_if_known("range", row.key.range_m);
     json["scenes"] = summary.scenes;

@@ -15,7 +15,10 @@ struct ScoreKey {
     std::string method;
     std::optional<double> false_positive_rate;  ///< absent where the scenes state none
     std::optional<double> range_m;              ///< absent where the scenes state none
+    std::optional<std::size_t> nearest = {};    ///< cone-set size; absent where the method saw all cones
 
+    /// As tables show the method: "rld-cbc n=12".
+    [[nodiscard]] std::string method_label() const;
     bool operator==(const ScoreKey&) const = default;
 };
 

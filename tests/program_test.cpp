@@ -1,0 +1,239 @@
+// The program as a user or a script calls it: files in, files out, one line and exit code 2 on bad input.
+
+#include "experiments/files/lane_file.hpp"
+#include "experiments/files/scene_file.hpp"
+#include "tests/file_test.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+class Program : public FileTest {
+  protected:
+    struct Outcome {
+        int exit_code;
+        std::string output;
+        std::string errors;
+    };
+
+    /// Runs `conelane ARGUMENTS` in the test's folder.
+    Outcome run(const std::string& arguments) {
+        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
+                                    " >" + path("stdout").string() + " 2>" + path("stderr").string();
+        const int status = std::system(command.c_str());
+        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(path("stdout")),
+                        text_of(path("stderr"))};
+        std::filesystem::remove(path("stdout"));
+        std::filesystem::remove(path("stderr"));
+        return outcome;
+    }
+
+    /// Bad input: exit code 2, one line on stderr that holds every one of `names`, and no new file.
+    void expect_refused(const std::string& arguments, const std::vector<std::string>& names) {
+        SCOPED_TRACE("conelane " + arguments);
+        const std::size_t files_before = files_in_folder();
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 2);
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+        for (const std::string& name : names) EXPECT_THAT(outcome.errors, HasSubstr(name));
+        EXPECT_EQ(files_in_folder(), files_before);
+    }
+
+    void make_scenes(const std::string& options, const std::string& name = "s") {
+        const Outcome outcome = run("scenes --tracks generated:kidney --every 20 --seed 3 " + options +
+                                    " --out " + name + ".scenes.jsonl");
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    }
+};
+
+constexpr const char* kScene =
+    R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}, {"id": 2, "x": 4, "y": 2}]})";
+
+TEST_F(Program, HelpIsEverywhere) {
+    EXPECT_EQ(run("--help").exit_code, 0);
+    for (const char* command :
+         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare"}) {
+        const Outcome help = run(std::string(command) + " --help");
+        EXPECT_EQ(help.exit_code, 0);
+        EXPECT_THAT(help.output, HasSubstr("--help")) << command;
+    }
+}
+
+TEST_F(Program, BadOptionsAreNamed) {
+    expect_refused("", {"subcommand"});
+    expect_refused("fly", {"fly"});
+    expect_refused("scenes --out a.scenes.jsonl", {"--tracks"});
+    expect_refused("scenes --tracks generated:nowhere --out a.scenes.jsonl", {"nowhere"});
+    expect_refused("scenes --tracks generated:circle --fp 1.5 --out a.scenes.jsonl", {"fp"});
+    expect_refused("scenes --tracks generated:circle --fp nan --out a.scenes.jsonl", {"fp"});
+    expect_refused("scenes --tracks generated:circle --every 0 --out a.scenes.jsonl", {"every"});
+    expect_refused("scenes --tracks generated:circle --range -3 --out a.scenes.jsonl", {"range"});
+    expect_refused("scenes --tracks generated:circle --nearest 0 --out a.scenes.jsonl", {"--nearest"});
+    expect_refused("scenes --tracks generated:circle --wings 2 --out a.scenes.jsonl", {"--wings"});
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    expect_refused("detect --method magic --scenes a.scenes.jsonl --out l.lanes.jsonl", {"method", "magic"});
+    expect_refused("solve --solver magic --scenes a.scenes.jsonl --out l.solutions.jsonl",
+                   {"--solver", "magic"});
+    expect_refused("solve --formulation loose --scenes a.scenes.jsonl --out l.solutions.jsonl",
+                   {"--formulation"});
+    expect_refused("compare --methods magic --out results", {"method", "magic"});
+}
+
+TEST_F(Program, BadScenesAreNamedByFileLineAndKey) {
+    const std::string good = std::string(kScene) + "\n";
+    const auto refuse = [&](const std::string& text, const std::vector<std::string>& names) {
+        file_with(text, "bad.scenes.jsonl");
+        std::vector<std::string> all = names;
+        all.emplace_back("bad.scenes.jsonl");
+        expect_refused("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl", all);
+        expect_refused("detect --method rld-cbc --scenes bad.scenes.jsonl --out x.lanes.jsonl", all);
+        expect_refused("solve --scenes bad.scenes.jsonl --out x.solutions.jsonl", all);
+    };
+    refuse(good + good.substr(0, 60), {":2:"});
+    refuse(R"({"id": "a", "pose": {"x": NaN, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}]})",
+           {":1:", "x"});
+    refuse(R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1e999, "y": 2}]})",
+           {":1:", "x"});
+    refuse(R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": "1", "y": 2}]})",
+           {":1:", "cones[0].x"});
+    refuse(R"({"id": "a", "pose": {"x": 0, "y": 0}, "cones": [{"id": 1, "x": 1, "y": 2}]})",
+           {":1:", "pose.yaw"});
+    refuse(
+        R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}, {"id": 1, "x": 3, "y": 2}]})",
+        {":1:", "cones[1].id"});
+    refuse(
+        R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}], "ground_truth": {"left": [1], "right": [7]}})",
+        {":1:", "ground_truth.right[0]", "7"});
+    refuse(R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": []})", {":1:", "cones"});
+    refuse("", {"no scene"});
+}
+
+TEST_F(Program, BadFilesAreNamed) {
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    expect_refused("detect --method clc --scenes nowhere.scenes.jsonl --out x.lanes.jsonl",
+                   {"nowhere.scenes.jsonl"});
+    expect_refused("detect --method clc --scenes a.scenes.jsonl --out nowhere/x.lanes.jsonl",
+                   {"nowhere/x.lanes.jsonl"});
+    expect_refused("score --scenes a.scenes.jsonl --lanes nowhere.lanes.jsonl", {"nowhere.lanes.jsonl"});
+    expect_refused("solve --scenes a.scenes.jsonl --params nowhere.json --out x.solutions.jsonl",
+                   {"nowhere.json"});
+    file_with(R"({"d_e": 3})", "p.json");
+    expect_refused("solve --scenes a.scenes.jsonl --params p.json --out x.solutions.jsonl",
+                   {"p.json", "d_t"});
+    file_with("track: [1, 2\n", "t.yaml");
+    expect_refused("scenes --tracks pacsim:t.yaml --out x.scenes.jsonl", {"t.yaml"});
+    file_with("tag,x,y\nblue,1,zwei\n", "t.csv");
+    expect_refused("scenes --tracks eufs:t.csv --out x.scenes.jsonl", {"t.csv"});
+    file_with(R"({"scene": "b", "method": "m", "status": "none", "left": [], "right": [], "latency_ms": 1})"
+              "\n",
+              "b.lanes.jsonl");
+    expect_refused("score --scenes a.scenes.jsonl --lanes b.lanes.jsonl", {"b.lanes.jsonl", ":1:", "scene"});
+}
+
+TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
+    file_with("old\n", "x.lanes.jsonl");
+    file_with("{", "bad.scenes.jsonl");
+    EXPECT_EQ(run("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl").exit_code, 2);
+    EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+}
+
+TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
+    const std::string options = "--fp 0,0.3 --noise 0.1 --miss 0.05 --pose-noise 0.2,0.05 --color ";
+    make_scenes(options + "--threads 1", "one");
+    make_scenes(options + "--threads 4", "four");
+    make_scenes(options, "again");
+    EXPECT_EQ(text_of(path("one.scenes.jsonl")), text_of(path("four.scenes.jsonl")));
+    EXPECT_EQ(text_of(path("one.scenes.jsonl")), text_of(path("again.scenes.jsonl")));
+    EXPECT_GT(read_scenes(path("one.scenes.jsonl")).size(), 10U);
+}
+
+TEST_F(Program, LanesDoNotDependOnThreads) {
+    make_scenes("--fp 0,0.3");
+    const auto lanes = [&](const std::string& method, const std::string& threads) {
+        EXPECT_EQ(run("detect --method " + method + " --scenes s.scenes.jsonl --threads " + threads +
+                      " --out " + threads + ".lanes.jsonl")
+                      .exit_code,
+                  0);
+        std::vector<Lane> found;
+        for (const LaneRecord& record : read_lanes(path(threads + ".lanes.jsonl")))
+            found.push_back(record.answer.lane);
+        return found;
+    };
+    EXPECT_EQ(lanes("clc", "1"), lanes("clc", "3"));
+    EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
+}
+
+/// The ground truth, handed in as a method's lanes, is the best there can be.
+TEST_F(Program, GroundTruthAsLanesScoresFull) {
+    make_scenes("--fp 0,0.3,0.5 --range 30,50");
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
+    std::vector<LaneRecord> records;
+    for (const AnnotatedScene& scene : scenes) {
+        LaneRecord record{scene.scene.id, "truth", {}, 1.0, {}};
+        record.answer.status = LaneStatus::found;
+        record.answer.lane = *scene.ground_truth;
+        records.push_back(record);
+    }
+    write_lanes(path("truth.lanes.jsonl"), records);
+    const Outcome outcome = run("score --scenes s.scenes.jsonl --lanes truth.lanes.jsonl --json truth.json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    std::ifstream lines(path("truth.json"));
+    std::size_t rows = 0;
+    for (std::string line; std::getline(lines, line); ++rows) {
+        const auto row = nlohmann::json::parse(line);
+        EXPECT_EQ(row.at("mean_iou"), 1.0);
+        EXPECT_EQ(row.at("success_share"), 1.0);
+        EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << line;
+        for (const char* key : {"commit", "compiler", "machine", "run"})
+            EXPECT_TRUE(row.contains(key)) << key;
+    }
+    EXPECT_EQ(rows, 6U);
+}
+
+TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
+    make_scenes("--fp 0.2");
+    ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
+    const Outcome good = run("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
+
+    std::string forged = text_of(path("s.solutions.jsonl"));
+    const std::size_t objective = forged.find("\"objective\":-");
+    ASSERT_NE(objective, std::string::npos);
+    forged.insert(objective + 13, "9");
+    file_with(forged, "forged.solutions.jsonl");
+    const Outcome bad = run("check --scenes s.scenes.jsonl --solutions forged.solutions.jsonl");
+    EXPECT_EQ(bad.exit_code, 1);
+    EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
+}
+
+TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
+    const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
+    EXPECT_THAT(outcome.output, HasSubstr("CLC paper"));
+    for (const char* file : {"scenes.scenes.jsonl", "scenes.tracks.json", "rld-cbc.lanes.jsonl",
+                             "clc.lanes.jsonl", "results.jsonl", "table.txt"}) {
+        EXPECT_TRUE(std::filesystem::exists(path("results") / file)) << file;
+    }
+    // Scoring the stored lanes again gives the same table.
+    const Outcome again =
+        run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
+            "results/clc.lanes.jsonl");
+    EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+}
+
+}  // namespace
+}  // namespace conelane::experiments
