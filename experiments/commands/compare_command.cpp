@@ -18,6 +18,7 @@ struct Options {
         comparison.scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
         comparison.scenes.ranges_m = {30.0};
         comparison.scenes.every_m = 4.4;
+        comparison.run.limits.time_limit_ms = 400.0;  // as in the RLD paper
     }
     ComparisonOptions comparison;
     ParameterSource parameters;
