@@ -1,17 +1,24 @@
-// Prints the lane of four cones and a stray one: "1 3 | 2 4".
-#include "model/lane_graph.hpp"
-#include "model/scene.hpp"
+// What the README shows: the lane between six cones and a stray one, "1 3 5 | 2 4 6", by both kinds of
+// method.
+#include "graph_search/clc_detector.hpp"
+#include "solvers/registry.hpp"
+#include "solvers/rld_detector.hpp"
 
 #include <iostream>
 
 int main() {
-    conelane::Scene scene;
-    scene.cones = {{1, {2, 2}}, {2, {2, -2}}, {3, {6, 2}}, {4, {6, -2}}, {5, {40, 30}}};
-    const auto near = conelane::nearest_ahead(scene, 4);
-    const auto lane = conelane::to_lane({{{0, 2}, {1, 3}}}, near);
-    if (!lane) return 1;
-    for (const auto id : lane->left) std::cout << id << ' ';
-    std::cout << '|';
-    for (const auto id : lane->right) std::cout << ' ' << id;
-    std::cout << '\n';
+    conelane::Scene scene{"now", {{0.0, 0.0}, 0.0}, {}};  // pose, cones with ids
+    scene.cones = {{1, {2, 1.6}},   {2, {2, -1.6}},   {3, {5.2, 1.6}}, {4, {5.2, -1.6}},
+                   {5, {8.4, 1.6}}, {6, {8.4, -1.6}}, {7, {8, 9}}};
+    auto rld =
+        conelane::make_rld_detector(conelane::find_rld_solver("cbc")->make(conelane::Formulation::tight),
+                                    {.parameters = {}, .nearest = 12});
+    auto clc = conelane::make_clc_detector({});
+    for (auto* detector : {rld.get(), clc.get()}) {
+        const conelane::LaneAnswer answer = detector->detect(scene, {.time_limit_ms = 5000.0});
+        for (const auto id : answer.lane.left) std::cout << id << ' ';
+        std::cout << '|';
+        for (const auto id : answer.lane.right) std::cout << ' ' << id;
+        std::cout << '\n';
+    }
 }

@@ -10,4 +10,4 @@ add_test(NAME consumer.build_and_run
 set_tests_properties(consumer.clean PROPERTIES FIXTURES_SETUP consumer_clean)
 set_tests_properties(consumer.install PROPERTIES FIXTURES_REQUIRED consumer_clean FIXTURES_SETUP consumer_prefix)
 set_tests_properties(consumer.build_and_run PROPERTIES FIXTURES_REQUIRED consumer_prefix
-                                                       PASS_REGULAR_EXPRESSION "1 3 [|] 2 4")
+                                                       PASS_REGULAR_EXPRESSION "1 3 5 [|] 2 4 6\n1 3 5 [|] 2 4 6")
