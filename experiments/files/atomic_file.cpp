@@ -2,6 +2,7 @@
 
 #include "experiments/files/input_error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <string>
@@ -22,13 +23,8 @@ bool is_open_descriptor(const fs::path& target) {
     const std::string path = target.lexically_normal().string();
     constexpr std::array<std::string_view, 2> kNames{"/dev/stdout", "/dev/stderr"};
     constexpr std::array<std::string_view, 2> kFolders{"/dev/fd/", "/proc/self/fd/"};
-    for (const std::string_view name : kNames) {
-        if (path == name) return true;
-    }
-    for (const std::string_view folder : kFolders) {
-        if (path.starts_with(folder)) return true;
-    }
-    return false;
+    return std::ranges::find(kNames, path) != kNames.end() ||
+           std::ranges::any_of(kFolders, [&](std::string_view folder) { return path.starts_with(folder); });
 }
 
 [[noreturn]] void fail(const fs::path& target, int error) {
