@@ -49,6 +49,7 @@ class MilpRldSolver : public RldSolver {
             report.message = round.message;
             // Rows only ever tighten the program: every round's bound holds for the problem.
             if (round.bound) report.bound = std::max(report.bound.value_or(*round.bound), *round.bound);
+            if (round.status == SolveStatus::infeasible) report.bound.reset();
             if (round.point.empty()) return;
 
             const std::vector<ProgramRow> violated = model.separate(round.point);
