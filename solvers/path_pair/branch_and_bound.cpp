@@ -1,0 +1,245 @@
+#include "solvers/path_pair/branch_and_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace conelane::path_pair {
+namespace {
+
+constexpr double kMemory = 0.8;  ///< of the averaged edge use, per step
+constexpr int kMostCliques = 600;
+constexpr int kCliquesPerRound = 12;
+constexpr int kStepsPerRound = 4;
+constexpr double kStepScale = 1.0;
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+BranchAndBound::BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
+    : graph_(graph), incumbent_(incumbent), options_(options) {}
+
+BranchAndBound::Node& BranchAndBound::node(std::size_t depth) {
+    while (nodes_by_depth_.size() <= depth) nodes_by_depth_.push_back(std::make_unique<Node>());
+    return *nodes_by_depth_[depth];
+}
+
+BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
+                                            std::function<bool()> stopped) {
+    tolerance_ = tolerance;
+    stopped_ = std::move(stopped);
+    cliques_.clear();
+    required_.reset(graph_);
+    relaxation_.bind(graph_, system, cliques_, required_, stopped_);
+    pair_search_.bind(graph_, relaxation_, incumbent_);
+    edge_use_.assign(at(graph_.edge_count()), 0.0);
+    index_.assign(at(graph_.cone_count()), 0);
+    std::vector<char> starting = system.kinds[0].start;
+    for (std::size_t cone = 0; cone < starting.size(); ++cone) {
+        if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting[cone] = 1;
+    }
+    Node& root = node(0);
+    root.graph.assign(graph_, starting);
+    root.prices.cone.assign(at(graph_.cone_count()), 0.0);
+    root.prices.clique.clear();
+    root.prices.heading = 0.0;
+    open_bound_ = kUnreachable;
+    explore(0, graph_.share_bound());
+    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
+}
+
+void BranchAndBound::explore(std::size_t depth, double bound) {
+    ++nodes_;
+    const Verdict verdict = ascend(depth, bound);
+    if (depth == 0) root_prices_ = node(0).prices;
+    if (verdict == Verdict::closed) return;
+    if (verdict == Verdict::stopped) {
+        open_bound_ = std::min(open_bound_, bound);
+        return;
+    }
+    const int edge = branching_edge(node(depth).graph);
+    const bool in_first = edge_use_[at(edge)] >= 0.4;
+    for (const bool in : {in_first, !in_first}) {
+        Node& child = node(depth + 1);
+        if (in) required_.change(graph_, edge, true);
+        branch(node(depth).graph, edge, in, child.graph);
+        child.prices = node(depth).prices;
+        explore(depth + 1, bound);
+        if (in) required_.change(graph_, edge, false);
+        if (open_bound_ < kUnreachable) {  // stopped: what is not yet explored is no better bounded than here
+            open_bound_ = std::min(open_bound_, bound);
+            return;
+        }
+        if (bound >= cutoff()) return;
+    }
+}
+
+BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound) {
+    Node& here = node(depth);
+    prices_ = here.prices;
+    prices_.clique.resize(at(cliques_.size()), 0.0);
+    // A required cone's price has no sign, others' have one.
+    for (std::size_t v = 0; v < prices_.cone.size(); ++v) {
+        if (required_.at_cone[v] == 0) prices_.cone[v] = std::max(0.0, prices_.cone[v]);
+    }
+    ascent_.restart(prices_);
+    const int most_steps = depth == 0 ? options_.root_steps : options_.node_steps;
+    double best = -kUnreachable;
+    double scale = kStepScale;
+    int since_best = 0;
+    int next_try = 0;
+    std::int64_t work = 0;
+    for (int step = 0;; ++step) {
+        if (stopped_()) return Verdict::stopped;
+        ++steps_;
+        const double value = relaxation_.evaluate(here.graph, prices_);
+        if (value == -kUnreachable) return Verdict::stopped;
+        work += here.graph.size();
+        if (value > best + 1e-4 * std::abs(incumbent_.cutoff() - best)) {
+            since_best = 0;
+        } else if (++since_best >= 8) {
+            scale *= 0.6;
+            since_best = 0;
+        }
+        if (value > best) {
+            best = value;
+            here.prices = prices_;
+        }
+        bound = std::max(bound, value);
+        if (value >= cutoff()) return Verdict::closed;
+        relaxation_.evaluate_backward(here.graph);
+        count_usage(here.graph);
+        if (options_.complete_walks || depth > 0) {
+            if (step == next_try) {
+                const double before = incumbent_.cutoff();
+                const std::array<std::vector<int>, 2> walks = relaxation_.walks(here.graph);
+                for (int leg = 0; leg < 2; ++leg) {
+                    pair_search_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
+                                          tolerance_, 60);
+                }
+                next_try = step + (incumbent_.cutoff() < before ? 2 : 4 + step / 2);
+            }
+        }
+        if (value >= cutoff()) return Verdict::closed;
+        const bool last = step + 1 >= most_steps;
+        if (options_.enumerate_pairs && (step % 5 == 4 || last)) {
+            if (pair_search_.exhaust(here.graph, tolerance_, last ? 4 * work : work / 2)) {
+                return Verdict::closed;
+            }
+        }
+        if (last) break;
+        ascent_.step(prices_, usage_, required_.at_cone, incumbent_.cutoff() - value, scale);
+        if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
+        if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
+            separate(here.graph, prices_);
+        }
+    }
+    // With every edge decided nothing is left to branch on: one pair of paths at most.
+    if (branching_edge(here.graph) >= 0) return Verdict::open;
+    pair_search_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60);
+    return Verdict::closed;
+}
+
+void BranchAndBound::count_usage(const ResidualGraph& graph) {
+    usage_.cone.assign(at(graph_.cone_count()), 0);
+    usage_.clique.assign(at(cliques_.size()), 0);
+    usage_.along_heading = 0;
+    for (double& use : edge_use_) use *= kMemory;
+    index_.assign(at(graph_.edge_count()), 0);
+    for (const std::vector<int>& walk : relaxation_.walks(graph)) {
+        if (walk.empty()) continue;
+        ++usage_.cone[at(graph.tail[at(walk.front())])];
+        for (const int a : walk) {
+            ++usage_.cone[at(graph.head[at(a)])];
+            edge_use_[at(graph.edge(a))] += 1.0 - kMemory;
+            ++index_[at(graph.edge(a))];
+            usage_.along_heading += graph_.along_heading(graph.edge(a)) ? 1 : 0;
+        }
+    }
+    for (int q = 0; q < cliques_.size(); ++q) {
+        for (const int edge : cliques_.edges(q)) usage_.clique[at(q)] += index_[at(edge)];
+    }
+}
+
+void BranchAndBound::separate(const ResidualGraph& graph, Prices& prices) {
+    if (cliques_.size() >= kMostCliques) return;
+    edge_alive_.assign(at(graph_.edge_count()), 0);
+    for (int a = 0; a < graph.size(); ++a) edge_alive_[at(graph.edge(a))] = 1;
+    separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_);
+    prices.clique.resize(at(cliques_.size()), 0.0);
+}
+
+/// Drops what cannot be in a better pair; false where that is too little to renumber for.
+bool BranchAndBound::fix(Node& here) {
+    const ResidualGraph& graph = here.graph;
+    const double limit = cutoff() + relaxation_.offset();
+    keep_out_.assign(graph.out_arc.size(), 0);
+    order_.clear();
+    std::size_t kept = 0;
+    for (int a = 0; a < graph.size(); ++a) {
+        bool alive = false;
+        for (int kind = 0; kind < relaxation_.system().kind_count; ++kind) {
+            const std::span<const double> forward = relaxation_.forward(kind);
+            const std::span<const double> backward = relaxation_.backward(kind);
+            if (!(forward[at(a)] + backward[at(a)] < limit)) continue;
+            alive = true;
+            for (int position = graph.out_start[at(a)]; position < graph.out_start[at(a) + 1]; ++position) {
+                const std::size_t next = at(graph.out_arc[at(position)]);
+                if (keep_out_[at(position)] == 0 && forward[at(a)] + graph.out_cost[at(position)] +
+                                                            relaxation_.reduced()[next] + backward[next] <
+                                                        limit) {
+                    keep_out_[at(position)] = 1;
+                    ++kept;
+                }
+            }
+        }
+        if (alive) order_.push_back(a);
+    }
+    if (10 * (order_.size() + kept) > 9 * (graph.arc.size() + graph.out_arc.size())) return false;
+    spare_.filter(graph, order_, keep_out_, index_);
+    std::swap(spare_, here.graph);
+    return true;
+}
+
+void BranchAndBound::branch(const ResidualGraph& source, int edge, bool required, ResidualGraph& target) {
+    order_.clear();
+    const int ends[2] = {graph_.tail(2 * edge), graph_.head(2 * edge)};
+    for (int a = 0; a < source.size(); ++a) {
+        const int other = source.edge(a);
+        if (required ? graph_.incompatible(edge, other) : other == edge) continue;
+        order_.push_back(a);
+    }
+    keep_out_.assign(source.out_arc.size(), 1);
+    if (required) {
+        for (int a = 0; a < source.size(); ++a) {
+            const int cone = source.head[at(a)];
+            if ((cone != ends[0] && cone != ends[1]) || source.edge(a) == edge) continue;
+            for (int p = source.out_start[at(a)]; p < source.out_start[at(a) + 1]; ++p) {
+                if (source.edge(source.out_arc[at(p)]) != edge) keep_out_[at(p)] = 0;
+            }
+        }
+    }
+    target.filter(source, order_, keep_out_, index_);
+}
+
+int BranchAndBound::branching_edge(const ResidualGraph& graph) const {
+    int best = -1;
+    double best_score = -1.0;
+    for (int a = 0; a < graph.size(); ++a) {
+        const int edge = graph.edge(a);
+        if (required_.edge[at(edge)] != 0) continue;
+        const double use = edge_use_[at(edge)];
+        const double score = std::min(use, std::max(0.0, 1.0 - use));
+        if (score > best_score) {
+            best_score = score;
+            best = edge;
+        }
+    }
+    return best;
+}
+
+}  // namespace conelane::path_pair
