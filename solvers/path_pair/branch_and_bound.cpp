@@ -12,6 +12,7 @@ constexpr double kMemory = 0.8;  ///< of the averaged edge use, per step
 constexpr int kMostCliques = 600;
 constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
+constexpr double kLeastEndDoubt = 0.1;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -33,10 +34,11 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     tolerance_ = tolerance;
     stopped_ = std::move(stopped);
     cliques_.clear();
-    required_.reset(graph_);
-    relaxation_.bind(graph_, system, cliques_, required_, stopped_);
+    decisions_.reset(graph_);
+    relaxation_.bind(graph_, system, cliques_, decisions_, stopped_);
     pair_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
+    end_use_.assign(at(graph_.cone_count()), 0.0);
     index_.assign(at(graph_.cone_count()), 0);
     std::vector<char> starting = system.kinds[0].start;
     for (std::size_t cone = 0; cone < starting.size(); ++cone) {
@@ -61,15 +63,15 @@ void BranchAndBound::explore(std::size_t depth, double bound) {
         open_bound_ = std::min(open_bound_, bound);
         return;
     }
-    const int edge = branching_edge(node(depth).graph);
-    const bool in_first = edge_use_[at(edge)] >= 0.4;
+    const Branching branching = choose(node(depth).graph);
+    const bool in_first = branching.use >= 0.4;
     for (const bool in : {in_first, !in_first}) {
         Node& child = node(depth + 1);
-        if (in) required_.change(graph_, edge, true);
-        branch(node(depth).graph, edge, in, child.graph);
+        branch(node(depth).graph, branching, in, child.graph);
         child.prices = node(depth).prices;
+        decide(branching, in, false);
         explore(depth + 1, bound);
-        if (in) required_.change(graph_, edge, false);
+        decide(branching, in, true);
         if (open_bound_ < kUnreachable) {  // stopped: what is not yet explored is no better bounded than here
             open_bound_ = std::min(open_bound_, bound);
             return;
@@ -84,7 +86,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
     prices_.clique.resize(at(cliques_.size()), 0.0);
     // A required cone's price has no sign, others' have one.
     for (std::size_t v = 0; v < prices_.cone.size(); ++v) {
-        if (required_.at_cone[v] == 0) prices_.cone[v] = std::max(0.0, prices_.cone[v]);
+        if (decisions_.visited()[v] == 0) prices_.cone[v] = std::max(0.0, prices_.cone[v]);
     }
     ascent_.restart(prices_);
     const int most_steps = depth == 0 ? options_.root_steps : options_.node_steps;
@@ -132,14 +134,14 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
             }
         }
         if (last) break;
-        ascent_.step(prices_, usage_, required_.at_cone, incumbent_.cutoff() - value, scale);
+        ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);
         }
     }
     // With every edge decided nothing is left to branch on: one pair of paths at most.
-    if (branching_edge(here.graph) >= 0) return Verdict::open;
+    if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
     pair_search_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60);
     return Verdict::closed;
 }
@@ -149,6 +151,10 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     usage_.clique.assign(at(cliques_.size()), 0);
     usage_.along_heading = 0;
     for (double& use : edge_use_) use *= kMemory;
+    for (double& use : end_use_) use *= kMemory;
+    for (const int end : relaxation_.ends()) {
+        if (end >= 0) end_use_[at(end)] += 1.0 - kMemory;
+    }
     index_.assign(at(graph_.edge_count()), 0);
     for (const std::vector<int>& walk : relaxation_.walks(graph)) {
         if (walk.empty()) continue;
@@ -205,16 +211,34 @@ bool BranchAndBound::fix(Node& here) {
     return true;
 }
 
-void BranchAndBound::branch(const ResidualGraph& source, int edge, bool required, ResidualGraph& target) {
+void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
+    if (branching.on == Branching::On::edge) {
+        if (in) decisions_.require_edge(graph_, branching.what, !back);
+    } else {
+        decisions_.decide_end(branching.what, back ? Decisions::End::open
+                                              : in ? Decisions::End::always
+                                                   : Decisions::End::never);
+    }
+}
+
+void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,
+                            ResidualGraph& target) {
     order_.clear();
+    keep_out_.assign(source.out_arc.size(), 1);
+    if (branching.on == Branching::On::end) {
+        for (int a = 0; a < source.size(); ++a) {
+            if (!in || source.tail[at(a)] != branching.what) order_.push_back(a);
+        }
+        target.filter(source, order_, keep_out_, index_);
+        return;
+    }
+    const int edge = branching.what;
     const int ends[2] = {graph_.tail(2 * edge), graph_.head(2 * edge)};
     for (int a = 0; a < source.size(); ++a) {
         const int other = source.edge(a);
-        if (required ? graph_.incompatible(edge, other) : other == edge) continue;
-        order_.push_back(a);
+        if (!(in ? graph_.incompatible(edge, other) : other == edge)) order_.push_back(a);
     }
-    keep_out_.assign(source.out_arc.size(), 1);
-    if (required) {
+    if (in) {
         for (int a = 0; a < source.size(); ++a) {
             const int cone = source.head[at(a)];
             if ((cone != ends[0] && cone != ends[1]) || source.edge(a) == edge) continue;
@@ -226,18 +250,26 @@ void BranchAndBound::branch(const ResidualGraph& source, int edge, bool required
     target.filter(source, order_, keep_out_, index_);
 }
 
-int BranchAndBound::branching_edge(const ResidualGraph& graph) const {
-    int best = -1;
-    double best_score = -1.0;
+BranchAndBound::Branching BranchAndBound::choose(const ResidualGraph& graph) const {
+    Branching best{Branching::On::nothing, -1, 0.0};
+    double best_score = kLeastEndDoubt;
+    const auto doubt = [](double use) { return std::min(use, std::max(0.0, 1.0 - use)); };
+    if (relaxation_.symmetric()) {
+        for (int cone = 0; cone < graph_.cone_count(); ++cone) {
+            const double use = end_use_[at(cone)];
+            if (decisions_.end(cone) != Decisions::End::open || doubt(use) <= best_score) continue;
+            best = {Branching::On::end, cone, use};
+            best_score = doubt(use);
+        }
+        if (best.on != Branching::On::nothing) return best;
+    }
+    best_score = -1.0;
     for (int a = 0; a < graph.size(); ++a) {
         const int edge = graph.edge(a);
-        if (required_.edge[at(edge)] != 0) continue;
         const double use = edge_use_[at(edge)];
-        const double score = std::min(use, std::max(0.0, 1.0 - use));
-        if (score > best_score) {
-            best_score = score;
-            best = edge;
-        }
+        if (decisions_.edge_required(edge) || doubt(use) <= best_score) continue;
+        best = {Branching::On::edge, edge, use};
+        best_score = doubt(use);
     }
     return best;
 }

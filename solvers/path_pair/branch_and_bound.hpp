@@ -16,9 +16,11 @@
 
 namespace conelane::path_pair {
 
-/// Depth-first branch and bound over edges (in or out). Each node raises the bound of the relaxation by
+/// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the bound of the relaxation by
 /// ascent, drops arcs and successions whose bound reaches the incumbent, and hands what is left to the pair
-/// search when that looks cheap; else it branches on the edge that the relaxation is least sure about.
+/// search when that looks cheap; else it branches on what the relaxation is least sure
+/// about: ends first, for with both of them free two halves of a pair may run along one boundary, and two halves of
+/// another along the other.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
@@ -50,8 +52,14 @@ class BranchAndBound {
     Verdict ascend(std::size_t depth, double& bound);
     bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
-    void branch(const ResidualGraph& source, int edge, bool required, ResidualGraph& target);
-    [[nodiscard]] int branching_edge(const ResidualGraph& graph) const;
+    struct Branching {
+        enum class On { nothing, end, edge } on;
+        int what;  ///< the cone or the edge
+        double use;
+    };
+    [[nodiscard]] Branching choose(const ResidualGraph& graph) const;
+    void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
+    void decide(const Branching& branching, bool in, bool back);
     void count_usage(const ResidualGraph& graph);
     void separate(const ResidualGraph& graph, Prices& prices);
     [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
@@ -63,7 +71,7 @@ class BranchAndBound {
     std::function<bool()> stopped_;
     CliquePool cliques_;
     CliqueSeparation separation_;
-    RequiredEdges required_;
+    Decisions decisions_;
     PairRelaxation relaxation_;
     PairSearch pair_search_;
     Ascent ascent_;
@@ -71,6 +79,7 @@ class BranchAndBound {
     Prices prices_;  ///< of the current step
     Prices root_prices_;
     std::vector<double> edge_use_;  ///< averaged over the steps
+    std::vector<double> end_use_;   ///< legs that end at a cone, averaged
     std::vector<std::unique_ptr<Node>> nodes_by_depth_;
     ResidualGraph spare_;
     std::vector<int> order_;

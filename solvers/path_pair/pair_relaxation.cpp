@@ -11,30 +11,43 @@ constexpr double kAboveNeutral = 1e-7;
 
 }  // namespace
 
-void RequiredEdges::reset(const ArcGraph& graph) {
-    edge.assign(static_cast<std::size_t>(graph.edge_count()), 0);
-    at_cone.assign(static_cast<std::size_t>(graph.cone_count()), 0);
+void Decisions::reset(const ArcGraph& graph) {
+    edge_.assign(static_cast<std::size_t>(graph.edge_count()), 0);
+    edges_at_.assign(static_cast<std::size_t>(graph.cone_count()), 0);
+    end_.assign(static_cast<std::size_t>(graph.cone_count()), End::open);
+    visited_.assign(static_cast<std::size_t>(graph.cone_count()), 0);
+    always_ = 0;
 }
 
-void RequiredEdges::change(const ArcGraph& graph, int which, bool required) {
-    edge[static_cast<std::size_t>(which)] = required ? 1 : 0;
+void Decisions::require_edge(const ArcGraph& graph, int which, bool required) {
+    edge_[static_cast<std::size_t>(which)] = required ? 1 : 0;
     const int step = required ? 1 : -1;
-    at_cone[static_cast<std::size_t>(graph.tail(2 * which))] += step;
-    at_cone[static_cast<std::size_t>(graph.head(2 * which))] += step;
+    for (const int cone : {graph.tail(2 * which), graph.head(2 * which)}) {
+        edges_at_[static_cast<std::size_t>(cone)] += step;
+        visited_[static_cast<std::size_t>(cone)] += step;
+    }
+}
+
+void Decisions::decide_end(int cone, End decision) {
+    const int change = (decision == End::always ? 1 : 0) - (end(cone) == End::always ? 1 : 0);
+    always_ += change;
+    visited_[static_cast<std::size_t>(cone)] += change;
+    end_[static_cast<std::size_t>(cone)] = decision;
 }
 
 void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
-                          const RequiredEdges& required, std::function<bool()> stopped) {
+                          const Decisions& decisions, std::function<bool()> stopped) {
     graph_ = &graph;
     system_ = &system;
     cliques_ = &cliques;
-    required_ = &required;
+    decisions_ = &decisions;
     stopped_ = std::move(stopped);
 }
 
 bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
     const int cone = residual.head[at(arc)];
-    return system_->kinds[at(kind)].end[at(cone)] != 0 && required_->may_end(cone, residual.edge(arc));
+    return system_->kinds[at(kind)].end[at(cone)] != 0 && decisions_->end(cone) != Decisions::End::never &&
+           decisions_->may_be_last(cone, residual.edge(arc));
 }
 
 void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& prices) {
@@ -45,7 +58,7 @@ void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& pri
         for (int a = 0; a < residual.size(); ++a) {
             const int cone = residual.tail[at(a)];
             start[at(a)] =
-                system_->kinds[at(kind)].start[at(cone)] != 0 && required_->may_end(cone, residual.edge(a))
+                system_->kinds[at(kind)].start[at(cone)] != 0 && decisions_->may_be_last(cone, residual.edge(a))
                     ? prices.cone[at(cone)]
                     : kUnreachable;
         }
@@ -118,7 +131,7 @@ double PairRelaxation::combine() {
             double& rest = legs.rest[at(cone)];
             int end = -1;
             for (const int partner : graph_->partners(cone)) {
-                if (best[at(partner)] < rest) {
+                if (best[at(partner)] < rest && decisions_->ends_fit(cone, partner)) {
                     rest = best[at(partner)];
                     end = partner;
                 }

@@ -23,18 +23,38 @@ struct LegSystem {
     bool ends_are_partners = true;  ///< the legs' ends must be partners (17); else any ends go together
 };
 
-/// Edges that a branch of the search demands.
-struct RequiredEdges {
-    std::vector<char> edge;
-    std::vector<int> at_cone;  ///< how many of them meet at a cone
-
+/// What a branch of the search demands.
+class Decisions {
+  public:
     void reset(const ArcGraph& graph);
-    void change(const ArcGraph& graph, int edge, bool required);
-    /// Whether a leg may start or end at a cone by this edge.
-    [[nodiscard]] bool may_end(int cone, int by_edge) const {
-        const int count = at_cone[static_cast<std::size_t>(cone)];
-        return count == 0 || (count == 1 && edge[static_cast<std::size_t>(by_edge)] != 0);
+
+    /// Demands an edge, or takes the demand back.
+    void require_edge(const ArcGraph& graph, int edge, bool required);
+    [[nodiscard]] bool edge_required(int edge) const { return edge_[static_cast<std::size_t>(edge)] != 0; }
+
+    /// Whether a far cone ends a leg.
+    enum class End : char { open, never, always };
+    void decide_end(int cone, End decision);
+    [[nodiscard]] End end(int cone) const { return end_[static_cast<std::size_t>(cone)]; }
+
+    /// Whether a leg may start or end at a cone by this edge: one required there stays inside no leg otherwise.
+    [[nodiscard]] bool may_be_last(int cone, int by_edge) const {
+        const int count = edges_at_[static_cast<std::size_t>(cone)];
+        return count == 0 || (count == 1 && edge_required(by_edge));
     }
+    /// Whether two cones may be the ends of the two legs, (17) apart.
+    [[nodiscard]] bool ends_fit(int cone, int other) const {
+        return (end(cone) == End::always ? 1 : 0) + (end(other) == End::always ? 1 : 0) == always_;
+    }
+    /// By cone, above 0 where every leg pair of the branch visits it.
+    [[nodiscard]] std::span<const int> visited() const { return visited_; }
+
+  private:
+    std::vector<char> edge_;
+    std::vector<int> edges_at_;
+    std::vector<End> end_;
+    std::vector<int> visited_;
+    int always_ = 0;
 };
 
 /// The Lagrangian relaxation of a pair of legs at given prices. With F_k(f) the reduced cost of the cheapest
@@ -44,7 +64,7 @@ struct RequiredEdges {
 class PairRelaxation {
   public:
     void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
-              const RequiredEdges& required, std::function<bool()> stopped);
+              const Decisions& decisions, std::function<bool()> stopped);
 
     /// The bound. Where walks gain from a cycle, first raises the prices of the cycle's cones until it is
     /// neutral. Minus infinity if stopped.
@@ -70,6 +90,12 @@ class PairRelaxation {
     [[nodiscard]] double best(int kind, int cone) const {
         return legs_[at(kind)].best[static_cast<std::size_t>(cone)];
     }
+    [[nodiscard]] bool ends_fit(int cone, int other) const {
+        return !system_->ends_are_partners ||
+               (graph_->are_partners(cone, other) && decisions_->ends_fit(cone, other));
+    }
+    /// The cones at which the legs of the bound end; -1 without legs.
+    [[nodiscard]] const std::array<int, 2>& ends() const { return ends_; }
     [[nodiscard]] bool may_end(const ResidualGraph& residual, int kind, int arc) const;
 
   private:
@@ -92,7 +118,7 @@ class PairRelaxation {
     const ArcGraph* graph_ = nullptr;
     const LegSystem* system_ = nullptr;
     const CliquePool* cliques_ = nullptr;
-    const RequiredEdges* required_ = nullptr;
+    const Decisions* decisions_ = nullptr;
     std::function<bool()> stopped_;
     LegBounds bounds_;
     std::array<Legs, 2> legs_;

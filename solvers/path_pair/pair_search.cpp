@@ -84,7 +84,7 @@ bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<
                             r.forward(second_kind)[at(a)] < kUnreachable;
         usable_[at(a)] = usable ? 1 : 0;
         second_end_[at(a)] = usable && r.may_end(residual, second_kind, a) &&
-                                     (!r.system().ends_are_partners || graph_->are_partners(first_end, head))
+                 r.ends_fit(first_end, head)
                                  ? 0.0
                                  : kUnreachable;
         second_start_[at(a)] = usable ? r.start(second_kind)[at(a)] : kUnreachable;
