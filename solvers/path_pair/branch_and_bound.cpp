@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -13,6 +15,10 @@ constexpr int kMostCliques = 600;
 constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
 constexpr double kLeastEndDoubt = 0.1;
+constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
+constexpr int kPatience = 5;           ///< steps without progress
+constexpr double kLeastScale = 0.1;
+constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -64,6 +70,7 @@ void BranchAndBound::explore(std::size_t depth, double bound) {
         return;
     }
     const Branching branching = choose(node(depth).graph);
+    if (getenv("PPD")) fprintf(stderr,"%*s BRANCH on %s %d use %.2f bound %.3f\n",(int)depth,"",branching.on==Branching::On::end?"end":"edge",branching.what,branching.use,bound);//DBG
     const bool in_first = branching.use >= 0.4;
     for (const bool in : {in_first, !in_first}) {
         Node& child = node(depth + 1);
@@ -94,24 +101,25 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
     double scale = kStepScale;
     int since_best = 0;
     int next_try = 0;
-    std::int64_t work = 0;
+    std::int64_t work = 0;             // label updates, about
+    double failed_gap = kUnreachable;  // at which the enumeration was given up
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
         ++steps_;
         const double value = relaxation_.evaluate(here.graph, prices_);
         if (value == -kUnreachable) return Verdict::stopped;
-        work += here.graph.size();
-        if (value > best + 1e-4 * std::abs(incumbent_.cutoff() - best)) {
+        work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
+        if (value > best + kLeastGain * std::abs(incumbent_.cutoff() - best)) {
             since_best = 0;
-        } else if (++since_best >= 8) {
-            scale *= 0.6;
-            since_best = 0;
+        } else {
+            ++since_best;
         }
         if (value > best) {
             best = value;
             here.prices = prices_;
         }
         bound = std::max(bound, value);
+        if (getenv("PPD")) fprintf(stderr,"%*s d%zu step %d value %.3f best %.3f UB %.3f arcs %d succ %zu scale %.2f cliques %d ends %d %d\n",(int)depth,"",depth,step,value,best,incumbent_.cutoff(),here.graph.size(),here.graph.out_arc.size(),scale,cliques_.size(),relaxation_.ends()[0],relaxation_.ends()[1]);//DBG
         if (value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         count_usage(here.graph);
@@ -127,14 +135,24 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
             }
         }
         if (value >= cutoff()) return Verdict::closed;
-        const bool last = step + 1 >= most_steps;
-        if (options_.enumerate_pairs && (step % 5 == 4 || last)) {
-            if (pair_search_.exhaust(here.graph, tolerance_, last ? 4 * work : work / 2)) {
-                return Verdict::closed;
-            }
+        const bool last = step + 1 >= most_steps || scale < kLeastScale;
+        if (options_.enumerate_pairs && (step % 4 == 3 || last) &&
+            cutoff() - value < kWorthwhile * failed_gap) {
+            if (pair_search_.exhaust(here.graph, tolerance_, work / 2)) return Verdict::closed;
+            failed_gap = cutoff() - value;
+            work = 0;
         }
         if (last) break;
-        ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
+        if (since_best >= kPatience) {
+            // Too far: from the best prices again, in shorter steps.
+            since_best = 0;
+            scale *= 0.5;
+            prices_ = here.prices;
+            prices_.clique.resize(at(cliques_.size()), 0.0);
+            ascent_.restart(prices_);
+        } else {
+            ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
+        }
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);

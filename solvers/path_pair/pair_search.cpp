@@ -90,7 +90,7 @@ bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<
         second_start_[at(a)] = usable ? r.start(second_kind)[at(a)] : kUnreachable;
     }
     bounds_.backward(residual, r.reduced(), second_end_, usable_, second_backward_);
-    budget -= 8 + residual.size() / 8;
+    budget -= 8 + residual.size();
     to_arcs(residual, first, first_arcs_);
     best_second_.clear();
     const LegSearch::Query query{*graph_,       residual,    r.reduced(),
