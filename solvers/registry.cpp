@@ -3,6 +3,7 @@
 #include "solvers/cbc_solver.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/milp_rld_solver.hpp"
+#include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,11 +11,13 @@
 namespace conelane {
 namespace {
 
-constexpr std::array<RldSolverEntry, 2> kSolvers{{
+constexpr std::array<RldSolverEntry, 3> kSolvers{{
     {"cbc", "CBC in process, CbcModel's branch and bound", true,
      [](Formulation formulation) { return make_milp_rld_solver(make_cbc_solver(), formulation); }},
     {"exhaustive", "every pair of paths, at most 9 cones", false,
      [](Formulation) { return make_exhaustive_solver(); }},
+    {"path-pair", "exact branch and bound over pairs of paths", false,
+     [](Formulation) { return make_path_pair_solver(); }},
 }};
 
 }  // namespace

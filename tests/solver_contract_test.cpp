@@ -6,8 +6,10 @@
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -156,7 +158,10 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(contestants()), [](const auto& test) {
-    return std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
+    std::string name =
+        std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
+    std::ranges::replace(name, '-', '_');
+    return name;
 });
 
 }  // namespace
