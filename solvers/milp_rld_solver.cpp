@@ -21,6 +21,10 @@ class MilpRldSolver : public RldSolver {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch build_watch;
         RldReport report;
+        if (problem.edges.empty()) {
+            report.status = SolveStatus::infeasible;
+            return report;
+        }
         const LaneGraphModel model(problem, formulation_);
         const std::unique_ptr<MilpSession> session = solver_->load(model.program());
         report.build_ms = build_watch.elapsed_ms();
@@ -36,8 +40,7 @@ class MilpRldSolver : public RldSolver {
                                    MilpSession& session, const SolveLimits& limits, const Deadline& deadline,
                                    RldReport& report) {
         while (true) {
-            SolveLimits remaining = limits;
-            remaining.time_limit_ms = deadline.remaining_ms();
+            const MilpLimits remaining{deadline.remaining_ms(), limits.absolute_gap};
             if (remaining.time_limit_ms <= 0.0) {
                 report.status = SolveStatus::time_limit;
                 return;

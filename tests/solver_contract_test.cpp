@@ -6,6 +6,7 @@
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 #include <vector>
@@ -127,6 +128,7 @@ TEST_P(SolverContract, PairingDecidesOnANearNearPath) {
     const Scene scene = scene_of(
         {{-1.4, 1.6}, {1.8, 1.6}, {5.0, 1.6}, {9.0, -1.6}, {12.2, -1.6}, {15.4, -1.6}, {18.6, -1.6}});
     RldParameters parameters;
+    parameters.d_max = 10.0;
     EXPECT_EQ(solve(scene, parameters).status, SolveStatus::infeasible);
     parameters.pairing = Pairing::paper;
     const RldReport printed = solve(scene, parameters);
@@ -155,7 +157,9 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(contestants()), [](const auto& test) {
-    return std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
+    std::string name(test.param.entry->name);
+    std::ranges::replace(name, '-', '_');
+    return name + "_" + std::string(to_string(test.param.formulation));
 });
 
 }  // namespace
