@@ -16,6 +16,13 @@ int BinaryProgram::add_column(const Label& label, double objective, bool integer
     return static_cast<int>(columns.size()) - 1;
 }
 
+void BinaryProgram::truncate_rows(std::size_t first) {
+    rows.resize(first);
+    row_starts.resize(first + 1);
+    entry_columns.resize(static_cast<std::size_t>(row_starts.back()));
+    entry_values.resize(entry_columns.size());
+}
+
 RowWriter::RowWriter(BinaryProgram& program) : program_(program), position_(program.columns.size(), -1) {}
 
 void RowWriter::begin(const Label& label, double lower, double upper) {

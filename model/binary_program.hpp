@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -50,6 +51,8 @@ struct BinaryProgram {
 
     int add_column(const Label& label, double objective, bool integer, double lower = 0.0,
                    double upper = 1.0);
+    /// Drops all rows from this one on.
+    void truncate_rows(std::size_t first);
 };
 
 /// Writes rows into a program; terms of the same column add up.

@@ -20,7 +20,6 @@ struct Watch {
     double cutoff;
     double bound = -std::numeric_limits<double>::infinity();
     bool stopped_at_deadline = false;
-    bool cut_off = false;  ///< the bound has reached the cutoff
 };
 
 void look(glp_tree* tree, void* data) {
@@ -29,9 +28,8 @@ void look(glp_tree* tree, void* data) {
     if (best != 0) watch.bound = glp_ios_node_bound(tree, best);
     glp_prob* problem = glp_ios_get_prob(tree);
     const bool has_point = glp_mip_status(problem) == GLP_FEAS;
-    if (watch.bound >= watch.cutoff ||
-        (has_point && glp_mip_obj_val(problem) - watch.bound <= watch.absolute_gap)) {
-        watch.cut_off = !has_point;
+    const double best_value = has_point ? glp_mip_obj_val(problem) : watch.cutoff;
+    if (std::min(best_value, watch.cutoff) - watch.bound <= watch.absolute_gap) {
         glp_ios_terminate(tree);
     } else if (watch.deadline.passed()) {
         watch.stopped_at_deadline = true;
@@ -152,23 +150,22 @@ class GlpkSession : public MilpSession {
         if (std::isfinite(deadline.remaining_ms())) options.tm_lim = milliseconds(deadline);
         const int failure = glp_intopt(problem_, &options);
         const int status = glp_mip_status(problem_);
-        const bool has_point = status == GLP_FEAS || status == GLP_OPT;
-        report.bound = std::max(*report.bound, watch.bound);
+        // GLPK knows no cutoff: a point that is not below it is none.
+        const bool has_point =
+            (status == GLP_FEAS || status == GLP_OPT) && glp_mip_obj_val(problem_) < limits.cutoff;
         if (has_point) {
             report.point.resize(static_cast<std::size_t>(glp_get_num_cols(problem_)));
             for (std::size_t c = 0; c < report.point.size(); ++c) {
                 report.point[c] = glp_mip_col_val(problem_, static_cast<int>(c) + 1);
             }
         }
-        const bool gap_is_closed =
-            has_point &&
-            (status == GLP_OPT || glp_mip_obj_val(problem_) - *report.bound <= limits.absolute_gap);
-        if (gap_is_closed) {
-            report.status = SolveStatus::optimal;
-            if (status == GLP_OPT) report.bound = glp_mip_obj_val(problem_);
-        } else if (status == GLP_NOFEAS || watch.cut_off) {
-            report.status = SolveStatus::infeasible;
-            report.bound.reset();
+        report.bound = std::max(*report.bound, watch.bound);
+        const double best_value = has_point ? glp_mip_obj_val(problem_) : limits.cutoff;
+        const bool finished = status == GLP_OPT || status == GLP_NOFEAS;
+        if (finished || best_value - *report.bound <= limits.absolute_gap) {
+            report.status = has_point ? SolveStatus::optimal : SolveStatus::infeasible;
+            if (finished) report.bound = best_value;
+            if (!has_point) report.bound.reset();
         } else if (watch.stopped_at_deadline || failure == GLP_ETMLIM || deadline.passed()) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
         } else {
