@@ -4,7 +4,7 @@ namespace conelane {
 
 std::string to_string(const Label& label) {
     std::string text(label.family);
-    for (const std::int32_t index : label.index) {
+    for (const std::int32_t index : {label.index.first, label.index.second, label.index.third}) {
         if (index >= 0) text.append("_").append(std::to_string(index));
     }
     return text;
