@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -16,9 +14,10 @@ constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
 constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
-constexpr int kPatience = 5;           ///< steps without progress
+constexpr int kPatience = 5;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
+constexpr std::int64_t kFirstBudget = 2000;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -70,7 +69,6 @@ void BranchAndBound::explore(std::size_t depth, double bound) {
         return;
     }
     const Branching branching = choose(node(depth).graph);
-    if (getenv("PPD")) fprintf(stderr,"%*s BRANCH on %s %d use %.2f bound %.3f\n",(int)depth,"",branching.on==Branching::On::end?"end":"edge",branching.what,branching.use,bound);//DBG
     const bool in_first = branching.use >= 0.4;
     for (const bool in : {in_first, !in_first}) {
         Node& child = node(depth + 1);
@@ -119,7 +117,6 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
             here.prices = prices_;
         }
         bound = std::max(bound, value);
-        if (getenv("PPD")) fprintf(stderr,"%*s d%zu step %d value %.3f best %.3f UB %.3f arcs %d succ %zu scale %.2f cliques %d ends %d %d\n",(int)depth,"",depth,step,value,best,incumbent_.cutoff(),here.graph.size(),here.graph.out_arc.size(),scale,cliques_.size(),relaxation_.ends()[0],relaxation_.ends()[1]);//DBG
         if (value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         count_usage(here.graph);
@@ -138,7 +135,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
         if (options_.enumerate_pairs && (step % 4 == 3 || last) &&
             cutoff() - value < kWorthwhile * failed_gap) {
-            if (pair_search_.exhaust(here.graph, tolerance_, work / 2)) return Verdict::closed;
+            if (pair_search_.exhaust(here.graph, tolerance_, std::max(kFirstBudget, work / 2)))
+                return Verdict::closed;
             failed_gap = cutoff() - value;
             work = 0;
         }
