@@ -48,8 +48,8 @@ class BranchAndBound {
     enum class Verdict { closed, open, stopped };
 
     Node& node(std::size_t depth);
-    void explore(std::size_t depth, double bound);
-    Verdict ascend(std::size_t depth, double& bound);
+    void explore(std::size_t depth, double bound, int most_steps);
+    Verdict ascend(std::size_t depth, double& bound, int most_steps);
     bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
     struct Branching {
