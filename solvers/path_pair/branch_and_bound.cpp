@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -16,9 +14,11 @@ constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
 constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
-constexpr int kPatience = 5;           ///< steps without progress
+constexpr int kPatience = 5;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
+constexpr std::int64_t kFirstBudget = 2000;
+constexpr int kRestSteps = 2;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -56,13 +56,13 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     root.prices.clique.clear();
     root.prices.heading = 0.0;
     open_bound_ = kUnreachable;
-    explore(0, graph_.share_bound());
+    explore(0, graph_.share_bound(), options_.root_steps);
     return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
 }
 
-void BranchAndBound::explore(std::size_t depth, double bound) {
+void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
     ++nodes_;
-    const Verdict verdict = ascend(depth, bound);
+    const Verdict verdict = ascend(depth, bound, most_steps);
     if (depth == 0) root_prices_ = node(0).prices;
     if (verdict == Verdict::closed) return;
     if (verdict == Verdict::stopped) {
@@ -70,14 +70,15 @@ void BranchAndBound::explore(std::size_t depth, double bound) {
         return;
     }
     const Branching branching = choose(node(depth).graph);
-    if (getenv("PPD")) fprintf(stderr,"%*s BRANCH on %s %d use %.2f bound %.3f\n",(int)depth,"",branching.on==Branching::On::end?"end":"edge",branching.what,branching.use,bound);//DBG
-    const bool in_first = branching.use >= 0.4;
+    // An end: first all pairs that have it, then the rest, bounded by the same prices until its turn comes.
+    const bool on_end = branching.on == Branching::On::end;
+    const bool in_first = on_end || branching.use >= 0.4;
     for (const bool in : {in_first, !in_first}) {
         Node& child = node(depth + 1);
         branch(node(depth).graph, branching, in, child.graph);
         child.prices = node(depth).prices;
         decide(branching, in, false);
-        explore(depth + 1, bound);
+        explore(depth + 1, bound, on_end && !in ? kRestSteps : options_.node_steps);
         decide(branching, in, true);
         if (open_bound_ < kUnreachable) {  // stopped: what is not yet explored is no better bounded than here
             open_bound_ = std::min(open_bound_, bound);
@@ -87,7 +88,7 @@ void BranchAndBound::explore(std::size_t depth, double bound) {
     }
 }
 
-BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound) {
+BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound, int most_steps) {
     Node& here = node(depth);
     prices_ = here.prices;
     prices_.clique.resize(at(cliques_.size()), 0.0);
@@ -96,7 +97,6 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
         if (decisions_.visited()[v] == 0) prices_.cone[v] = std::max(0.0, prices_.cone[v]);
     }
     ascent_.restart(prices_);
-    const int most_steps = depth == 0 ? options_.root_steps : options_.node_steps;
     double best = -kUnreachable;
     double scale = kStepScale;
     int since_best = 0;
@@ -119,7 +119,6 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
             here.prices = prices_;
         }
         bound = std::max(bound, value);
-        if (getenv("PPD")) fprintf(stderr,"%*s d%zu step %d value %.3f best %.3f UB %.3f arcs %d succ %zu scale %.2f cliques %d ends %d %d\n",(int)depth,"",depth,step,value,best,incumbent_.cutoff(),here.graph.size(),here.graph.out_arc.size(),scale,cliques_.size(),relaxation_.ends()[0],relaxation_.ends()[1]);//DBG
         if (value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         count_usage(here.graph);
@@ -138,7 +137,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound)
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
         if (options_.enumerate_pairs && (step % 4 == 3 || last) &&
             cutoff() - value < kWorthwhile * failed_gap) {
-            if (pair_search_.exhaust(here.graph, tolerance_, work / 2)) return Verdict::closed;
+            if (pair_search_.exhaust(here.graph, tolerance_, std::max(kFirstBudget, work / 2)))
+                return Verdict::closed;
             failed_gap = cutoff() - value;
             work = 0;
         }
@@ -270,14 +270,15 @@ void BranchAndBound::branch(const ResidualGraph& source, const Branching& branch
 
 BranchAndBound::Branching BranchAndBound::choose(const ResidualGraph& graph) const {
     Branching best{Branching::On::nothing, -1, 0.0};
-    double best_score = kLeastEndDoubt;
+    double best_score = -1.0;
     const auto doubt = [](double use) { return std::min(use, std::max(0.0, 1.0 - use)); };
     if (relaxation_.symmetric()) {
-        for (int cone = 0; cone < graph_.cone_count(); ++cone) {
+        for (const int cone : relaxation_.ends()) {
+            if (cone < 0 || decisions_.end(cone) != Decisions::End::open) continue;
             const double use = end_use_[at(cone)];
-            if (decisions_.end(cone) != Decisions::End::open || doubt(use) <= best_score) continue;
+            if (use >= 1.0 - kLeastEndDoubt || use <= best_score) continue;
             best = {Branching::On::end, cone, use};
-            best_score = doubt(use);
+            best_score = use;
         }
         if (best.on != Branching::On::nothing) return best;
     }

@@ -16,11 +16,11 @@
 
 namespace conelane::path_pair {
 
-/// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the bound of the relaxation by
-/// ascent, drops arcs and successions whose bound reaches the incumbent, and hands what is left to the pair
-/// search when that looks cheap; else it branches on what the relaxation is least sure
-/// about: ends first, for with both of them free two halves of a pair may run along one boundary, and two halves of
-/// another along the other.
+/// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
+/// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and hands
+/// what is left to the pair search when that looks cheap; else it branches on what the relaxation is least
+/// sure about: ends first, for with both of them free two halves of a pair may run along one boundary, and
+/// two halves of another along the other.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
@@ -48,8 +48,8 @@ class BranchAndBound {
     enum class Verdict { closed, open, stopped };
 
     Node& node(std::size_t depth);
-    void explore(std::size_t depth, double bound);
-    Verdict ascend(std::size_t depth, double& bound);
+    void explore(std::size_t depth, double bound, int most_steps);
+    Verdict ascend(std::size_t depth, double& bound, int most_steps);
     bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
     struct Branching {

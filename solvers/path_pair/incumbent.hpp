@@ -24,9 +24,10 @@ class Incumbent {
     /// Edges of the arc graph.
     [[nodiscard]] std::span<const int> edges() const { return edges_; }
 
-  private:
+    /// (29) of a leg.
     [[nodiscard]] double leg_cost(std::span<const int> leg) const;
 
+  private:
     const ArcGraph* graph_ = nullptr;
     double cutoff_ = 0.0;
     bool found_ = false;

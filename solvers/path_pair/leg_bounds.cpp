@@ -8,6 +8,8 @@ namespace {
 
 // Smaller gains are rounding; without a threshold a cycle of cost zero could be walked for ever.
 constexpr double kGain = 1e-12;
+// How far above neutral a cycle is raised, so that rounding does not make it pay again.
+constexpr double kAboveNeutral = 1e-7;
 
 }  // namespace
 
@@ -103,6 +105,23 @@ bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle)
         return true;
     }
     return false;
+}
+
+void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
+                 std::vector<double>& cone_price) {
+    double cost = 0.0;
+    for (std::size_t k = 0; k < cycle.size(); ++k) {
+        const std::size_t a = static_cast<std::size_t>(cycle[k]);
+        const int next = cycle[(k + 1) % cycle.size()];
+        const auto* const first = graph.out_arc.data() + graph.out_start[a];
+        const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];
+        cost += reduced[a] +
+                graph.out_cost[static_cast<std::size_t>(std::find(first, last, next) - graph.out_arc.data())];
+    }
+    const double raise = std::max(kAboveNeutral - cost, kAboveNeutral) / static_cast<double>(cycle.size());
+    for (const int a : cycle) {
+        cone_price[static_cast<std::size_t>(graph.head[static_cast<std::size_t>(a)])] += raise;
+    }
 }
 
 }  // namespace conelane::path_pair

@@ -33,4 +33,8 @@ class LegBounds {
     std::vector<int> colour_;
 };
 
+/// Raises the prices of a cycle's cones alike until it is neutral.
+void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
+                 std::vector<double>& cone_price);
+
 }  // namespace conelane::path_pair

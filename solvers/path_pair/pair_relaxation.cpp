@@ -4,12 +4,7 @@
 #include <utility>
 
 namespace conelane::path_pair {
-namespace {
-
-// How far above neutral a cycle is raised, so that rounding does not make it pay again.
-constexpr double kAboveNeutral = 1e-7;
-
-}  // namespace
+namespace {}  // namespace
 
 void Decisions::reset(const ArcGraph& graph) {
     edge_.assign(static_cast<std::size_t>(graph.edge_count()), 0);
@@ -57,26 +52,12 @@ void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& pri
         start.resize(residual.arc.size());
         for (int a = 0; a < residual.size(); ++a) {
             const int cone = residual.tail[at(a)];
-            start[at(a)] =
-                system_->kinds[at(kind)].start[at(cone)] != 0 && decisions_->may_be_last(cone, residual.edge(a))
-                    ? prices.cone[at(cone)]
-                    : kUnreachable;
+            start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
+                                   decisions_->may_be_last(cone, residual.edge(a))
+                               ? prices.cone[at(cone)]
+                               : kUnreachable;
         }
     }
-}
-
-void PairRelaxation::neutralise(const ResidualGraph& residual, Prices& prices) {
-    double cost = 0.0;
-    for (std::size_t k = 0; k < cycle_.size(); ++k) {
-        const int next = cycle_[(k + 1) % cycle_.size()];
-        double turn = kUnreachable;
-        for (int p = residual.out_start[at(cycle_[k])]; p < residual.out_start[at(cycle_[k]) + 1]; ++p) {
-            if (residual.out_arc[at(p)] == next) turn = residual.out_cost[at(p)];
-        }
-        cost += reduced_[at(cycle_[k])] + turn;
-    }
-    const double raise = (kAboveNeutral - cost) / static_cast<double>(cycle_.size());
-    for (const int a : cycle_) prices.cone[at(residual.head[at(a)])] += std::max(raise, kAboveNeutral);
 }
 
 double PairRelaxation::evaluate(const ResidualGraph& residual, Prices& prices) {
@@ -88,7 +69,7 @@ double PairRelaxation::evaluate(const ResidualGraph& residual, Prices& prices) {
             continue;
         }
         if (stopped_()) return -kUnreachable;
-        neutralise(residual, prices);
+        raise_cycle(residual, cycle_, reduced_, prices.cone);
         price_arcs(residual, prices);
         kind = -1;  // prices only ever rise: from the first kind again
     }

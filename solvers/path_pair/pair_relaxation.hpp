@@ -37,7 +37,8 @@ class Decisions {
     void decide_end(int cone, End decision);
     [[nodiscard]] End end(int cone) const { return end_[static_cast<std::size_t>(cone)]; }
 
-    /// Whether a leg may start or end at a cone by this edge: one required there stays inside no leg otherwise.
+    /// Whether a leg may start or end at a cone by this edge: one required there stays inside no leg
+    /// otherwise.
     [[nodiscard]] bool may_be_last(int cone, int by_edge) const {
         const int count = edges_at_[static_cast<std::size_t>(cone)];
         return count == 0 || (count == 1 && edge_required(by_edge));
@@ -111,7 +112,6 @@ class PairRelaxation {
     };
     static std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
     void price_arcs(const ResidualGraph& residual, const Prices& prices);
-    void neutralise(const ResidualGraph& residual, Prices& prices);
     double combine();
     void pick_ends(const ResidualGraph& residual, int kind);
 

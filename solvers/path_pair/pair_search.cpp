@@ -5,6 +5,8 @@
 namespace conelane::path_pair {
 namespace {
 
+constexpr int kSecondRounds = 4;  ///< of prices, before the second leg is searched
+
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
@@ -15,6 +17,7 @@ void PairSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbe
     graph_ = &graph;
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
+    second_price_.assign(at(graph.cone_count()), 0.0);
 }
 
 double PairSearch::cutoff(double tolerance) const {
@@ -49,9 +52,8 @@ bool PairSearch::exhaust_kind(const ResidualGraph& residual, int kind, double to
     const LegSearch::Query query{*graph_, residual, r.reduced(), r.start(kind), half_end_, half_backward_};
     bool complete = true;
     const bool all =
-        first_search_.run(query, 0.5 * cutoff(tolerance), budget, [&](std::span<const int> leg, double cost) {
-            const double own_cost = cost - half_end_[at(leg.back())];
-            if (!second_legs(residual, kind, leg, own_cost, tolerance, budget)) {
+        first_search_.run(query, 0.5 * cutoff(tolerance), budget, [&](std::span<const int> leg, double) {
+            if (!second_legs(residual, kind, leg, tolerance, budget)) {
                 complete = false;
                 return -kUnreachable;
             }
@@ -60,10 +62,8 @@ bool PairSearch::exhaust_kind(const ResidualGraph& residual, int kind, double to
     return all && complete;
 }
 
-bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<const int> first,
-                             double first_cost, double tolerance, std::int64_t& budget) {
+void PairSearch::leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first) {
     const PairRelaxation& r = *relaxation_;
-    const int second_kind = r.other(kind);
     taken_.assign(at(graph_->cone_count()), 0);
     blocked_.assign((at(graph_->edge_count()) + 63) / 64, 0);
     taken_[at(residual.tail[at(first.front())])] = 1;
@@ -75,7 +75,6 @@ bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<
     const int first_end = residual.head[at(first.back())];
     usable_.resize(residual.arc.size());
     second_end_.resize(residual.arc.size());
-    second_start_.resize(residual.arc.size());
     for (int a = 0; a < residual.size(); ++a) {
         const int edge = residual.edge(a);
         const int head = residual.head[at(a)];
@@ -83,26 +82,95 @@ bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<
                             (blocked_[at(edge) / 64] >> (at(edge) % 64) & 1) == 0 &&
                             r.forward(second_kind)[at(a)] < kUnreachable;
         usable_[at(a)] = usable ? 1 : 0;
-        second_end_[at(a)] = usable && r.may_end(residual, second_kind, a) &&
-                 r.ends_fit(first_end, head)
-                                 ? 0.0
-                                 : kUnreachable;
-        second_start_[at(a)] = usable ? r.start(second_kind)[at(a)] : kUnreachable;
+        second_end_[at(a)] =
+            usable && r.may_end(residual, second_kind, a) && r.ends_fit(first_end, head) ? 0.0 : kUnreachable;
     }
-    bounds_.backward(residual, r.reduced(), second_end_, usable_, second_backward_);
-    budget -= 8 + residual.size();
+}
+
+double PairSearch::price_second(const ResidualGraph& residual, int second_kind) {
+    const PairRelaxation& r = *relaxation_;
+    second_reduced_.resize(residual.arc.size());
+    second_start_.resize(residual.arc.size());
+    for (int a = 0; a < residual.size(); ++a) {
+        if (usable_[at(a)] == 0) {
+            second_reduced_[at(a)] = second_start_[at(a)] = kUnreachable;
+            continue;
+        }
+        second_reduced_[at(a)] = graph_->cost(residual.edge(a)) + second_price_[at(residual.head[at(a)])];
+        second_start_[at(a)] = r.start(second_kind)[at(a)] < kUnreachable
+                                   ? second_price_[at(residual.tail[at(a)])]
+                                   : kUnreachable;
+    }
+    double offset = 0.0;
+    for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
+        if (taken_[cone] == 0) offset += second_price_[cone];
+    }
+    return offset;
+}
+
+bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<const int> first,
+                             double tolerance, std::int64_t& budget) {
+    const int second_kind = relaxation_->other(kind);
+    leave_out(residual, second_kind, first);
     to_arcs(residual, first, first_arcs_);
+    const double first_cost = incumbent_->leg_cost(first_arcs_);
     best_second_.clear();
-    const LegSearch::Query query{*graph_,       residual,    r.reduced(),
+    const auto limit = [&] { return incumbent_->cutoff() - tolerance - first_cost; };
+    const auto offer = [&](std::span<const int> leg) {
+        to_arcs(residual, leg, second_arcs_);
+        if (incumbent_->offer(first_arcs_, second_arcs_)) best_second_.assign(leg.begin(), leg.end());
+    };
+    double offset = 0.0;
+    for (int round = 0; round < kSecondRounds;) {
+        offset = price_second(residual, second_kind);
+        budget -= residual.size();
+        if (!bounds_.forward(residual, second_reduced_, second_start_, second_forward_, second_before_,
+                             cycle_)) {
+            raise_cycle(residual, cycle_, second_reduced_, second_price_);
+            continue;
+        }
+        ++round;
+        int end = -1;
+        for (int a = 0; a < residual.size(); ++a) {
+            if (second_end_[at(a)] < kUnreachable &&
+                (end < 0 || second_forward_[at(a)] < second_forward_[at(end)])) {
+                end = a;
+            }
+        }
+        if (end < 0 || second_forward_[at(end)] - offset >= limit()) return true;
+        const double value = second_forward_[at(end)] - offset;
+        second_walk_.clear();
+        for (int a = end; a >= 0; a = second_before_[at(a)]) second_walk_.push_back(a);
+        std::ranges::reverse(second_walk_);
+        offer(second_walk_);
+        if (value >= limit()) return true;
+        // Towards one visit of every cone that has a price.
+        visits_.assign(taken_.size(), 0);
+        ++visits_[at(residual.tail[at(second_walk_.front())])];
+        for (const int a : second_walk_) ++visits_[at(residual.head[at(a)])];
+        double squared = 0.0;
+        for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
+            if (taken_[cone] != 0 || (second_price_[cone] <= 0.0 && visits_[cone] < 2)) continue;
+            squared += (visits_[cone] - 1) * (visits_[cone] - 1);
+        }
+        if (squared == 0.0 || round == kSecondRounds) break;
+        const double length = (limit() - value) / squared;
+        for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
+            if (taken_[cone] != 0 || (second_price_[cone] <= 0.0 && visits_[cone] < 2)) continue;
+            second_price_[cone] = std::max(0.0, second_price_[cone] + length * (visits_[cone] - 1));
+        }
+    }
+    // Cycles that no leg reaches were not raised.
+    for (int a = 0; a < residual.size(); ++a) {
+        if (second_forward_[at(a)] == kUnreachable) usable_[at(a)] = 0;
+    }
+    bounds_.backward(residual, second_reduced_, second_end_, usable_, second_backward_);
+    const LegSearch::Query query{*graph_,       residual,    second_reduced_,
                                  second_start_, second_end_, second_backward_};
-    return second_search_.run(query, cutoff(tolerance) - first_cost, budget,
-                              [&](std::span<const int> leg, double) {
-                                  to_arcs(residual, leg, second_arcs_);
-                                  if (incumbent_->offer(first_arcs_, second_arcs_)) {
-                                      best_second_.assign(leg.begin(), leg.end());
-                                  }
-                                  return cutoff(tolerance) - first_cost;
-                              });
+    return second_search_.run(query, limit() + offset, budget, [&](std::span<const int> leg, double) {
+        offer(leg);
+        return limit() + offset;
+    });
 }
 
 bool PairSearch::is_leg(const ResidualGraph& residual, std::span<const int> walk) {
@@ -137,15 +205,8 @@ void PairSearch::complete(const ResidualGraph& residual, int kind, std::span<con
         if (leg_.empty()) return;
     }
     for (int side = 0; side < 3; ++side) {
-        double cost = r.start(kind)[at(leg_.front())];
-        for (std::size_t k = 0; k < leg_.size(); ++k) {
-            cost += r.reduced()[at(leg_[k])];
-            if (k > 0) {
-                cost += graph_->turn_cost(residual.arc[at(leg_[k - 1])], residual.arc[at(leg_[k])]);
-            }
-        }
         std::int64_t tries = budget;
-        second_legs(residual, kind, leg_, cost, tolerance, tries);
+        second_legs(residual, kind, leg_, tolerance, tries);
         if (best_second_.empty()) return;
         leg_ = best_second_;
         kind = r.other(kind);

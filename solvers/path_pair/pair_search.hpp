@@ -18,9 +18,9 @@ namespace conelane::path_pair {
 /// as h(f) <= F(g),
 ///     c(P) + (h(f) - F(f)) / 2 < U' / 2.
 /// So it is enough to enumerate the legs P of this inequality (backward labels with (h - F) / 2 as the cost
-/// of ending), each completed by all legs Q of c(Q) < U' - c(P) in what P leaves: its own cones and all edges
-/// incompatible with it are gone, and one backward pass bounds the rest. With unlike kinds of legs, both have
-/// to be tried as P.
+/// of ending), each completed by the best leg Q in what P leaves: its own cones and all edges incompatible
+/// with it are gone. Nothing couples Q any more, so its bound is by true costs, with prices on cones against
+/// cycles alone. With unlike kinds of legs, both have to be tried as P.
 class PairSearch {
   public:
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
@@ -36,8 +36,10 @@ class PairSearch {
 
   private:
     bool exhaust_kind(const ResidualGraph& residual, int kind, double tolerance, std::int64_t& budget);
-    bool second_legs(const ResidualGraph& residual, int kind, std::span<const int> first, double first_cost,
-                     double tolerance, std::int64_t& budget);
+    bool second_legs(const ResidualGraph& residual, int kind, std::span<const int> first, double tolerance,
+                     std::int64_t& budget);
+    void leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first);
+    double price_second(const ResidualGraph& residual, int second_kind);
     [[nodiscard]] double cutoff(double tolerance) const;
     [[nodiscard]] bool is_leg(const ResidualGraph& residual, std::span<const int> walk);
     void to_arcs(const ResidualGraph& residual, std::span<const int> leg, std::vector<int>& arcs) const;
@@ -54,6 +56,13 @@ class PairSearch {
     std::vector<double> second_end_;
     std::vector<double> second_start_;
     std::vector<double> second_backward_;
+    std::vector<double> second_price_;  ///< by cone
+    std::vector<double> second_reduced_;
+    std::vector<double> second_forward_;
+    std::vector<int> second_before_;
+    std::vector<int> second_walk_;
+    std::vector<int> cycle_;
+    std::vector<int> visits_;
     std::vector<char> taken_;
     std::vector<std::uint64_t> blocked_;
     std::vector<int> first_arcs_;

@@ -1,0 +1,349 @@
+// The units of path-pair: bounds that bound, cliques that are cliques, legs as brute force finds them, and
+// answers that stay true at any deadline.
+
+#include "model/check.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "random_scenes.hpp"
+#include "solvers/cbc_solver.hpp"
+#include "solvers/milp_rld_solver.hpp"
+#include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/clique_separation.hpp"
+#include "solvers/path_pair/leg_bounds.hpp"
+#include "solvers/path_pair/leg_search.hpp"
+#include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair_solver.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+/// A scene's arcs with prices under which no cycle pays, and legs from the near cones to the far ones.
+struct PricedScene {
+    explicit PricedScene(std::uint64_t seed, std::size_t cones = 9) {
+        const Scene scene = tests::random_scene(seed, cones);
+        graph.build(make_problem(scene, {}));
+        std::vector<char> near;
+        for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
+        residual.assign(graph, near);
+        prices.cone.assign(cones, 0.0);
+        boost::random::mt19937_64 random(seed);
+        for (double& price : prices.cone) {
+            price = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
+        }
+        do {
+            reduce(graph, cliques, prices, residual, edge_price, reduced);
+            start.clear();
+            end.clear();
+            for (int a = 0; a < residual.size(); ++a) {
+                const std::size_t at = static_cast<std::size_t>(a);
+                const int tail = residual.tail[at];
+                start.push_back(graph.near(tail) ? prices.cone[static_cast<std::size_t>(tail)]
+                                                 : kUnreachable);
+                end.push_back(graph.near(residual.head[at]) ? kUnreachable : 0.25);
+            }
+            if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
+            raise_cycle(residual, cycle, reduced, prices.cone);
+            ++raised;
+        } while (true);
+        bounds.backward(residual, reduced, end, std::vector<char>(residual.arc.size(), 1), backward);
+    }
+
+    /// Every simple leg without incompatible edges, by plain recursion.
+    void for_each_leg(const std::function<void(const std::vector<int>&, double)>& visit) const {
+        std::vector<int> leg;
+        std::vector<char> used(static_cast<std::size_t>(graph.cone_count()), 0);
+        const std::function<void(int, double)> extend = [&](int a, double cost) {
+            const std::size_t at = static_cast<std::size_t>(a);
+            const std::size_t head = static_cast<std::size_t>(residual.head[at]);
+            if (used[head] != 0) return;
+            for (const int other : leg) {
+                if (graph.incompatible(residual.edge(other), residual.edge(a))) return;
+            }
+            cost += reduced[at];
+            used[head] = 1;
+            leg.push_back(a);
+            if (end[at] < kUnreachable) visit(leg, cost + end[at]);
+            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p) {
+                extend(residual.out_arc[static_cast<std::size_t>(p)],
+                       cost + residual.out_cost[static_cast<std::size_t>(p)]);
+            }
+            leg.pop_back();
+            used[head] = 0;
+        };
+        for (int a = 0; a < residual.size(); ++a) {
+            const std::size_t at = static_cast<std::size_t>(a);
+            if (start[at] == kUnreachable) continue;
+            used[static_cast<std::size_t>(residual.tail[at])] = 1;
+            extend(a, start[at]);
+            used[static_cast<std::size_t>(residual.tail[at])] = 0;
+        }
+    }
+
+    ArcGraph graph;
+    ResidualGraph residual;
+    CliquePool cliques;
+    Prices prices;
+    LegBounds bounds;
+    std::vector<double> edge_price, reduced, start, end, forward, backward;
+    std::vector<int> before, cycle;
+    int raised = 0;
+};
+
+TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
+    int legs = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const PricedScene s(seed);
+        s.for_each_leg([&](const std::vector<int>& leg, double cost) {
+            ++legs;
+            for (const int a : leg) {
+                const std::size_t at = static_cast<std::size_t>(a);
+                ASSERT_LE(s.forward[at] + s.backward[at], cost + 1e-9);
+            }
+        });
+    }
+    EXPECT_GT(legs, 1000);
+}
+
+TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const PricedScene s(seed, 14);
+        double forth = kUnreachable;
+        double back = kUnreachable;
+        for (std::size_t a = 0; a < s.residual.arc.size(); ++a) {
+            forth = std::min(forth, s.forward[a] + s.end[a]);
+            back = std::min(back, s.start[a] + s.reduced[a] + s.backward[a]);
+        }
+        if (forth == kUnreachable) {
+            EXPECT_EQ(back, kUnreachable);
+        } else {
+            EXPECT_NEAR(forth, back, 1e-9) << "seed " << seed;
+        }
+    }
+}
+
+/// A far square of cones whose loop pays: its prices rise until it does not, and no further.
+TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
+    RldParameters parameters;
+    parameters.theta_t = 2.0;
+    parameters.t_crit = 100.0;
+    Scene scene;
+    for (const Point& p : {Point(4, 0), Point(7.2, 0), Point(7.2, 3.2), Point(4, 3.2)}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), p});
+    }
+    ArcGraph graph;
+    graph.build(make_problem(scene, parameters));
+    ResidualGraph residual;
+    residual.assign(graph, std::vector<char>{1, 0, 0, 0});
+    Prices prices;
+    prices.cone.assign(4, 0.0);
+    LegBounds bounds;
+    std::vector<double> edge_price, reduced, forward;
+    std::vector<int> before, cycle;
+    int raised = 0;
+    while (true) {
+        reduce(graph, {}, prices, residual, edge_price, reduced);
+        std::vector<double> start(residual.arc.size(), kUnreachable);
+        for (std::size_t a = 0; a < start.size(); ++a) {
+            if (residual.tail[a] == 0) start[a] = prices.cone[0];
+        }
+        if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
+        raise_cycle(residual, cycle, reduced, prices.cone);
+        ASSERT_LT(++raised, 20);
+    }
+    EXPECT_GT(raised, 0);
+    for (const double price : prices.cone) EXPECT_LT(price, 1.0);
+}
+
+TEST(PathPairLegSearch, FindsTheLegsThatBruteForceFinds) {
+    LegSearch search;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const PricedScene s(seed);
+        double best = kUnreachable;
+        s.for_each_leg([&](const std::vector<int>&, double cost) { best = std::min(best, cost); });
+        const double cutoff = best + 0.5;
+        int expected = 0;
+        s.for_each_leg([&](const std::vector<int>&, double cost) { expected += cost < cutoff ? 1 : 0; });
+        int found = 0;
+        std::int64_t budget = 1'000'000;
+        const LegSearch::Query query{s.graph, s.residual, s.reduced, s.start, s.end, s.backward};
+        EXPECT_TRUE(search.run(query, cutoff, budget, [&](std::span<const int>, double cost) {
+            ++found;
+            EXPECT_LT(cost, cutoff);
+            return cutoff;
+        }));
+        EXPECT_EQ(found, expected);
+    }
+}
+
+/// With prices, a leg costs its own cost plus the prices of what it uses.
+TEST(PathPairPrices, ReducedCostOfALegIsItsCostPlusWhatItUses) {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        PricedScene s(seed);
+        s.for_each_leg([&](const std::vector<int>& leg, double cost) {
+            double sum =
+                s.end[static_cast<std::size_t>(leg.back())] +
+                s.prices
+                    .cone[static_cast<std::size_t>(s.residual.tail[static_cast<std::size_t>(leg.front())])];
+            for (std::size_t k = 0; k < leg.size(); ++k) {
+                const std::size_t at = static_cast<std::size_t>(leg[k]);
+                sum += s.graph.cost(s.residual.edge(leg[k])) +
+                       s.prices.cone[static_cast<std::size_t>(s.residual.head[at])];
+                if (k > 0) {
+                    sum += s.graph.turn_cost(s.residual.arc[static_cast<std::size_t>(leg[k - 1])],
+                                             s.residual.arc[at]);
+                }
+            }
+            ASSERT_NEAR(sum, cost, 1e-9) << "seed " << seed;
+        });
+    }
+}
+
+TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
+    int found = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const PricedScene s(seed, 20);
+        const std::size_t edges = static_cast<std::size_t>(s.graph.edge_count());
+        boost::random::mt19937_64 random(seed);
+        std::vector<double> use;
+        for (std::size_t e = 0; e < edges; ++e) {
+            use.push_back(boost::random::uniform_real_distribution<double>(0.0, 1.0)(random));
+        }
+        CliquePool pool;
+        CliqueSeparation separation;
+        separation.separate(s.graph, use, std::vector<char>(edges, 1), 20, pool);
+        for (int q = 0; q < pool.size(); ++q) {
+            ++found;
+            const std::span<const int> clique = pool.edges(q);
+            double sum = 0.0;
+            for (const int e : clique) {
+                sum += use[static_cast<std::size_t>(e)];
+                for (const int f : clique) ASSERT_TRUE(e == f || s.graph.incompatible(e, f));
+            }
+            EXPECT_GT(sum, 1.0);
+            for (int e = 0; e < s.graph.edge_count(); ++e) {
+                EXPECT_FALSE(std::ranges::all_of(clique, [&](int f) { return s.graph.incompatible(e, f); }));
+            }
+        }
+    }
+    EXPECT_GT(found, 100);
+}
+
+RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                double time_limit_ms = std::numeric_limits<double>::infinity()) {
+    return solver.solve(make_problem(scene, parameters), {time_limit_ms, 1e-9});
+}
+
+/// One instance over many scenes of different sizes, with either default of d_max and either pairing.
+TEST(PathPair, AgreesWithCbc) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(1000 + seed, 6 + seed % 13);
+        RldParameters parameters;
+        if (seed % 2 == 0) parameters.d_max = 16.0;
+        if (seed % 3 == 0) parameters.pairing = Pairing::paper;
+        const RldReport expected = solve(*cbc, scene, parameters);
+        const RldReport report = solve(*path_pair, scene, parameters);
+        ASSERT_EQ(report.status, expected.status);
+        if (report.status != SolveStatus::optimal) continue;
+        ++feasible;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+    }
+    EXPECT_GT(feasible, 60);
+}
+
+TEST(PathPair, EveryStageCanBeSwitchedOff) {
+    const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
+    std::vector<PathPairOptions> ablations(5);
+    ablations[0].fix_arcs = false;
+    ablations[1].clique_prices = false;
+    ablations[2].complete_walks = false;
+    ablations[3].enumerate_pairs = false;
+    ablations[4].root_steps = 1;
+    ablations[4].node_steps = 1;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 12);
+        const RldReport expected = solve(*complete, scene, {});
+        for (const PathPairOptions& options : ablations) {
+            const RldReport report = solve(*make_path_pair_solver(options), scene, {});
+            ASSERT_EQ(report.status, expected.status);
+            if (report.objective) {
+                EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+            }
+        }
+    }
+}
+
+/// Whatever the deadline, the claim is true: the bound is below the optimum, the lane graph is one.
+TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int unfinished = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const Scene scene = tests::random_scene(seed, 24);
+        RldParameters parameters;
+        if (seed % 2 == 0) parameters.pairing = Pairing::paper;
+        const RldReport optimum = solve(*solver, scene, parameters);
+        for (const double limit_ms : {0.0, 0.01, 0.03, 0.1, 0.3}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << limit_ms << " ms");
+            const RldReport report = solve(*solver, scene, parameters, limit_ms);
+            ASSERT_NE(report.status, SolveStatus::error);
+            EXPECT_EQ(report.lane_graph.has_value(), report.objective.has_value());
+            if (report.status == SolveStatus::infeasible) {
+                EXPECT_EQ(optimum.status, SolveStatus::infeasible);
+                continue;
+            }
+            ASSERT_TRUE(report.bound);
+            if (report.status != SolveStatus::optimal) ++unfinished;
+            if (optimum.objective) {
+                EXPECT_LE(*report.bound, *optimum.objective + 1e-9);
+            }
+            if (!report.lane_graph) continue;
+            const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
+            EXPECT_THAT(check(scene, parameters, *report.lane_graph, claim).violations, testing::IsEmpty());
+        }
+    }
+    EXPECT_GT(unfinished, 20);
+}
+
+TEST(PathPair, TakesLargeConeSets) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
+        boost::random::mt19937_64 random(7);
+        boost::random::uniform_real_distribution<double> ahead(0.0, 60.0);
+        boost::random::uniform_real_distribution<double> across(-30.0, 30.0);
+        Scene scene;
+        for (ConeId id = 0; id < 512; ++id) {
+            const double x = ahead(random);
+            scene.cones.push_back({id, {x, across(random)}});
+        }
+        RldParameters parameters;
+        parameters.pairing = pairing;
+        const RldReport report = solve(*solver, scene, parameters, 100.0);
+        ASSERT_NE(report.status, SolveStatus::error);
+        if (!report.lane_graph) continue;
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {false, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+    }
+}
+
+}  // namespace
+}  // namespace conelane::path_pair
