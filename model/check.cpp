@@ -60,6 +60,11 @@ Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const 
     return *std::ranges::min_element(candidates, {}, &Nearest::distance);
 }
 
+/// Whether each segment's ends lie strictly on both sides of the other's line.
+bool cross(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+    return wedge(b - a, c - a) * wedge(b - a, d - a) < 0 && wedge(d - c, a - c) * wedge(d - c, b - c) < 0;
+}
+
 Real fourth(Real value) {
     return value * value * value * value;
 }
@@ -176,8 +181,30 @@ class Checker {
                 if (nearest.distance < static_cast<Real>(p_.d_min) - kTie && ends > nearest.distance + kTie) {
                     violated("(6) edges " + name(a) + " and " + name(b) + " are closer than d_min");
                 }
+                if (p_.forbid_crossing && cross(at[0], at[1], at[2], at[3])) {
+                    violated("crossing: edges " + name(a) + " and " + name(b) + " cross");
+                }
             }
         }
+    }
+
+    [[nodiscard]] Real benefit(const Edge& edge) const {
+        Real weight = p_.w_b;
+        if (p_.use_confidence) {
+            for (const std::size_t cone : {edge.i, edge.j}) weight *= scene_.cones[cone].confidence;
+        }
+        return weight;
+    }
+
+    /// Of an edge between a blue and a yellow cone, and of one near the car on the side that its colour is
+    /// not.
+    [[nodiscard]] int color_faults(const Edge& edge, bool along_the_heading) const {
+        std::set<ConeColor> colors{scene_.cones[edge.i].color, scene_.cones[edge.j].color};
+        int faults = colors.contains(ConeColor::blue) && colors.contains(ConeColor::yellow) ? 1 : 0;
+        const Real left = wedge(heading_, along(position(edge.i), position(edge.j), 0.5L) - car_);
+        if (along_the_heading && left < -kTie && colors.contains(ConeColor::blue)) ++faults;
+        if (along_the_heading && left > kTie && colors.contains(ConeColor::yellow)) ++faults;
+        return faults;
     }
 
     void costs() {
@@ -194,11 +221,13 @@ class Checker {
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
             sum += static_cast<Real>(p_.w_s) * spacing +
-                   static_cast<Real>(p_.w_p) * fourth(across / car_distance) - static_cast<Real>(p_.w_b);
+                   static_cast<Real>(p_.w_p) * fourth(across / car_distance) - benefit(edge);
             const bool close =
                 nearest_points(from, to, car_, car_).distance <= static_cast<Real>(p_.d_h) + kTie;
             const Real angle = std::atan2(across, std::abs(dot(v, heading_)));
-            if (close && angle <= static_cast<Real>(p_.theta_heading) + kTie) ++along_heading;
+            const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
+            if (along_the_heading) ++along_heading;
+            sum += static_cast<Real>(p_.w_color) * static_cast<Real>(color_faults(edge, along_the_heading));
         }
         if (along_heading < 2)
             violated("(9) " + std::to_string(along_heading) + " edges along the heading instead of 2");

@@ -18,6 +18,21 @@ bool within(double value, double limit) {
     return value <= limit + kTieTolerance;
 }
 
+/// Blue cones bound the lane on its left, yellow ones on its right; orange ones stand on both sides.
+double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool along_heading) {
+    const auto either_is = [&](ConeColor color) {
+        return scene.cones[i].color == color || scene.cones[j].color == color;
+    };
+    const bool blue = either_is(ConeColor::blue);
+    const bool yellow = either_is(ConeColor::yellow);
+    double cost = blue && yellow ? 1.0 : 0.0;
+    if (along_heading) {
+        const double left_m = scene.pose.left_m(0.5 * (scene.cones[i].position + scene.cones[j].position));
+        if ((blue && left_m < -kTieTolerance) || (yellow && left_m > kTieTolerance)) cost += 1.0;
+    }
+    return cost;
+}
+
 ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const RldParameters& p, std::size_t i,
                               std::size_t j, double length) {
     const Point& from = scene.cones[i].position;
@@ -30,16 +45,22 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
     const double heading_cost = fourth_power(across / car_distance);     // (25)
     const double acute_angle = std::atan2(across, std::abs(v.dot(heading)));
     const double edge_distance = foot_point(scene.pose.position, {from, to}).distance_m;
+    const bool along_heading = within(edge_distance, p.d_h) && within(acute_angle, p.theta_heading);
+    const double color_cost = color_cost_of(scene, i, j, along_heading);
+    const double benefit =
+        p.use_confidence ? p.w_b * scene.cones[i].confidence * scene.cones[j].confidence : p.w_b;
     return {i,
             j,
             spacing_cost,
             heading_cost,
-            p.w_s * spacing_cost + p.w_p * heading_cost - p.w_b,
-            within(edge_distance, p.d_h) && within(acute_angle, p.theta_heading),
+            color_cost,
+            p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
+            along_heading,
             !within(spacing_cost, p.s_crit) || length == 0.0};
 }
 
-/// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends.
+/// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
+/// forbid_crossing those that cross too.
 void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
     struct Disc {
         Point middle;
@@ -63,7 +84,9 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
             if ((discs[e].middle - discs[other].middle).squaredNorm() > reach * reach) continue;
             if (a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j) continue;
             const SegmentDistance gap = segment_distance(segments[e], segments[other]);
-            if (gap.distance_m < d_min - kTieTolerance && !gap.between_ends) {
+            const bool crossing =
+                problem.parameters.forbid_crossing && segments_cross(segments[e], segments[other]);
+            if (crossing || (gap.distance_m < d_min - kTieTolerance && !gap.between_ends)) {
                 problem.conflicts.emplace_back(e, other);
             }
         }

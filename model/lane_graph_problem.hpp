@@ -20,9 +20,13 @@ struct ProblemEdge {
     std::size_t j;
     double spacing_cost;  ///< s_ij (18), without weight
     double heading_cost;  ///< p_ij (25), without weight
-    double cost;          ///< w_s s_ij + w_p p_ij - w_b (29)
-    bool along_heading;   ///< h_ij of (9)
-    bool high_cost;       ///< s_ij > s_crit (27): never chosen
+    /// One where one cone is blue and the other yellow, and one where an edge along the heading, the only
+    /// place where the car's axis tells sides, is on the wrong side: its midpoint to the right of the axis
+    /// with a blue cone, or to the left with a yellow one.
+    double color_cost;
+    double cost;  ///< w_s s_ij + w_p p_ij + w_color color_ij - w_b (29), with use_confidence - w_b q_i q_j
+    bool along_heading;  ///< h_ij of (9)
+    bool high_cost;      ///< s_ij > s_crit (27): never chosen
 };
 
 /// Two edges that meet in a cone, {i, middle} and {middle, k} with i < k, as indices into `edges`.

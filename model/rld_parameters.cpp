@@ -53,6 +53,9 @@ void validate(const RldParameters& parameters) {
                                    "] " + std::string(field.unit == "1" ? "" : field.unit));
         }
     }
+    if (!(parameters.w_color >= 0.0 && parameters.w_color <= kLargestWeight)) {
+        throw InvalidInput("w_color", "must be in [0, " + std::to_string(kLargestWeight) + "]");
+    }
 }
 
 }  // namespace conelane

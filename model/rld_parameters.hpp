@@ -32,6 +32,11 @@ struct RldParameters {
     double s_crit = 2.5;                ///< largest spacing cost of an edge (27)
     double t_crit = 4.0;                ///< largest angle cost of two adjacent edges (28)
     Pairing pairing = Pairing::near_far;
+
+    // Extras that the paper's conclusion names; off by default.
+    double w_color = 0.0;          ///< weight of the colour cost, see ProblemEdge::color_cost
+    bool use_confidence = false;   ///< an edge's benefit is w_b times the confidences of its two cones
+    bool forbid_crossing = false;  ///< no two edges cross; (7) forbids most crossings already
 };
 
 /// One numeric parameter: how files spell it, where it is, and what it may be.
@@ -44,7 +49,7 @@ struct RldParameterField {
     bool lowest_allowed;  ///< whether `lowest` itself is valid; `highest` always is
     std::string_view meaning;
 };
-/// All numeric parameters in the order of the file format.
+/// All numeric parameters of the paper in the order of the file format; w_color is none of them.
 [[nodiscard]] std::span<const RldParameterField> rld_parameter_fields();
 
 /// Throws InvalidInput naming the first parameter that is not finite or out of its range.

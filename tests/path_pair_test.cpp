@@ -3,7 +3,7 @@
 
 #include "model/check.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "random_scenes.hpp"
+#include "tests/random_scenes.hpp"
 #include "solvers/cbc_solver.hpp"
 #include "solvers/milp_rld_solver.hpp"
 #include "solvers/path_pair/arc_graph.hpp"

@@ -4,12 +4,20 @@
 #include "experiments/files/json_node.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 namespace conelane::experiments {
 namespace {
 
 constexpr std::array kPairings{Pairing::near_far, Pairing::paper};
+
+/// 0 or 1.
+bool is_on(const JsonNode& flag) {
+    const std::int64_t value = flag.integer();
+    if (value != 0 && value != 1) flag.fail("must be 0 or 1");
+    return value == 1;
+}
 
 }  // namespace
 
@@ -20,6 +28,9 @@ RldParameters read_rld_parameters(const std::filesystem::path& file) {
             parameters.*field.value = json.member(field.key).number();
         }
         if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
+        if (const auto weight = json.find("w_color")) parameters.w_color = weight->number();
+        if (const auto flag = json.find("use_confidence")) parameters.use_confidence = is_on(*flag);
+        if (const auto flag = json.find("forbid_crossing")) parameters.forbid_crossing = is_on(*flag);
         json.require_valid([&] { validate(parameters); });
     });
     return parameters;
@@ -32,6 +43,10 @@ void write_rld_parameters(const std::filesystem::path& file, const RldParameters
         json[std::string(field.key)] = parameters.*field.value;
     }
     json["pairing"] = to_string(parameters.pairing);
+    // Extras stand in a file where they are on.
+    if (parameters.w_color != 0.0) json["w_color"] = parameters.w_color;
+    if (parameters.use_confidence) json["use_confidence"] = 1;
+    if (parameters.forbid_crossing) json["forbid_crossing"] = 1;
     AtomicFile output(file);
     output.stream() << json.dump(2) << '\n';
     output.commit();

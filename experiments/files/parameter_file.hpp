@@ -6,7 +6,8 @@
 
 namespace conelane::experiments {
 
-/// RLD parameters from a flat JSON object. Every numeric key is required; `pairing` is near_far where absent.
+/// RLD parameters from a flat JSON object. Every numeric key of the paper is required; `pairing` is near_far
+/// where absent, the extras `w_color`, `use_confidence` and `forbid_crossing` (0 or 1) are off.
 /// Throws InputError naming file and key, and the line of what is no JSON.
 [[nodiscard]] RldParameters read_rld_parameters(const std::filesystem::path& file);
 

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "model/formulation.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// The claim measured: both formulations have the same optimum; the tight one has a stronger relaxation,
+/// fewer rows and columns, and is solved faster. Protocol: the n nearest cones of each scene that has as
+/// many; tight by `cbc`, paper by `cbc-main`, each the faster of the two on it; one thread; times are wall
+/// clock with the program's making (in the paper formulation: updating) included.
+struct FormulationOptions {
+    RldParameters parameters;
+    std::vector<std::size_t> sizes{6, 8, 10, 12, 16, 20, 24, 30};
+    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
+    double time_limit_ms = 10'000.0;   ///< a solve
+};
+
+/// One formulation at one cone-set size. Rows and columns are means over the scenes, times and nodes over all
+/// of them, a solve that ran into the time limit with the time it took.
+struct FormulationRow {
+    std::size_t cones = 0;
+    Formulation formulation = Formulation::tight;
+    std::string solver;
+    std::size_t scenes = 0;
+    std::size_t optimal = 0;
+    std::size_t infeasible = 0;
+    double columns = 0.0;
+    double rows = 0.0;
+    double entries = 0.0;
+    /// (optimum - relaxation) / max(1, |optimum|), over the scenes with a proven optimum; absent without one
+    std::optional<double> median_gap;
+    std::optional<double> mean_gap;
+    double mean_nodes = 0.0;
+    double median_build_ms = 0.0;
+    double median_ms = 0.0;  ///< build and solve
+    double p95_ms = 0.0;
+};
+
+/// Rows by size, tight before paper; sizes that no scene has are left out. Throws InvalidInput naming the
+/// scene where the optima of the two formulations differ by more than 1e-6, or a solver fails.
+[[nodiscard]] std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> scenes,
+                                                           const FormulationOptions& options);
+
+/// A table for a terminal, a line per row and a final newline.
+[[nodiscard]] std::string formulation_table(std::span<const FormulationRow> rows);
+
+/// A JSON object a line and row, with commit, compiler and machine. Throws InputError where the file cannot
+/// be written.
+void write_formulation_rows(const std::filesystem::path& file, std::span<const FormulationRow> rows);
+
+}  // namespace conelane::experiments
