@@ -15,10 +15,10 @@ namespace {
 /// Cone-set size of the RLD paper's on-board runs.
 constexpr std::size_t kRldConeSet = 12;
 
-std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation, std::size_t nearest,
-                                       const MethodOptions& options) {
+std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
+                                       std::optional<std::size_t> nearest, const MethodOptions& options) {
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {options.rld_parameters, options.nearest.value_or(nearest), 1e-9});
+                             {options.rld_parameters, options.nearest ? options.nearest : nearest, 1e-9});
 }
 
 /// Shows its detector the nearest cones only.
@@ -42,9 +42,17 @@ std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
     return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
 
-constexpr std::array<MethodEntry, 2> kMethods{{
+constexpr std::array<MethodEntry, 4> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
+    {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
+     [](const MethodOptions& options) {
+         return make_rld("cbc-main", Formulation::paper, kRldConeSet, options);
+     }},
+    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt,
+     [](const MethodOptions& options) {
+         return make_rld("path-pair", Formulation::tight, std::nullopt, options);
+     }},
     {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt,
      [](const MethodOptions& options) { return cut_to(make_clc_detector({}), options.nearest); }},
 }};

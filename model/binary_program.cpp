@@ -4,7 +4,7 @@ namespace conelane {
 
 std::string to_string(const Label& label) {
     std::string text(label.family);
-    for (const std::int32_t index : label.index) {
+    for (const std::int32_t index : {label.index.first, label.index.second, label.index.third}) {
         if (index >= 0) text.append("_").append(std::to_string(index));
     }
     return text;
@@ -14,6 +14,13 @@ int BinaryProgram::add_column(const Label& label, double objective, bool integer
                               double upper) {
     columns.push_back({label, objective, lower, upper, integer});
     return static_cast<int>(columns.size()) - 1;
+}
+
+void BinaryProgram::truncate_rows(std::size_t first) {
+    rows.resize(first);
+    row_starts.resize(first + 1);
+    entry_columns.resize(static_cast<std::size_t>(row_starts.back()));
+    entry_values.resize(entry_columns.size());
 }
 
 RowWriter::RowWriter(BinaryProgram& program) : program_(program), position_(program.columns.size(), -1) {}

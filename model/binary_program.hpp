@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,8 +13,13 @@ namespace conelane {
 /// Name of a column or row: a symbol or family with up to three indices, spelt "f_3_1_7". The family outlives
 /// the program (a string literal).
 struct Label {
+    struct Index {
+        std::int32_t first = -1;  ///< -1 where absent
+        std::int32_t second = -1;
+        std::int32_t third = -1;
+    };
     std::string_view family;
-    std::array<std::int32_t, 3> index{-1, -1, -1};  ///< -1 where absent
+    Index index{};
 };
 [[nodiscard]] std::string to_string(const Label& label);
 
@@ -50,6 +55,8 @@ struct BinaryProgram {
 
     int add_column(const Label& label, double objective, bool integer, double lower = 0.0,
                    double upper = 1.0);
+    /// Drops all rows from this one on.
+    void truncate_rows(std::size_t first);
 };
 
 /// Writes rows into a program; terms of the same column add up.

@@ -7,16 +7,16 @@
 namespace conelane {
 namespace {
 
-constexpr std::array kPaper{
-    constraints::inlier_degree, constraints::four_endpoints, constraints::two_paths,
-    constraints::width_pairs,   constraints::heading,        constraints::near_endpoints,
-    constraints::far_marks,     constraints::far_distance,   constraints::turn_products,
-    constraints::edge_limits,   constraints::turn_limits};
+constexpr std::array kPaperFixed{constraints::inlier_degree, constraints::four_endpoints,
+                                 constraints::two_paths, constraints::turn_products};
+constexpr std::array kPaper{constraints::width_pairs, constraints::heading,      constraints::near_endpoints,
+                            constraints::far_marks,   constraints::far_distance, constraints::edge_limits,
+                            constraints::turn_limits};
 constexpr std::array kTight{constraints::turn_flow, constraints::four_endpoints, constraints::width_cliques,
-                            constraints::heading,   constraints::near_endpoints, constraints::far_pairs};
+                            constraints::heading,   constraints::near_endpoints, constraints::far_partners};
 
-constexpr FormulationParts kPaperParts{EdgeExtent::all_pairs, true, true, true, kPaper};
-constexpr FormulationParts kTightParts{EdgeExtent::candidates, false, false, false, kTight};
+constexpr FormulationParts kPaperParts{EdgeExtent::all_pairs, true, true, true, kPaperFixed, kPaper};
+constexpr FormulationParts kTightParts{EdgeExtent::candidates, false, false, false, {}, kTight};
 
 }  // namespace
 

@@ -38,7 +38,9 @@ struct FormulationParts {
     bool high_cost_turns;  ///< f columns for forbidden turns too
     bool far_marks;        ///< u columns
     bool all_integer;
-    std::span<const ConstraintFamily> families;
+    /// Families whose rows depend on the number of cones alone; they come first.
+    std::span<const ConstraintFamily> fixed_families;
+    std::span<const ConstraintFamily> families;  ///< the others
 };
 [[nodiscard]] const FormulationParts& parts(Formulation formulation);
 

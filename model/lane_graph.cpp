@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 
 namespace conelane {
@@ -66,6 +67,20 @@ std::optional<Lane> to_lane(const LaneGraph& graph, const Scene& scene) {
     for (const std::size_t cone : (*boundaries)[left]) lane.left.push_back(scene.cones[cone].id);
     for (const std::size_t cone : (*boundaries)[1 - left]) lane.right.push_back(scene.cones[cone].id);
     return lane;
+}
+
+LaneGraph map_by_cone_id(const Scene& previous, const LaneGraph& graph, const Scene& next) {
+    std::unordered_map<ConeId, std::size_t> index_of;
+    for (std::size_t cone = 0; cone < next.cones.size(); ++cone) index_of.emplace(next.cones[cone].id, cone);
+    LaneGraph mapped;
+    for (const Edge& edge : graph.edges) {
+        const auto a = index_of.find(previous.cones[edge.i].id);
+        const auto b = index_of.find(previous.cones[edge.j].id);
+        if (a != index_of.end() && b != index_of.end())
+            mapped.edges.push_back(make_edge(a->second, b->second));
+    }
+    std::ranges::sort(mapped.edges);
+    return mapped;
 }
 
 }  // namespace conelane

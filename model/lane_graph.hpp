@@ -40,4 +40,8 @@ struct LaneGraph {
 /// first end starts. Nothing where the graph does not consist of exactly two simple paths.
 [[nodiscard]] std::optional<Lane> to_lane(const LaneGraph& graph, const Scene& scene);
 
+/// A lane graph of one scene as edges of the next: cones are the same where their ids are; an edge whose cone
+/// is gone is left out. Precondition: the graph's indices are below the cone count of `previous`.
+[[nodiscard]] LaneGraph map_by_cone_id(const Scene& previous, const LaneGraph& graph, const Scene& next);
+
 }  // namespace conelane

@@ -4,10 +4,42 @@
 
 namespace conelane {
 
-LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation) : problem_(problem) {
-    const FormulationParts& formulation_parts = parts(formulation);
+LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation)
+    : problem_(&problem), formulation_(formulation) {
+    build();
+}
+
+void LaneGraphModel::update(const LaneGraphProblem& problem) {
+    const bool same_size = problem.cone_count == problem_cones_;
+    problem_ = &problem;
+    if (!same_size || parts(formulation_).fixed_families.empty()) {
+        build();
+        return;
+    }
+    refresh_costs();
+    program_.truncate_rows(fixed_rows_);
+    write_rows(parts(formulation_).families);
+}
+
+void LaneGraphModel::build() {
+    problem_cones_ = problem_->cone_count;
+    columns_.edge.clear();
+    columns_.turn.clear();
+    columns_.inlier.clear();
+    columns_.not_far.clear();
+    program_.columns.clear();
+    program_.truncate_rows(0);
+    add_columns();
+    write_rows(parts(formulation_).fixed_families);
+    fixed_rows_ = program_.rows.size();
+    write_rows(parts(formulation_).families);
+}
+
+void LaneGraphModel::add_columns() {
+    const FormulationParts& formulation_parts = parts(formulation_);
     const bool all_integer = formulation_parts.all_integer;
     const auto index = [](std::size_t value) { return static_cast<std::int32_t>(value); };
+    const LaneGraphProblem& problem = *problem_;
     program_.columns.reserve(problem.edges.size() + problem.turns.size() + 2 * problem.cone_count);
 
     columns_.edge.reserve(problem.edges.size());
@@ -36,12 +68,24 @@ LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation form
             columns_.not_far.push_back(program_.add_column({"u", {index(cone)}}, 0.0, all_integer));
         }
     }
+}
+
+void LaneGraphModel::refresh_costs() {
+    for (std::size_t e = 0; e < problem_->edges.size(); ++e) {
+        program_.columns[static_cast<std::size_t>(columns_.edge[e])].objective = problem_->edges[e].cost;
+    }
+    for (std::size_t t = 0; t < problem_->turns.size(); ++t) {
+        program_.columns[static_cast<std::size_t>(columns_.turn[t])].objective = problem_->turns[t].cost;
+    }
+}
+
+void LaneGraphModel::write_rows(std::span<const ConstraintFamily> families) {
     RowWriter rows(program_);
-    for (const ConstraintFamily family : formulation_parts.families) family({problem, columns_, rows});
+    for (const ConstraintFamily family : families) family({*problem_, columns_, rows});
 }
 
 std::vector<bool> LaneGraphModel::chosen_edges(std::span<const double> point) const {
-    std::vector<bool> chosen(problem_.edges.size());
+    std::vector<bool> chosen(problem_->edges.size());
     for (std::size_t edge = 0; edge < chosen.size(); ++edge) {
         chosen[edge] = point[static_cast<std::size_t>(columns_.edge[edge])] > 0.5;
     }
@@ -50,9 +94,9 @@ std::vector<bool> LaneGraphModel::chosen_edges(std::span<const double> point) co
 
 LaneGraph LaneGraphModel::decode(std::span<const double> point) const {
     LaneGraph graph;
-    for (std::size_t edge = 0; edge < problem_.edges.size(); ++edge) {
+    for (std::size_t edge = 0; edge < problem_->edges.size(); ++edge) {
         if (point[static_cast<std::size_t>(columns_.edge[edge])] > 0.5) {
-            graph.edges.push_back({problem_.edges[edge].i, problem_.edges[edge].j});
+            graph.edges.push_back({problem_->edges[edge].i, problem_->edges[edge].j});
         }
     }
     return graph;
@@ -60,9 +104,9 @@ LaneGraph LaneGraphModel::decode(std::span<const double> point) const {
 
 std::vector<ProgramRow> LaneGraphModel::separate(std::span<const double> point) const {
     const std::vector<bool> chosen = chosen_edges(point);
-    std::vector<ProgramRow> rows = constraints::separate_cycles(problem_, columns_, chosen);
-    if (rows.empty() && problem_.parameters.pairing == Pairing::near_far) {
-        rows = constraints::separate_near_near(problem_, columns_, chosen);
+    std::vector<ProgramRow> rows = constraints::separate_cycles(*problem_, columns_, chosen);
+    if (rows.empty() && problem_->parameters.pairing == Pairing::near_far) {
+        rows = constraints::separate_near_near(*problem_, columns_, chosen);
     }
     return rows;
 }

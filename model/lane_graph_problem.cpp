@@ -92,6 +92,15 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem) {
     }
 }
 
+/// By problem edge. Precondition: the graph's edges are ascending.
+std::vector<bool> chosen_edges(const LaneGraphProblem& problem, const LaneGraph& graph) {
+    std::vector<bool> chosen(problem.edges.size(), false);
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        chosen[e] = std::ranges::binary_search(graph.edges, Edge{problem.edges[e].i, problem.edges[e].j});
+    }
+    return chosen;
+}
+
 }  // namespace
 
 LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
@@ -133,20 +142,50 @@ LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameter
 }
 
 double objective(const LaneGraphProblem& problem, const LaneGraph& graph) {
-    std::vector<bool> chosen(problem.edges.size(), false);
+    const std::vector<bool> chosen = chosen_edges(problem, graph);
     double sum = 0.0;
-    std::size_t found = 0;
-    for (std::size_t e = 0; e < problem.edges.size() && found < graph.edges.size(); ++e) {
-        const Edge edge{problem.edges[e].i, problem.edges[e].j};
-        if (!std::ranges::binary_search(graph.edges, edge)) continue;
-        chosen[e] = true;
-        ++found;
-        sum += problem.edges[e].cost;
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        if (chosen[e]) sum += problem.edges[e].cost;
     }
     for (const ProblemTurn& turn : problem.turns) {
         if (chosen[turn.edge_i] && chosen[turn.edge_k]) sum += turn.cost;
     }
     return sum;
+}
+
+bool is_feasible(const LaneGraphProblem& problem, const LaneGraph& graph) {
+    const std::vector<bool> chosen = chosen_edges(problem, graph);
+    std::size_t allowed = 0;
+    std::size_t along_heading = 0;
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        if (!chosen[e]) continue;
+        if (!problem.edges[e].high_cost) ++allowed;
+        if (problem.edges[e].along_heading) ++along_heading;
+    }
+    if (allowed != graph.edges.size() || along_heading < 2) return false;
+    const auto both_chosen = [&](std::size_t a, std::size_t b) { return chosen[a] && chosen[b]; };
+    for (const auto& [first, second] : problem.conflicts) {
+        if (both_chosen(first, second)) return false;
+    }
+    for (const ProblemTurn& turn : problem.turns) {
+        if (turn.high_cost && both_chosen(turn.edge_i, turn.edge_k)) return false;
+    }
+    const auto boundaries = paths(graph, problem.cone_count);
+    if (!boundaries || boundaries->size() != 2) return false;
+    std::vector<std::size_t> far_ends;
+    for (const std::vector<std::size_t>& path : *boundaries) {
+        if (problem.parameters.pairing == Pairing::near_far &&
+            problem.near[path.front()] == problem.near[path.back()]) {
+            return false;
+        }
+        for (const std::size_t end : {path.front(), path.back()}) {
+            if (!problem.near[end]) far_ends.push_back(end);
+        }
+    }
+    std::ranges::sort(far_ends);
+    return far_ends.size() == 2 &&
+           std::ranges::find(problem.far_apart, std::pair(far_ends[0], far_ends[1])) ==
+               problem.far_apart.end();
 }
 
 }  // namespace conelane

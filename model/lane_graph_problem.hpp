@@ -63,4 +63,8 @@ struct LaneGraphProblem {
 /// is listed in the problem.
 [[nodiscard]] double objective(const LaneGraphProblem& problem, const LaneGraph& graph);
 
+/// Whether a set of edges fulfils every constraint of the problem, the pairing included. An edge that the
+/// problem does not list is none that it allows.
+[[nodiscard]] bool is_feasible(const LaneGraphProblem& problem, const LaneGraph& graph);
+
 }  // namespace conelane

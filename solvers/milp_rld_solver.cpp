@@ -4,6 +4,7 @@
 #include "solvers/deadline.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,28 +22,45 @@ class MilpRldSolver : public RldSolver {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch build_watch;
         RldReport report;
-        const LaneGraphModel model(problem, formulation_);
-        const std::unique_ptr<MilpSession> session = solver_->load(model.program());
+        if (problem.edges.empty()) {
+            report.status = SolveStatus::infeasible;
+            return report;
+        }
+        if (model_) {
+            model_->update(problem);
+        } else {
+            model_.emplace(problem, formulation_);
+        }
+        const std::unique_ptr<MilpSession> session = solver_->load(model_->program());
         report.build_ms = build_watch.elapsed_ms();
 
         const Stopwatch solve_watch;
-        solve_and_separate(problem, model, *session, limits, deadline, report);
+        const bool has_start = limits.start != nullptr && is_feasible(problem, *limits.start);
+        if (has_start) take(problem, *limits.start, report);
+        solve_and_separate(problem, *session, limits, deadline, report);
         report.solve_ms = solve_watch.elapsed_ms();
         return report;
     }
 
   private:
-    static void solve_and_separate(const LaneGraphProblem& problem, const LaneGraphModel& model,
-                                   MilpSession& session, const SolveLimits& limits, const Deadline& deadline,
-                                   RldReport& report) {
+    static void take(const LaneGraphProblem& problem, LaneGraph graph, RldReport& report) {
+        report.objective = objective(problem, graph);
+        report.lane_graph = std::move(graph);
+    }
+
+    /// A lane graph in the report is the start: what is looked for is a better one.
+    void solve_and_separate(const LaneGraphProblem& problem, MilpSession& session, const SolveLimits& limits,
+                            const Deadline& deadline, RldReport& report) const {
+        const bool has_start = report.lane_graph.has_value();
+        MilpLimits round_limits{deadline.remaining_ms(), limits.absolute_gap};
+        if (has_start) round_limits.cutoff = *report.objective - limits.absolute_gap;
         while (true) {
-            SolveLimits remaining = limits;
-            remaining.time_limit_ms = deadline.remaining_ms();
-            if (remaining.time_limit_ms <= 0.0) {
-                report.status = SolveStatus::time_limit;
+            round_limits.time_limit_ms = deadline.remaining_ms();
+            if (round_limits.time_limit_ms <= 0.0) {
+                report.status = has_start ? SolveStatus::feasible : SolveStatus::time_limit;
                 return;
             }
-            const MilpReport round = session.solve(remaining);
+            const MilpReport round = session.solve(round_limits);
             ++report.rounds;
             report.nodes += round.nodes;
             report.status = round.status;
@@ -50,12 +68,13 @@ class MilpRldSolver : public RldSolver {
             // Rows only ever tighten the program: every round's bound holds for the problem.
             if (round.bound) report.bound = std::max(report.bound.value_or(*round.bound), *round.bound);
             if (round.status == SolveStatus::infeasible) report.bound.reset();
-            if (round.point.empty()) return;
-
-            const std::vector<ProgramRow> violated = model.separate(round.point);
+            if (round.point.empty()) {
+                if (has_start) keep_start(round_limits.cutoff, report);
+                return;
+            }
+            const std::vector<ProgramRow> violated = model_->separate(round.point);
             if (violated.empty()) {
-                report.lane_graph = model.decode(round.point);
-                report.objective = objective(problem, *report.lane_graph);
+                take(problem, model_->decode(round.point), report);
                 // A bound comes from the solver's own sums: it may exceed the objective by rounding only.
                 if (report.bound) report.bound = std::min(*report.bound, *report.objective);
                 return;
@@ -64,8 +83,23 @@ class MilpRldSolver : public RldSolver {
         }
     }
 
+    static void keep_start(double cutoff, RldReport& report) {
+        if (report.status == SolveStatus::infeasible) {
+            report.status = SolveStatus::optimal;
+            report.bound = cutoff;
+        } else if (report.status == SolveStatus::time_limit) {
+            report.status = SolveStatus::feasible;
+            // With a cutoff, what a solver proved is that no point below its bound is left, up to the cutoff.
+            if (report.bound) report.bound = std::min(*report.bound, cutoff);
+        } else {
+            report.lane_graph.reset();
+            report.objective.reset();
+        }
+    }
+
     std::unique_ptr<MilpSolver> solver_;
     Formulation formulation_;
+    std::optional<LaneGraphModel> model_;  ///< built once, then updated
 };
 
 }  // namespace

@@ -3,10 +3,19 @@
 #include "model/binary_program.hpp"
 #include "solvers/solve_report.hpp"
 
+#include <limits>
 #include <memory>
 #include <span>
 
 namespace conelane {
+
+/// Limits of one solve of a program, see SolveLimits.
+struct MilpLimits {
+    double time_limit_ms = std::numeric_limits<double>::infinity();
+    double absolute_gap = 1e-9;
+    /// Only points with a smaller objective are wanted: status infeasible then says that there is none.
+    double cutoff = std::numeric_limits<double>::infinity();
+};
 
 /// One program loaded into a MILP solver; rows may be added between solves. Serves one thread.
 class MilpSession {
@@ -14,7 +23,7 @@ class MilpSession {
     virtual ~MilpSession() = default;
 
     /// Solves the program as it stands. A returned point is integral within 1e-6 on integer columns.
-    [[nodiscard]] virtual MilpReport solve(const SolveLimits& limits) = 0;
+    [[nodiscard]] virtual MilpReport solve(const MilpLimits& limits) = 0;
     virtual void add_rows(std::span<const ProgramRow> rows) = 0;
 };
 
@@ -22,6 +31,7 @@ class MilpSession {
 class MilpSolver {
   public:
     virtual ~MilpSolver() = default;
+    /// Precondition: the program has a column.
     [[nodiscard]] virtual std::unique_ptr<MilpSession> load(const BinaryProgram& program) const = 0;
 };
 

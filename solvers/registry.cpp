@@ -1,21 +1,40 @@
 #include "solvers/registry.hpp"
 
+#include "solvers/cbc_main_solver.hpp"
 #include "solvers/cbc_solver.hpp"
+#include "solvers/clp_bb_solver.hpp"
 #include "solvers/exhaustive.hpp"
+#include "solvers/glpk_solver.hpp"
 #include "solvers/milp_rld_solver.hpp"
+#include "solvers/path_pair_solver.hpp"
+#include "solvers/symphony_solver.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 namespace conelane {
 namespace {
 
-constexpr std::array<RldSolverEntry, 2> kSolvers{{
-    {"cbc", "CBC in process, CbcModel's branch and bound", true,
-     [](Formulation formulation) { return make_milp_rld_solver(make_cbc_solver(), formulation); }},
+template <std::unique_ptr<MilpSolver> (*make)()>
+std::unique_ptr<RldSolver> make_milp(Formulation formulation) {
+    return make_milp_rld_solver(make(), formulation);
+}
+
+constexpr RldSolverEntry kSolvers[]{
+    {"cbc", "CBC in process, CbcModel's branch and bound", true, make_milp<make_cbc_solver>},
+    {"cbc-main", "CBC's full machinery, one at a time", true, make_milp<make_cbc_main_solver>},
+    {"clp-bb", "depth-first branch and bound on a warm Clp", true, make_milp<make_clp_bb_solver>},
+#ifdef CONELANE_HAS_GLPK
+    {"glpk", "GLPK's branch and bound", true, make_milp<make_glpk_solver>},
+#endif
+#ifdef CONELANE_HAS_SYMPHONY
+    {"symphony", "SYMPHONY's branch and cut, one at a time", true, make_milp<make_symphony_solver>},
+#endif
     {"exhaustive", "every pair of paths, at most 9 cones", false,
      [](Formulation) { return make_exhaustive_solver(); }},
-}};
+    {"path-pair", "exact branch and bound over pairs of paths", false,
+     [](Formulation) { return make_path_pair_solver(); }},
+};
 
 }  // namespace
 
@@ -25,7 +44,7 @@ std::span<const RldSolverEntry> rld_solvers() {
 
 const RldSolverEntry* find_rld_solver(std::string_view name) {
     const auto entry = std::ranges::find(kSolvers, name, &RldSolverEntry::name);
-    return entry == kSolvers.end() ? nullptr : &*entry;
+    return entry == std::end(kSolvers) ? nullptr : &*entry;
 }
 
 }  // namespace conelane

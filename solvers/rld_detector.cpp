@@ -33,11 +33,22 @@ class RldDetector : public LaneDetector {
                                 : solve(scene, limits);
     }
 
+    void reset() override { previous_.reset(); }
+
   private:
+    struct Solution {
+        Scene scene;
+        LaneGraph graph;
+    };
+
     LaneAnswer solve(const Scene& scene, const DetectionLimits& limits) {
         const Deadline deadline(limits.time_limit_ms);
         const LaneGraphProblem problem = make_problem(scene, options_.parameters, solver_->extent());
-        const RldReport report = solver_->solve(problem, {deadline.remaining_ms(), options_.absolute_gap});
+        std::optional<LaneGraph> start;
+        if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, scene);
+        const RldReport report = solver_->solve(
+            problem, {deadline.remaining_ms(), options_.absolute_gap, start ? &*start : nullptr});
+        if (options_.warm_start && report.lane_graph) previous_ = Solution{scene, *report.lane_graph};
         LaneAnswer answer;
         answer.status = lane_status(report.status);
         answer.message = report.message;
@@ -58,6 +69,7 @@ class RldDetector : public LaneDetector {
 
     std::unique_ptr<RldSolver> solver_;
     RldDetectorOptions options_;
+    std::optional<Solution> previous_;  ///< with warm_start only
 };
 
 }  // namespace

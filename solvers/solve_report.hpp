@@ -20,10 +20,16 @@ enum class SolveStatus {
 };
 [[nodiscard]] std::string_view to_string(SolveStatus status);
 
-/// The same for every solver.
+/// The same for every solver, and each runs on one thread, without a relative gap. Wall clock: every backend
+/// keeps a deadline of its own and the incumbent with it. A MILP solver knows objectives to the tolerance of
+/// its LP, about 1e-7, whatever gap is asked for: CBC and SYMPHONY look for points that are better by 1e-7 at
+/// least, GLPK by 1e-9 of the objective; clp-bb takes the gap as it is.
 struct SolveLimits {
     double time_limit_ms = std::numeric_limits<double>::infinity();  ///< wall clock, from the call
     double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal
+    /// A lane graph to start from, or nullptr: a hint that solvers may use as their first incumbent. One that
+    /// is not feasible for the problem is dropped.
+    const LaneGraph* start = nullptr;
 };
 
 /// What a MILP solver answers. Absent values are unknown.

@@ -64,7 +64,7 @@ constexpr const char* kScene =
 TEST_F(Program, HelpIsEverywhere) {
     EXPECT_EQ(run("--help").exit_code, 0);
     for (const char* command :
-         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare"}) {
+         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -233,6 +233,70 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+}
+
+/// Lanes files hold the same but for the times.
+std::vector<Lane> lanes_in(const std::filesystem::path& file) {
+    std::vector<Lane> lanes;
+    for (const LaneRecord& record : read_lanes(file)) lanes.push_back(record.answer.lane);
+    return lanes;
+}
+
+constexpr const char* kTwoTracks =
+    "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 ";
+
+TEST_F(Program, AStoppedComparisonGoesOn) {
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    // What a run leaves that is killed while it writes: some lines, the last one torn.
+    std::filesystem::copy(path("whole"), path("stopped"));
+    const std::string lines = text_of(path("whole") / "clc.lanes.jsonl");
+    for (const char* file : {"clc.lanes.jsonl", "scores.jsonl", "results.jsonl", "table.txt"}) {
+        std::filesystem::remove(path("stopped") / file);
+    }
+    file_with(lines.substr(0, lines.size() / 2), "stopped/clc.lanes.jsonl.part");
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out stopped").exit_code, 0);
+    EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
+    EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
+}
+
+TEST_F(Program, OtherOptionsInTheSameDirectoryStartAnew) {
+    ASSERT_EQ(
+        run("compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results").exit_code, 0);
+    const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
+    ASSERT_EQ(
+        run("compare --tracks generated:circle --every 15 --methods clc --fp 0,0.3 --out results").exit_code,
+        0);
+    EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
+}
+
+TEST_F(Program, MergedShardsEqualOneRun) {
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    for (const char* shard : {"0", "1", "2"}) {
+        ASSERT_EQ(run(std::string(kTwoTracks) + "--shard " + shard + "/3 --out part" + shard).exit_code, 0);
+    }
+    ASSERT_EQ(run("merge part2 part0 part1 --out merged").exit_code, 0);
+    EXPECT_EQ(text_of(path("merged") / "scenes.scenes.jsonl"),
+              text_of(path("whole") / "scenes.scenes.jsonl"));
+    for (const char* method : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
+        EXPECT_EQ(lanes_in(path("merged") / method), lanes_in(path("whole") / method));
+    }
+    expect_refused("merge part0 part1 --out again", {"2/3 is missing"});
+    expect_refused("merge part0 part1 part1 part2 --out again", {"1/3 is there twice"});
+    expect_refused("merge part0 whole part2 --out again", {"whole", "shard"});
+    ASSERT_EQ(
+        run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
+    expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
+    expect_refused("compare --shard 3/3 --out again", {"--shard"});
+}
+
+TEST_F(Program, SweepComparesConeSetSizes) {
+    const Outcome outcome = run("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("clc n=8"));
+    for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
+        EXPECT_EQ(record.nearest, 8U);
+        EXPECT_LE(record.answer.lane.left.size() + record.answer.lane.right.size(), 8U);
+    }
 }
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -44,9 +46,10 @@ Scene scene_of(const std::vector<Point>& positions) {
 /// Edges as cone indices; the car stands at the origin and looks along +x.
 class SolverContract : public testing::TestWithParam<Contestant> {
   protected:
-    RldReport solve(const Scene& scene, const RldParameters& parameters = {}) {
+    RldReport solve(const Scene& scene, const RldParameters& parameters = {},
+                    const SolveLimits& limits = {}) {
         const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
-        return solver->solve(make_problem(scene, parameters, solver->extent()), {});
+        return solver->solve(make_problem(scene, parameters, solver->extent()), limits);
     }
 };
 
@@ -155,8 +158,42 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
     EXPECT_GT(feasible, 60);
 }
 
+/// The optimum as start stays the optimum, with proof; so does any other lane graph; one that is none for
+/// this problem is dropped.
+TEST_P(SolverContract, AStartChangesNoOptimum) {
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene_now = tests::random_scene(seed, 6 + seed % 4);
+        const RldParameters parameters;
+        const RldReport cold = solve(scene_now, parameters);
+        LaneGraph strange{{{0, 1}}};
+        const RldReport dropped = solve(scene_now, parameters, {.start = &strange});
+        ASSERT_EQ(dropped.status, cold.status);
+        if (cold.status != SolveStatus::optimal) continue;
+        EXPECT_NEAR(*dropped.objective, *cold.objective, 1e-6);
+        RldParameters other_weights;
+        other_weights.w_p = 0.0;
+        other_weights.w_s = 3.0;
+        const LaneGraph other = *solve(scene_now, other_weights).lane_graph;
+        for (const LaneGraph& start : {*cold.lane_graph, other}) {
+            ++started;
+            const RldReport warm = solve(scene_now, parameters, {.start = &start});
+            ASSERT_EQ(warm.status, SolveStatus::optimal) << warm.message;
+            EXPECT_NEAR(*warm.objective, *cold.objective, 1e-6);
+            EXPECT_THAT(check(scene_now, parameters, *warm.lane_graph, {true, *warm.objective, warm.bound})
+                            .violations,
+                        testing::IsEmpty());
+        }
+    }
+    EXPECT_GT(started, 20);
+}
+
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(contestants()), [](const auto& test) {
-    return std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
+    std::string name =
+        std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
+    std::ranges::replace(name, '-', '_');
+    return name;
 });
 
 }  // namespace

@@ -15,5 +15,7 @@ void add_check_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_report_command(CLI::App& program);
+void add_sweep_command(CLI::App& program);
+void add_merge_command(CLI::App& program);
 
 }  // namespace conelane::experiments

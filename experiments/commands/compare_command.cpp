@@ -1,8 +1,10 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
-#include "experiments/comparison.hpp"
+#include "experiments/comparison/comparison.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
+#include <charconv>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,34 +14,63 @@
 namespace conelane::experiments {
 namespace {
 
+/// As in the RLD paper.
+constexpr double kTimeLimit_ms = 400.0;
+
+/// What `compare` and `sweep` share.
 struct Options {
-    Options() {
-        comparison.methods = {"rld-cbc", "clc"};
-        comparison.scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
-        comparison.scenes.ranges_m = {30.0};
-        comparison.scenes.every_m = 4.4;
-        comparison.run.limits.time_limit_ms = 400.0;  // as in the RLD paper
-    }
     ComparisonOptions comparison;
+    std::vector<std::string> methods;
     ParameterSource parameters;
     std::string directory;
-    bool full = false;
 };
 
-void compare_all(Options& options, const CLI::App& command) {
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    const std::size_t slash = text.find('/');
+    const char* const end = text.data() + text.size();
+    const auto index = std::from_chars(text.data(), end, shard.index);
+    if (slash != std::string::npos && index.ec == std::errc{} && index.ptr == text.data() + slash) {
+        const auto count = std::from_chars(text.data() + slash + 1, end, shard.count);
+        if (count.ec == std::errc{} && count.ptr == end && shard.index < shard.count) return shard;
+    }
+    throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
+}
+
+void add_shared_options(CLI::App& command, Options& options) {
+    ComparisonOptions& comparison = options.comparison;
+    command.add_option(
+        "--tracks", comparison.tracks,
+        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
+    command.add_option("--methods", options.methods, "see `conelane methods`")
+        ->delimiter(',')
+        ->capture_default_str();
+    add_scene_options(command, comparison.scenes);
+    comparison.run.limits.time_limit_ms = kTimeLimit_ms;
+    add_time_limit_option(command, comparison.run.limits.time_limit_ms);
+    add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
+    command.add_flag("--candidates", comparison.run.limits.keep_candidates,
+                     "score every enumerated lane too");
+    add_parameter_options(command, options.parameters);
+    command.add_option_function<std::string>(
+        "--shard", [&comparison](const std::string& text) { comparison.shard = parse_shard(text); },
+        "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane merge`");
+    command
+        .add_option("--out", options.directory,
+                    "directory of the results; a run that was stopped there goes on")
+        ->required();
+}
+
+void compare_and_print(Options& options) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
         for (const std::string& name : generated_track_names())
             comparison.tracks.push_back("generated:" + name);
     }
-    if (options.full) {
-        if (command.count("--every") == 0) comparison.scenes.every_m = 1.1;
-        if (command.count("--range") == 0) comparison.scenes.ranges_m = {30.0, 50.0};
-    }
     comparison.run.method.rld_parameters = options.parameters.load();
-    comparison.directory = options.directory;
-    const std::vector<ScoreRow> rows = compare(comparison);
-    fmt::print("{}\nall of it in {}\n", score_table(rows), options.directory);
+    comparison.scenes.threads = comparison.run.threads;
+    fmt::print("{}\nall of it in {}\n", score_table(compare(comparison, options.directory)),
+               options.directory);
 }
 
 }  // namespace
@@ -47,21 +78,58 @@ void compare_all(Options& options, const CLI::App& command) {
 void add_compare_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("compare", "methods on the same scenes, scored and tabled");
     auto options = std::make_shared<Options>();
-    ComparisonOptions& comparison = options->comparison;
-    command.add_option(
-        "--tracks", comparison.tracks,
-        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
-    command.add_option("--methods", comparison.methods, "see `conelane methods`")
+    auto nearest = std::make_shared<std::optional<std::size_t>>();
+    auto full = std::make_shared<bool>(false);
+    options->methods = {"rld-cbc", "clc"};
+    SceneOptions& scenes = options->comparison.scenes;
+    scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 4.4;
+    add_shared_options(command, *options);
+    command.add_flag("--full", *full, "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m");
+    add_nearest_option(command, *nearest, "the same cone-set size for every method");
+    command.callback([options, nearest, full, &command] {
+        SceneOptions& chosen = options->comparison.scenes;
+        if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
+        if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
+        for (const std::string& method : options->methods)
+            options->comparison.entrants.push_back({method, *nearest});
+        compare_and_print(*options);
+    });
+}
+
+void add_sweep_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("sweep", "the same comparison over cone-set sizes");
+    auto options = std::make_shared<Options>();
+    auto sizes = std::make_shared<std::vector<std::size_t>>(
+        std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
+    options->methods = {"rld-cbc", "clc"};
+    SceneOptions& scenes = options->comparison.scenes;
+    scenes.false_positive_rates = {0.2};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 13.2;
+    add_shared_options(command, *options);
+    command.add_option("--sizes", *sizes, "cone-set sizes")
         ->delimiter(',')
+        ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    add_scene_options(command, comparison.scenes);
-    command.add_flag("--full", options->full, "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m");
-    add_nearest_option(command, comparison.run.method.nearest, "the same cone-set size for every method");
-    add_time_limit_option(command, comparison.run.limits.time_limit_ms);
-    add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
-    add_parameter_options(command, options->parameters);
-    command.add_option("--out", options->directory, "directory of the results")->required();
-    command.callback([options, &command] { compare_all(*options, command); });
+    command.callback([options, sizes] {
+        for (const std::string& method : options->methods) {
+            for (const std::size_t size : *sizes) options->comparison.entrants.push_back({method, size});
+        }
+        compare_and_print(*options);
+    });
+}
+
+void add_merge_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("merge", "joins the shards of one comparison");
+    auto shards = std::make_shared<std::vector<std::filesystem::path>>();
+    auto directory = std::make_shared<std::string>();
+    command.add_option("shards", *shards, "directories of all shards, in any order")->required();
+    command.add_option("--out", *directory, "directory of the whole")->required();
+    command.callback([shards, directory] {
+        fmt::print("{}\nall of it in {}\n", score_table(merge(*shards, *directory)), *directory);
+    });
 }
 
 }  // namespace conelane::experiments

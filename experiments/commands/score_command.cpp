@@ -1,7 +1,7 @@
 #include "experiments/commands/commands.hpp"
+#include "experiments/comparison/results.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/scene_file.hpp"
-#include "experiments/results.hpp"
 #include "experiments/scoring/score_table.hpp"
 
 #include <algorithm>
@@ -28,11 +28,14 @@ void score_all(const Options& options) {
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     TrackBoundariesByName tracks;
     if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
-    std::vector<KeyedScore> scores;
+    std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
+    records.reserve(options.lanes.size());
+    std::vector<ScoredRecord> scored;
     for (const std::string& file : options.lanes) {
-        std::ranges::move(score_records(scenes, tracks, read_lanes(file), file), std::back_inserter(scores));
+        records.push_back(read_lanes(file));
+        std::ranges::move(score_records(scenes, tracks, records.back(), file), std::back_inserter(scored));
     }
-    const std::vector<ScoreRow> rows = summarise_by_key(scores);
+    const std::vector<ScoreRow> rows = summarise(scored);
     if (!options.json.empty()) {
         const nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
         write_results(options.json, rows, run.dump());

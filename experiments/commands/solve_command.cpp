@@ -11,6 +11,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,7 @@ struct Options {
     std::optional<std::size_t> nearest;
     ParameterSource parameters;
     SolveLimits limits;
+    bool warm_start = false;
 };
 
 RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
@@ -37,7 +39,8 @@ RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& para
         const Stopwatch problem_watch;
         const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
         const double problem_ms = problem_watch.elapsed_ms();
-        RldReport report = solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap});
+        RldReport report =
+            solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap, limits.start});
         report.build_ms += problem_ms;
         return report;
     } catch (const std::bad_alloc&) {
@@ -60,11 +63,16 @@ void solve_all(const Options& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<SolutionRecord> records;
     records.reserve(scenes.size());
+    std::optional<std::pair<Scene, LaneGraph>> previous;
     Progress progress(options.solver, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
         const Scene scene =
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
-        const RldReport report = solve(*solver, scene, parameters, options.limits);
+        std::optional<LaneGraph> start;
+        if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
+        SolveLimits limits = options.limits;
+        if (start) limits.start = &*start;
+        const RldReport report = solve(*solver, scene, parameters, limits);
         SolutionRecord record{scene.id,
                               options.solver,
                               options.formulation,
@@ -81,6 +89,7 @@ void solve_all(const Options& options) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
             }
         }
+        if (report.lane_graph) previous.emplace(scene, *report.lane_graph);
         records.push_back(std::move(record));
         progress.advance();
     }
@@ -110,6 +119,8 @@ void add_solve_command(CLI::App& program) {
     command.add_option("--out", options->out, "*.solutions.jsonl")->required();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
     add_time_limit_option(command, options->limits.time_limit_ms);
+    command.add_flag("--warm-start", options->warm_start,
+                     "start from the lane graph of the scene before, its cones found again by id");
     add_parameter_options(command, options->parameters);
     command.callback([options] { solve_all(*options); });
 }

@@ -138,4 +138,8 @@ void write_lanes(const std::filesystem::path& file, std::span<const LaneRecord> 
     output.commit();
 }
 
+std::string lane_line(const LaneRecord& record) {
+    return to_line(to_json(record, ""));
+}
+
 }  // namespace conelane::experiments

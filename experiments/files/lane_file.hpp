@@ -29,4 +29,7 @@ struct LaneRecord {
 /// finite, InputError where the file cannot be written; then an old file stays as it was.
 void write_lanes(const std::filesystem::path& file, std::span<const LaneRecord> records);
 
+/// One record as its line, without newline. Throws InvalidInput like write_lanes.
+[[nodiscard]] std::string lane_line(const LaneRecord& record);
+
 }  // namespace conelane::experiments

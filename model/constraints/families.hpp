@@ -20,7 +20,7 @@ void near_endpoints(const FamilyContext& context);  ///< (11)
 // far_distance.cpp
 void far_marks(const FamilyContext& context);     ///< (12)
 void far_distance(const FamilyContext& context);  ///< (13)-(17)
-void far_pairs(const FamilyContext& context);     ///< (12)-(17) without u
+void far_partners(const FamilyContext& context);  ///< (12)-(17) without u
 // width.cpp
 void width_pairs(const FamilyContext& context);    ///< (6)-(8)
 void width_cliques(const FamilyContext& context);  ///< (6)-(8) merged into cliques

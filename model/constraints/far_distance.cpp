@@ -27,14 +27,22 @@ void far_distance(const FamilyContext& context) {
     }
 }
 
-// Of two far cones more than d_max apart, at most one is an endpoint.
-void far_pairs(const FamilyContext& context) {
-    for (const auto& [i, j] : context.problem.far_apart) {
-        context.rows.begin({"far_pair", {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)}},
-                           -kInfinity, 1.0);
+// Exactly two endpoints are far, by (3) and (11), so a far endpoint i has the other one within d_max of it:
+//   m_i <= sum of m_j over the far cones j != i with D_ij <= d_max.
+// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart, and a row a cone.
+void far_partners(const FamilyContext& context) {
+    const auto& [problem, columns, rows] = context;
+    const std::size_t n = problem.cone_count;
+    std::vector<bool> apart(n * n, false);
+    for (const auto& [i, j] : problem.far_apart) apart[i * n + j] = apart[j * n + i] = true;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (problem.near[i]) continue;
+        rows.begin({"far_partner", {static_cast<std::int32_t>(i)}}, -kInfinity, 0.0);
         add_endpoint_mark(context, i, 1.0);
-        add_endpoint_mark(context, j, 1.0);
-        context.rows.end();
+        for (std::size_t j = 0; j < n; ++j) {
+            if (j != i && !problem.near[j] && !apart[i * n + j]) add_endpoint_mark(context, j, -1.0);
+        }
+        rows.end();
     }
 }
 

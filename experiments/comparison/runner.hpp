@@ -5,6 +5,8 @@
 #include "experiments/scenes/annotated_scene.hpp"
 #include "model/lane.hpp"
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,16 +15,26 @@ namespace conelane::experiments {
 struct RunOptions {
     MethodOptions method;
     DetectionLimits limits;
-    /// More than one disturbs the latencies by contention. Laps (runs of scenes of one track, rate and range)
-    /// are the unit of work: a detector that carries state sees each lap from its beginning, alone.
+    /// One: on one processor. More disturb the latencies by contention.
     unsigned threads = 1;
     bool show_progress = true;
 };
+
+/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track, rate
+/// and range, the unit of work: a detector that carries state sees each lap from its beginning, alone.
+[[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
+
+/// Gets the records of each lap, in the order of the laps, from one thread at a time.
+using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
 /// Runs a method on every scene and times each call in the same way: from the scene in memory to the lane in
 /// memory, on the wall clock. The first scene of each lap is answered once untimed before, so that no latency
 /// holds the loading of code; the detector then forgets it. The cut to the cone set is part of the method and
 /// of its time. An exception becomes an answer with status error.
+void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
+         const LapSink& sink);
+
+/// The same, all records at once.
 [[nodiscard]] std::vector<LaneRecord> run(const MethodEntry& method, std::span<const AnnotatedScene> scenes,
                                           const RunOptions& options);
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "experiments/comparison/run_record.hpp"
+#include "experiments/scenes/scene_set.hpp"
+#include "experiments/scoring/score_table.hpp"
+
+#include <filesystem>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// The main job. Every entrant on the same scenes, scored in the same way, everything on file in the
+/// directory:
+///   run.json                                 what the run depends on
+///   scenes.scenes.jsonl, scenes.tracks.json  what the methods saw, and the boundaries they are scored
+///   against METHOD.lanes.jsonl                       what they answered; METHOD.lanes.jsonl.part until it is
+///   whole scores.jsonl                             a line per scene and method results.jsonl a line per
+///   method, rate and range, with provenance table.txt                                the same for reading
+/// A run that was stopped goes on after its last whole lap. Returns the rows of the table. Throws InputError
+/// or InvalidInput.
+[[nodiscard]] std::vector<ScoreRow> compare(const ComparisonOptions& options,
+                                            const std::filesystem::path& directory);
+
+/// Joins the shards of one run into what the whole run would have written, but for the times. Throws
+/// InputError where they are not all shards of one run: other commit, compiler or options, one missing, one
+/// twice.
+[[nodiscard]] std::vector<ScoreRow> merge(const std::vector<std::filesystem::path>& shards,
+                                          const std::filesystem::path& directory);
+
+/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there.
+[[nodiscard]] std::vector<ScoreRow> score_directory(const std::filesystem::path& directory,
+                                                    const SceneSet& set,
+                                                    const std::vector<std::string>& lanes_files,
+                                                    const std::string& run_record);
+
+}  // namespace conelane::experiments

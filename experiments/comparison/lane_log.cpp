@@ -1,0 +1,61 @@
+#include "experiments/comparison/lane_log.hpp"
+
+#include "experiments/files/input_error.hpp"
+
+#include <cstdint>
+#include <string>
+#include <system_error>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Length of the first `count` whole lines, and how many whole lines there are.
+struct Lines {
+    std::uintmax_t length = 0;
+    std::size_t count = 0;
+};
+Lines whole_lines(const fs::path& file, std::size_t at_most) {
+    std::ifstream stream(file, std::ios::binary);
+    Lines lines;
+    std::string line;
+    while (lines.count < at_most && std::getline(stream, line) && !stream.eof()) {
+        lines.length += line.size() + 1;
+        ++lines.count;
+    }
+    return lines;
+}
+
+}  // namespace
+
+LaneLog::LaneLog(const fs::path& file) : file_(file), part_(file.string() + ".part") {
+    keep(SIZE_MAX);
+}
+
+void LaneLog::keep(std::size_t count) {
+    stream_.close();
+    std::error_code failure;
+    if (fs::exists(part_)) {
+        const Lines lines = whole_lines(part_, count);
+        fs::resize_file(part_, lines.length, failure);
+        stored_ = lines.count;
+    }
+    stream_.open(part_, std::ios::binary | std::ios::app);
+    if (failure || !stream_) throw InputError(part_, 0, "", "cannot be written");
+}
+
+void LaneLog::append(std::span<const LaneRecord> records) {
+    for (const LaneRecord& record : records) stream_ << lane_line(record) << '\n';
+    stream_.flush();
+    if (!stream_) throw InputError(part_, 0, "", "cannot be written to its end");
+}
+
+void LaneLog::finish() {
+    stream_.close();
+    std::error_code failure;
+    fs::rename(part_, file_, failure);
+    if (failure) throw InputError(file_, 0, "", "cannot be written: " + failure.message());
+}
+
+}  // namespace conelane::experiments

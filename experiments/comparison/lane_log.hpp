@@ -1,0 +1,38 @@
+#pragma once
+
+#include "experiments/files/lane_file.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A lanes file that grows while a method runs. Until it is whole it bears the name FILE.part; a run that was
+/// stopped finds there what it had answered.
+class LaneLog {
+  public:
+    /// Opens FILE.part, and drops an unfinished last line. Throws InputError.
+    explicit LaneLog(const std::filesystem::path& file);
+
+    /// Whole lines of an earlier run.
+    [[nodiscard]] std::size_t stored() const { return stored_; }
+    /// Keeps the first `count` of them. Precondition: count <= stored(), nothing appended yet.
+    void keep(std::size_t count);
+
+    /// Written through before it returns. Throws InputError where the disk is full.
+    void append(std::span<const LaneRecord> records);
+
+    /// Gives the file its name. Throws InputError.
+    void finish();
+
+  private:
+    std::filesystem::path file_;
+    std::filesystem::path part_;
+    std::size_t stored_ = 0;
+    std::ofstream stream_;
+};
+
+}  // namespace conelane::experiments

@@ -1,0 +1,125 @@
+#include "experiments/comparison/runner.hpp"
+
+#include "experiments/comparison/pinning.hpp"
+#include "experiments/progress.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <iterator>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace conelane::experiments {
+namespace {
+
+LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
+    try {
+        return detector.detect(scene, limits);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& failure) {
+        LaneAnswer answer;
+        answer.status = LaneStatus::error;
+        answer.message = failure.what();
+        return answer;
+    }
+}
+
+bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
+    return a.track == b.track && a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
+}
+
+std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const AnnotatedScene> lap,
+                                  const RunOptions& options, Progress& progress) {
+    const std::unique_ptr<LaneDetector> detector = method.make(options.method);
+    const std::optional<std::size_t> nearest = cone_set_size(method, options.method);
+    (void)detect(*detector, lap.front().scene, options.limits);
+    detector->reset();
+    std::vector<LaneRecord> records;
+    records.reserve(lap.size());
+    for (const AnnotatedScene& scene : lap) {
+        const auto start = std::chrono::steady_clock::now();
+        LaneAnswer answer = detect(*detector, scene.scene, options.limits);
+        const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - start;
+        records.push_back(
+            {scene.scene.id, std::string(method.name), std::move(answer), latency.count(), nearest});
+        progress.advance();
+    }
+    return records;
+}
+
+/// Passes laps on in their order, whatever order they end in.
+class InOrder {
+  public:
+    InOrder(std::size_t laps, const LapSink& sink) : waiting_(laps), sink_(sink) {}
+
+    void put(std::size_t lap, std::vector<LaneRecord> records) {
+        const std::scoped_lock lock(mutex_);
+        waiting_[lap] = std::move(records);
+        for (; next_ < waiting_.size() && waiting_[next_]; ++next_) {
+            sink_(*waiting_[next_]);
+            waiting_[next_]->clear();
+        }
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::optional<std::vector<LaneRecord>>> waiting_;
+    std::size_t next_ = 0;
+    const LapSink& sink_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        if (i == 0 || !same_lap(scenes[i - 1], scenes[i])) starts.push_back(i);
+    }
+    starts.push_back(scenes.size());
+    return starts;
+}
+
+void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
+         const LapSink& sink) {
+    Progress progress(std::string(method.name), options.show_progress ? scenes.size() : 0);
+    const std::vector<std::size_t> starts = lap_starts(scenes);
+    const std::size_t laps = starts.size() - 1;
+    const auto lap_scenes = [&](std::size_t lap) {
+        return scenes.subspan(starts[lap], starts[lap + 1] - starts[lap]);
+    };
+    if (options.threads <= 1) {
+        const PinnedThread pinned;
+        for (std::size_t lap = 0; lap < laps; ++lap)
+            sink(drive_lap(method, lap_scenes(lap), options, progress));
+        return;
+    }
+    InOrder in_order(laps, sink);
+    // Arenas above the processors there are make oneTBB warn.
+    const int threads = std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency());
+    oneapi::tbb::task_arena arena(threads);
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, laps, [&](std::size_t lap) {
+            in_order.put(lap, drive_lap(method, lap_scenes(lap), options, progress));
+        });
+    });
+}
+
+std::vector<LaneRecord> run(const MethodEntry& method, std::span<const AnnotatedScene> scenes,
+                            const RunOptions& options) {
+    std::vector<LaneRecord> records;
+    run(method, scenes, options,
+        [&](std::span<const LaneRecord> lap) { std::ranges::copy(lap, std::back_inserter(records)); });
+    return records;
+}
+
+}  // namespace conelane::experiments

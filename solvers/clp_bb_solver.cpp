@@ -1,0 +1,166 @@
+#include "solvers/clp_bb_solver.hpp"
+
+#include "solvers/deadline.hpp"
+#include "solvers/detail/osi_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <coin/ClpSimplex.hpp>
+#include <coin/OsiClpSolverInterface.hpp>
+
+namespace conelane {
+namespace {
+
+/// A decision on the way from the root to the current node.
+struct Branching {
+    int column;
+    double lower;  ///< bounds before the decision
+    double upper;
+    double value;  ///< what the column is fixed to
+    bool other_side_open;
+    double bound;  ///< objective of the relaxation that was branched on
+};
+
+class ClpBranchAndBound : public MilpSession {
+  public:
+    explicit ClpBranchAndBound(const BinaryProgram& program) : lp_(*interface_.getModelPtr()) {
+        interface_.messageHandler()->setLogLevel(0);
+        lp_.setLogLevel(0);
+        integers_ = detail::load_into(interface_, program);
+    }
+
+    MilpReport solve(const MilpLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
+        MilpReport report;
+        double best = limits.cutoff;
+        lp_.setDualObjectiveLimit(COIN_DBL_MAX);
+        bool node_is_open = true;  // the relaxation of the current node is to be solved
+        while (true) {
+            if (node_is_open) {
+                if (deadline.passed() || !solve_relaxation(deadline)) {
+                    stop(deadline, report);
+                    break;
+                }
+                const bool inside =
+                    lp_.isProvenOptimal() && lp_.objectiveValue() < best - limits.absolute_gap;
+                if (!path_.empty()) ++report.nodes;
+                const int column = inside ? most_fractional() : -1;
+                if (inside && column < 0) {
+                    best = lp_.objectiveValue();
+                    report.point.assign(lp_.primalColumnSolution(),
+                                        lp_.primalColumnSolution() + lp_.numberColumns());
+                }
+                if (column >= 0) {
+                    const double x = lp_.primalColumnSolution()[column];
+                    path_.push_back({column, lp_.columnLower()[column], lp_.columnUpper()[column],
+                                     std::round(x), true, lp_.objectiveValue()});
+                    fix(path_.back());
+                    continue;
+                }
+            }
+            // The node is done: the other side of the last decision that has one, unless its bound rules it
+            // out.
+            if (path_.empty()) {
+                finish(best, report);
+                break;
+            }
+            Branching& last = path_.back();
+            node_is_open = last.other_side_open && last.bound < best - limits.absolute_gap;
+            if (node_is_open) {
+                last.other_side_open = false;
+                last.value = last.value > 0.5 ? 0.0 : 1.0;
+                fix(last);
+            } else {
+                lp_.setColumnBounds(last.column, last.lower, last.upper);
+                path_.pop_back();
+            }
+        }
+        unwind();
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override { detail::append_rows(interface_, rows); }
+
+  private:
+    void fix(const Branching& branching) {
+        lp_.setColumnBounds(branching.column, branching.value, branching.value);
+    }
+
+    void unwind() {
+        for (; !path_.empty(); path_.pop_back()) {
+            lp_.setColumnBounds(path_.back().column, path_.back().lower, path_.back().upper);
+        }
+    }
+
+    /// False where Clp came to no conclusion.
+    bool solve_relaxation(const Deadline& deadline) {
+        if (std::isfinite(deadline.remaining_ms())) {
+            lp_.setMaximumWallSeconds(std::max(deadline.remaining_ms(), 0.0) / 1e3);
+        }
+        lp_.dual();
+        if (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible()) return true;
+        if (deadline.passed()) return false;
+        lp_.allSlackBasis(true);
+        lp_.primal();
+        return lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible();
+    }
+
+    [[nodiscard]] int most_fractional() const {
+        const double* x = lp_.primalColumnSolution();
+        int column = -1;
+        double largest = detail::kIntegrality;
+        for (const int c : integers_) {
+            const double distance = std::abs(x[c] - std::round(x[c]));
+            if (distance > largest) {
+                largest = distance;
+                column = c;
+            }
+        }
+        return column;
+    }
+
+    void finish(double best, MilpReport& report) const {
+        report.status = report.point.empty() ? SolveStatus::infeasible : SolveStatus::optimal;
+        if (!report.point.empty()) report.bound = best;
+    }
+
+    /// Every open side is below a decision on the path, whose bound holds for it; the current node is below
+    /// the last decision.
+    void stop(const Deadline& deadline, MilpReport& report) const {
+        if (!deadline.passed()) {
+            report.status = SolveStatus::error;
+            report.message = "Clp could not solve a relaxation";
+            report.point.clear();
+            return;
+        }
+        report.status = report.point.empty() ? SolveStatus::time_limit : SolveStatus::feasible;
+        if (path_.empty()) return;
+        double bound = path_.back().bound;
+        for (const Branching& branching : path_) {
+            if (branching.other_side_open) bound = std::min(bound, branching.bound);
+        }
+        report.bound = bound;
+    }
+
+    OsiClpSolverInterface interface_;
+    ClpSimplex& lp_;
+    std::vector<int> integers_;
+    std::vector<Branching> path_;
+};
+
+class ClpBranchAndBoundSolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<ClpBranchAndBound>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_clp_bb_solver() {
+    return std::make_unique<ClpBranchAndBoundSolver>();
+}
+
+}  // namespace conelane

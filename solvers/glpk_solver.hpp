@@ -1,0 +1,13 @@
+#pragma once
+
+#include "solvers/milp_solver.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+/// GLPK's simplex and branch and bound without cuts and presolve. GLPK is under the GPL, which a program
+/// linked with it falls under too: CONELANE_GLPK leaves it out. A session is used by the thread that made it.
+[[nodiscard]] std::unique_ptr<MilpSolver> make_glpk_solver();
+
+}  // namespace conelane

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "model/lane_graph_problem.hpp"
+#include "solvers/path_pair/bit_matrix.hpp"
+
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// The problem as a directed graph in which a path's cost is a walk's: every allowed edge e gives the arcs 2
+/// e (from its first cone to its second) and 2 e + 1 (back), and every allowed turn two successions of arcs.
+/// A leg, one path of the lane graph in one of its directions, is a walk a_1 .. a_k of
+///     cost = sum_i cost(a_i) + sum_i turn(a_i, a_i+1).
+/// Two edges are incompatible where no lane graph holds both: a width conflict (7) or a forbidden turn (28).
+class ArcGraph {
+  public:
+    struct Succession {
+        int arc;      ///< the next one
+        double cost;  ///< of the turn
+    };
+
+    void build(const LaneGraphProblem& problem);
+
+    [[nodiscard]] int cone_count() const { return cone_count_; }
+    [[nodiscard]] int edge_count() const { return static_cast<int>(problem_edge_.size()); }
+    [[nodiscard]] int arc_count() const { return 2 * edge_count(); }
+    [[nodiscard]] int tail(int arc) const { return cone_[static_cast<std::size_t>(arc)]; }
+    [[nodiscard]] int head(int arc) const { return cone_[static_cast<std::size_t>(arc ^ 1)]; }
+    [[nodiscard]] double cost(int edge) const { return cost_[static_cast<std::size_t>(edge)]; }
+    /// h of (9).
+    [[nodiscard]] bool along_heading(int edge) const {
+        return along_heading_[static_cast<std::size_t>(edge)] != 0;
+    }
+    [[nodiscard]] std::size_t problem_edge(int edge) const {
+        return problem_edge_[static_cast<std::size_t>(edge)];
+    }
+    [[nodiscard]] std::span<const Succession> successions(int arc) const {
+        return {successions_.data() + start_[static_cast<std::size_t>(arc)],
+                successions_.data() + start_[static_cast<std::size_t>(arc) + 1]};
+    }
+    /// The cost of an allowed turn.
+    [[nodiscard]] double turn_cost(int arc, int next) const;
+
+    [[nodiscard]] bool incompatible(int edge, int other) const { return incompatible_.test(edge, other); }
+    [[nodiscard]] std::span<const std::uint64_t> incompatible_row(int edge) const {
+        return incompatible_.row(edge);
+    }
+    [[nodiscard]] bool near(int cone) const { return near_[static_cast<std::size_t>(cone)] != 0; }
+    /// Far cones that may end the other path where `cone`, a far one, ends this one (17).
+    [[nodiscard]] std::span<const int> partners(int cone) const {
+        return {partners_.data() + partner_start_[static_cast<std::size_t>(cone)],
+                partners_.data() + partner_start_[static_cast<std::size_t>(cone) + 1]};
+    }
+    [[nodiscard]] bool are_partners(int cone, int other) const { return !apart_.test(cone, other); }
+
+    /// A lower bound of every lane graph's cost: each cone's cheapest share, half of its edges and its turn.
+    [[nodiscard]] double share_bound() const;
+
+  private:
+    int cone_count_ = 0;
+    std::vector<int> cone_;  ///< by arc: its tail
+    std::vector<double> cost_;
+    std::vector<char> along_heading_;
+    std::vector<std::size_t> problem_edge_;
+    std::vector<int> edge_of_problem_;
+    std::vector<std::size_t> start_;
+    std::vector<std::size_t> fill_;
+    std::vector<Succession> successions_;
+    BitMatrix incompatible_;
+    std::vector<char> near_;
+    BitMatrix apart_;  ///< pairs that (17) forbids, near cones and a cone with itself
+    std::vector<std::size_t> partner_start_;
+    std::vector<int> partners_;
+};
+
+}  // namespace conelane::path_pair

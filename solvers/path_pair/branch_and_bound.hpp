@@ -1,0 +1,95 @@
+#pragma once
+
+#include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/clique_separation.hpp"
+#include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/pair_relaxation.hpp"
+#include "solvers/path_pair/pair_search.hpp"
+#include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair_solver.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the bound of the relaxation by
+/// ascent, drops arcs and successions whose bound reaches the incumbent, and hands what is left to the pair
+/// search when that looks cheap; else it branches on what the relaxation is least sure
+/// about: ends first, for with both of them free two halves of a pair may run along one boundary, and two halves of
+/// another along the other.
+class BranchAndBound {
+  public:
+    BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
+
+    struct Outcome {
+        double
+            bound;  ///< of every lane graph of the system that is cheaper than the cutoff less the tolerance
+        bool complete;
+    };
+    /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
+    Outcome run(const LegSystem& system, double tolerance, std::function<bool()> stopped);
+
+    [[nodiscard]] std::int64_t nodes() const { return nodes_; }
+    [[nodiscard]] std::int64_t steps() const { return steps_; }
+    void reset_counts() { nodes_ = steps_ = 0; }
+
+    [[nodiscard]] const Prices& root_prices() const { return root_prices_; }
+    [[nodiscard]] const CliquePool& cliques() const { return cliques_; }
+
+  private:
+    struct Node {
+        ResidualGraph graph;
+        Prices prices;  ///< those of the best bound
+    };
+    enum class Verdict { closed, open, stopped };
+
+    Node& node(std::size_t depth);
+    void explore(std::size_t depth, double bound);
+    Verdict ascend(std::size_t depth, double& bound);
+    bool try_walks(const ResidualGraph& graph, int step);
+    bool fix(Node& node);
+    struct Branching {
+        enum class On { nothing, end, edge } on;
+        int what;  ///< the cone or the edge
+        double use;
+    };
+    [[nodiscard]] Branching choose(const ResidualGraph& graph) const;
+    void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
+    void decide(const Branching& branching, bool in, bool back);
+    void count_usage(const ResidualGraph& graph);
+    void separate(const ResidualGraph& graph, Prices& prices);
+    [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
+
+    const ArcGraph& graph_;
+    Incumbent& incumbent_;
+    const PathPairOptions& options_;
+    double tolerance_ = 0.0;
+    std::function<bool()> stopped_;
+    CliquePool cliques_;
+    CliqueSeparation separation_;
+    Decisions decisions_;
+    PairRelaxation relaxation_;
+    PairSearch pair_search_;
+    Ascent ascent_;
+    Usage usage_;
+    Prices prices_;  ///< of the current step
+    Prices root_prices_;
+    std::vector<double> edge_use_;  ///< averaged over the steps
+    std::vector<double> end_use_;   ///< legs that end at a cone, averaged
+    std::vector<std::unique_ptr<Node>> nodes_by_depth_;
+    ResidualGraph spare_;
+    std::vector<int> order_;
+    std::vector<int> index_;
+    std::vector<char> keep_out_;
+    std::vector<char> edge_alive_;
+    std::vector<int> walk_edges_;
+    double open_bound_ = 0.0;
+    std::int64_t nodes_ = 0;
+    std::int64_t steps_ = 0;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,108 @@
+#include "solvers/path_pair/leg_bounds.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace conelane::path_pair {
+namespace {
+
+// Smaller gains are rounding; without a threshold a cycle of cost zero could be walked for ever.
+constexpr double kGain = 1e-12;
+
+}  // namespace
+
+bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> reduced,
+                        std::span<const double> start, std::vector<double>& label, std::vector<int>& before,
+                        std::vector<int>& cycle) {
+    const std::size_t size = graph.arc.size();
+    label.resize(size);
+    before.assign(size, -1);
+    open_.assign((size + 63) / 64, 0);
+    for (std::size_t a = 0; a < size; ++a) {
+        label[a] = start[a] + reduced[a];
+        if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
+    }
+    std::size_t until_check = 3 * size + 64;
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t word = 0; word < open_.size(); ++word) {
+            while (open_[word] != 0) {
+                const std::size_t a = word * 64 + static_cast<std::size_t>(std::countr_zero(open_[word]));
+                open_[word] &= open_[word] - 1;
+                if (--until_check == 0) {
+                    if (find_cycle(before, cycle)) return false;
+                    until_check = size;
+                }
+                const double value = label[a];
+                for (int position = graph.out_start[a]; position < graph.out_start[a + 1]; ++position) {
+                    const std::size_t p = static_cast<std::size_t>(position);
+                    const std::size_t b = static_cast<std::size_t>(graph.out_arc[p]);
+                    const double candidate = value + graph.out_cost[p] + reduced[b];
+                    if (candidate < label[b] - kGain) {
+                        label[b] = candidate;
+                        before[b] = static_cast<int>(a);
+                        open_[b / 64] |= std::uint64_t{1} << (b % 64);
+                        again |= b / 64 < word;
+                    }
+                }
+            }
+        }
+    }
+    return true;
+}
+
+void LegBounds::backward(const ResidualGraph& graph, std::span<const double> reduced,
+                         std::span<const double> end, std::span<const char> usable,
+                         std::vector<double>& label) {
+    const std::size_t size = graph.arc.size();
+    label.resize(size);
+    open_.assign((size + 63) / 64, 0);
+    for (std::size_t a = 0; a < size; ++a) {
+        label[a] = usable[a] != 0 ? end[a] : kUnreachable;
+        if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
+    }
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t word = open_.size(); word-- > 0;) {
+            while (open_[word] != 0) {
+                const std::size_t bit = 63 - static_cast<std::size_t>(std::countl_zero(open_[word]));
+                const std::size_t b = word * 64 + bit;
+                open_[word] &= ~(std::uint64_t{1} << bit);
+                const double value = label[b] + reduced[b];
+                for (int position = graph.in_start[b]; position < graph.in_start[b + 1]; ++position) {
+                    const std::size_t p = static_cast<std::size_t>(position);
+                    const std::size_t a = static_cast<std::size_t>(graph.in_arc[p]);
+                    const double candidate = value + graph.in_cost[p];
+                    if (candidate < label[a] - kGain && usable[a] != 0) {
+                        label[a] = candidate;
+                        open_[a / 64] |= std::uint64_t{1} << (a % 64);
+                        again |= a / 64 > word;
+                    }
+                }
+            }
+        }
+    }
+}
+
+bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle) {
+    colour_.assign(before.size(), -1);
+    for (std::size_t first = 0; first < before.size(); ++first) {
+        int a = static_cast<int>(first);
+        while (a >= 0 && colour_[static_cast<std::size_t>(a)] < 0) {
+            colour_[static_cast<std::size_t>(a)] = static_cast<int>(first);
+            a = before[static_cast<std::size_t>(a)];
+        }
+        if (a < 0 || colour_[static_cast<std::size_t>(a)] != static_cast<int>(first)) continue;
+        cycle.clear();
+        int member = a;
+        do {
+            cycle.push_back(member);
+            member = before[static_cast<std::size_t>(member)];
+        } while (member != a);
+        std::ranges::reverse(cycle);
+        return true;
+    }
+    return false;
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "solvers/path_pair/residual_graph.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Shortest walks over the residual arcs by label correcting,
+///     forward(b)  = reduced(b) + min(start(b), min over a before b of forward(a) + turn(a, b))
+///     backward(a) = min(end(a), min over b after a of turn(a, b) + reduced(b) + backward(b)),
+/// so forward(a) + backward(a) is the cheapest leg through a. A walk is a relaxed path: it may meet a cone
+/// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
+class LegBounds {
+  public:
+    /// `start` by arc: what a leg pays to start with it, kUnreachable where it must not. False where a walk
+    /// gains from a cycle without end; `cycle` then holds the arcs of one.
+    [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
+                               std::span<const double> start, std::vector<double>& label,
+                               std::vector<int>& before, std::vector<int>& cycle);
+
+    /// `end` by arc: the cost of ending with it. Arcs that `usable` does not mark are as if absent.
+    /// Precondition: no cycle of usable arcs has a negative cost.
+    void backward(const ResidualGraph& graph, std::span<const double> reduced, std::span<const double> end,
+                  std::span<const char> usable, std::vector<double>& label);
+
+  private:
+    bool find_cycle(std::span<const int> before, std::vector<int>& cycle);
+
+    std::vector<std::uint64_t> open_;  ///< arcs whose label changed
+    std::vector<int> colour_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,89 @@
+#include "solvers/path_pair/residual_graph.hpp"
+
+#include <cassert>
+
+namespace conelane::path_pair {
+
+void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting_cone) {
+    arc.clear();
+    std::vector<int>& index = in_arc;  // rewritten below
+    index.assign(static_cast<std::size_t>(graph.arc_count()), -1);
+    const auto reach = [&](int a) {
+        if (index[static_cast<std::size_t>(a)] >= 0) return;
+        index[static_cast<std::size_t>(a)] = size();
+        arc.push_back(a);
+    };
+    for (int a = 0; a < graph.arc_count(); ++a) {
+        if (starting_cone[static_cast<std::size_t>(graph.tail(a))] != 0) reach(a);
+    }
+    for (std::size_t done = 0; done < arc.size(); ++done) {
+        for (const ArcGraph::Succession& next : graph.successions(arc[done])) reach(next.arc);
+    }
+    tail.clear();
+    head.clear();
+    out_start.assign(1, 0);
+    out_arc.clear();
+    out_cost.clear();
+    for (const int a : arc) {
+        tail.push_back(graph.tail(a));
+        head.push_back(graph.head(a));
+        for (const ArcGraph::Succession& next : graph.successions(a)) {
+            out_arc.push_back(index[static_cast<std::size_t>(next.arc)]);
+            out_cost.push_back(next.cost);
+        }
+        out_start.push_back(static_cast<int>(out_arc.size()));
+    }
+    index_predecessors();
+}
+
+void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> order,
+                           std::span<const char> keep_out, std::vector<int>& index) {
+    assert(this != &source);
+    index.assign(source.arc.size(), -1);
+    arc.clear();
+    tail.clear();
+    head.clear();
+    for (const int old : order) {
+        const std::size_t a = static_cast<std::size_t>(old);
+        index[a] = size();
+        arc.push_back(source.arc[a]);
+        tail.push_back(source.tail[a]);
+        head.push_back(source.head[a]);
+    }
+    out_start.assign(1, 0);
+    out_arc.clear();
+    out_cost.clear();
+    for (const int old : order) {
+        const std::size_t a = static_cast<std::size_t>(old);
+        for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
+            const std::size_t p = static_cast<std::size_t>(position);
+            const int next = index[static_cast<std::size_t>(source.out_arc[p])];
+            if (keep_out[p] == 0 || next < 0) continue;
+            out_arc.push_back(next);
+            out_cost.push_back(source.out_cost[p]);
+        }
+        out_start.push_back(static_cast<int>(out_arc.size()));
+    }
+    index_predecessors();
+}
+
+void ResidualGraph::index_predecessors() {
+    in_start.assign(arc.size() + 2, 0);
+    for (const int next : out_arc) ++in_start[static_cast<std::size_t>(next) + 2];
+    for (std::size_t a = 2; a < in_start.size(); ++a) in_start[a] += in_start[a - 1];
+    in_arc.resize(out_arc.size());
+    in_cost.resize(out_arc.size());
+    for (int a = 0; a < size(); ++a) {
+        const std::size_t from = static_cast<std::size_t>(a);
+        for (int position = out_start[from]; position < out_start[from + 1]; ++position) {
+            const std::size_t p = static_cast<std::size_t>(position);
+            const std::size_t slot =
+                static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
+            in_arc[slot] = a;
+            in_cost[slot] = out_cost[p];
+        }
+    }
+    in_start.pop_back();
+}
+
+}  // namespace conelane::path_pair

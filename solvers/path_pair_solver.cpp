@@ -1,0 +1,128 @@
+#include "solvers/path_pair_solver.hpp"
+
+#include "solvers/deadline.hpp"
+#include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/branch_and_bound.hpp"
+#include "solvers/path_pair/incumbent.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+using namespace path_pair;
+
+// Labels are exact to less than this, so smaller gaps cannot be told from none.
+constexpr double kLeastGap = 1e-10;
+
+class PathPairSolver : public RldSolver {
+  public:
+    explicit PathPairSolver(const PathPairOptions& options)
+        : options_(options), search_(graph_, incumbent_, options_) {}
+
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
+        const Stopwatch build_watch;
+        RldReport report;
+        graph_.build(problem);
+        report.build_ms = build_watch.elapsed_ms();
+        const Stopwatch solve_watch;
+        const double tolerance = std::max(limits.absolute_gap, kLeastGap);
+        search_.reset_counts();
+
+        // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
+        Outcome outcome{};
+        for (const double cutoff : {0.0, cost_limit(problem)}) {
+            incumbent_.reset(graph_, cutoff);
+            outcome = search(problem, tolerance, deadline);
+            ++report.rounds;
+            if (incumbent_.found() || !outcome.complete) break;
+        }
+        report.nodes = search_.nodes();
+        if (incumbent_.found()) {
+            report.status = outcome.complete ? SolveStatus::optimal : SolveStatus::feasible;
+            report.lane_graph = lane_graph(problem);
+            report.objective = objective(problem, *report.lane_graph);
+            report.bound = std::min(outcome.bound, *report.objective);
+        } else {
+            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::time_limit;
+            if (!outcome.complete) report.bound = outcome.bound;
+        }
+        report.solve_ms = solve_watch.elapsed_ms();
+        return report;
+    }
+
+  private:
+    using Outcome = BranchAndBound::Outcome;
+
+    /// More than any lane graph costs.
+    static double cost_limit(const LaneGraphProblem& problem) {
+        double sum = 1.0;
+        for (const ProblemEdge& edge : problem.edges) sum += edge.high_cost ? 0.0 : std::max(0.0, edge.cost);
+        for (const ProblemTurn& turn : problem.turns) sum += turn.high_cost ? 0.0 : turn.cost;
+        return sum;
+    }
+
+    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
+        const auto stopped = [&deadline] { return deadline.passed(); };
+        const std::size_t n = problem.cone_count;
+        for (LegSystem::Kind& kind : system_.kinds) {
+            kind.start.assign(n, 0);
+            kind.end.assign(n, 0);
+        }
+        for (std::size_t cone = 0; cone < n; ++cone) {
+            (problem.near[cone] ? system_.kinds[0].start : system_.kinds[0].end)[cone] = 1;
+        }
+        system_.kind_count = 1;
+        system_.ends_are_partners = true;
+        Outcome outcome = search_.run(system_, tolerance, stopped);
+        if (problem.parameters.pairing == Pairing::near_far) return outcome;
+
+        // One leg between near cones, one between far ones: a system for each first end of the far leg, which
+        // is the cone of smaller index.
+        system_.kinds[0].end = system_.kinds[0].start;
+        system_.kind_count = 2;
+        system_.ends_are_partners = false;
+        for (int cone = 0; cone < graph_.cone_count(); ++cone) {
+            std::ranges::fill(system_.kinds[1].start, char{0});
+            std::ranges::fill(system_.kinds[1].end, char{0});
+            system_.kinds[1].start[static_cast<std::size_t>(cone)] = 1;
+            bool any = false;
+            for (const int partner : graph_.partners(cone)) {
+                if (partner < cone) continue;
+                system_.kinds[1].end[static_cast<std::size_t>(partner)] = 1;
+                any = true;
+            }
+            if (!any) continue;
+            const Outcome part = search_.run(system_, tolerance, stopped);
+            outcome.bound = std::min(outcome.bound, part.bound);
+            outcome.complete = outcome.complete && part.complete;
+        }
+        return outcome;
+    }
+
+    [[nodiscard]] LaneGraph lane_graph(const LaneGraphProblem& problem) const {
+        LaneGraph graph;
+        for (const int edge : incumbent_.edges()) {
+            const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
+            graph.edges.push_back({e.i, e.j});
+        }
+        std::ranges::sort(graph.edges);
+        return graph;
+    }
+
+    PathPairOptions options_;
+    ArcGraph graph_;
+    Incumbent incumbent_;
+    LegSystem system_;
+    BranchAndBound search_;
+};
+
+}  // namespace
+
+std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options) {
+    return std::make_unique<PathPairSolver>(options);
+}
+
+}  // namespace conelane

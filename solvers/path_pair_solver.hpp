@@ -1,0 +1,25 @@
+#pragma once
+
+#include "solvers/rld_solver.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace conelane {
+
+/// Stages of `path-pair`. The answer is the same with each of them off; it takes longer.
+struct PathPairOptions {
+    bool fix_arcs = true;        ///< drop arcs whose reduced-cost bound reaches the incumbent
+    bool clique_prices = true;   ///< price cliques of incompatible edges, not cones alone
+    bool complete_walks = true;  ///< look for incumbents around the relaxation's walks
+    bool enumerate_pairs =
+        true;              ///< end nodes by the half-gap enumeration, not by branching to the last edge
+    int root_steps = 150;  ///< most ascent steps at the root
+    int node_steps = 30;   ///< and at each other node
+};
+
+/// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its
+/// workspace and reuses it from call to call. A gap below 1e-10 counts as 1e-10.
+[[nodiscard]] std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options = {});
+
+}  // namespace conelane

@@ -1,0 +1,143 @@
+#include "solvers/symphony_solver.hpp"
+
+#include "solvers/deadline.hpp"
+#include "solvers/detail/turn.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <coin/symphony.h>
+
+namespace conelane {
+namespace {
+
+std::timed_mutex one_at_a_time;
+
+struct CloseEnvironment {
+    void operator()(sym_environment* environment) const { sym_close_environment(environment); }
+};
+using Environment = std::unique_ptr<sym_environment, CloseEnvironment>;
+
+/// Keeps the program and loads it anew for each solve: an environment that has solved once does not start
+/// over reliably after rows were added.
+class SymphonySession : public MilpSession {
+  public:
+    explicit SymphonySession(const BinaryProgram& program) : program_(program) {}
+
+    MilpReport solve(const MilpLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
+        MilpReport report;
+        report.status = SolveStatus::time_limit;
+        const auto turn = detail::take_turn(one_at_a_time, deadline);
+        if (!turn.owns_lock()) return report;
+        const Environment environment(sym_open_environment());
+        sym_environment* env = environment.get();
+        sym_set_int_param(env, "verbosity", -2);
+        sym_set_dbl_param(env, "granularity", 1e-7);
+        sym_set_dbl_param(env, "gap_limit", 0.0);
+        load(env);
+        if (std::isfinite(limits.cutoff)) sym_set_primal_bound(env, limits.cutoff);
+        if (std::isfinite(limits.time_limit_ms)) {
+            sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
+        }
+        sym_solve(env);
+        read(env, deadline, report);
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        for (const ProgramRow& row : rows) {
+            program_.rows.push_back({row.label, row.lower, row.upper});
+            for (const auto& [column, coefficient] : row.terms) {
+                program_.entry_columns.push_back(column);
+                program_.entry_values.push_back(coefficient);
+            }
+            program_.row_starts.push_back(static_cast<int>(program_.entry_columns.size()));
+        }
+    }
+
+  private:
+    /// SYMPHONY takes the matrix by columns, and rows as sense, right-hand side and range.
+    void load(sym_environment* env) const {
+        const std::size_t columns = program_.columns.size();
+        std::vector<int> starts(columns + 1, 0);
+        for (const int column : program_.entry_columns) ++starts[static_cast<std::size_t>(column) + 1];
+        for (std::size_t c = 0; c < columns; ++c) starts[c + 1] += starts[c];
+        std::vector<int> next(starts), indices(program_.entry_columns.size());
+        std::vector<double> values(indices.size());
+        std::vector<char> senses;
+        std::vector<double> sides, ranges;
+        for (std::size_t r = 0; r < program_.rows.size(); ++r) {
+            for (auto entry = static_cast<std::size_t>(program_.row_starts[r]);
+                 entry < static_cast<std::size_t>(program_.row_starts[r + 1]); ++entry) {
+                const auto column = static_cast<std::size_t>(program_.entry_columns[entry]);
+                const auto place = static_cast<std::size_t>(next[column]++);
+                indices[place] = static_cast<int>(r);
+                values[place] = program_.entry_values[entry];
+            }
+            const auto& [label, lower, upper] = program_.rows[r];
+            const bool has_lower = lower > -kInfinity;
+            const bool has_upper = upper < kInfinity;
+            senses.push_back(lower == upper ? 'E' : has_lower && has_upper ? 'R' : has_upper ? 'L' : 'G');
+            sides.push_back(has_upper ? upper : lower);
+            ranges.push_back(senses.back() == 'R' ? upper - lower : 0.0);
+        }
+        std::vector<double> lowers, uppers, costs;
+        std::vector<char> integer;
+        for (const BinaryProgram::Column& column : program_.columns) {
+            lowers.push_back(column.lower);
+            uppers.push_back(column.upper);
+            costs.push_back(column.objective);
+            integer.push_back(column.integer ? 1 : 0);
+        }
+        sym_explicit_load_problem(env, static_cast<int>(columns), static_cast<int>(program_.rows.size()),
+                                  starts.data(), indices.data(), values.data(), lowers.data(), uppers.data(),
+                                  integer.data(), costs.data(), nullptr, senses.data(), sides.data(),
+                                  ranges.data(), 1);
+    }
+
+    void read(sym_environment* env, const Deadline& deadline, MilpReport& report) const {
+        int nodes = 0;
+        sym_get_iteration_count(env, &nodes);
+        report.nodes = std::max(nodes, 0);
+        if (sym_is_proven_primal_infeasible(env)) {
+            report.status = SolveStatus::infeasible;
+            return;
+        }
+        std::vector<double> point(program_.columns.size());
+        const bool has_point = sym_get_col_solution(env, point.data()) == FUNCTION_TERMINATED_NORMALLY;
+        if (sym_is_proven_optimal(env) && has_point) {
+            double value = 0.0;
+            sym_get_obj_val(env, &value);
+            report.status = SolveStatus::optimal;
+            report.bound = value;
+        } else if (sym_is_time_limit_reached(env) || deadline.passed()) {
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
+        } else {
+            report.status = SolveStatus::error;
+            report.message = "SYMPHONY stopped without a result, " + std::to_string(sym_get_status(env));
+            return;
+        }
+        if (has_point) report.point = std::move(point);
+    }
+
+    BinaryProgram program_;
+};
+
+class SymphonySolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<SymphonySession>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_symphony_solver() {
+    return std::make_unique<SymphonySolver>();
+}
+
+}  // namespace conelane

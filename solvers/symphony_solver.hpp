@@ -1,0 +1,15 @@
+#pragma once
+
+#include "solvers/milp_solver.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+/// SYMPHONY's sequential branch and cut with its default cuts. It reports no bound before it has finished and
+/// keeps its own clock, which it looks at between nodes; its granularity, below which a better point is not
+/// looked for, is 1e-7. One solve at a time in a process, since its library keeps state outside of an
+/// environment; waiting for one's turn is inside the time limit.
+[[nodiscard]] std::unique_ptr<MilpSolver> make_symphony_solver();
+
+}  // namespace conelane
