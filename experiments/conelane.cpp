@@ -30,6 +30,7 @@ int run(int argument_count, char** arguments) {
                              "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
+    experiments::add_report_command(program);
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_scenes_command(program);

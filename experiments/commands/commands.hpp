@@ -16,6 +16,7 @@ void add_exchange_commands(CLI::App& program);  ///< export, import-solution
 void add_formulations_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
+void add_report_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 

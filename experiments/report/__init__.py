@@ -1,0 +1,1 @@
+"""The report: one HTML page from the stored results of `conelane compare`."""

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <span>
+
+namespace conelane::experiments {
+
+/// The Python package `report` of this folder as a zip archive, which Python imports as it stands.
+[[nodiscard]] std::span<const unsigned char> report_archive();
+
+}  // namespace conelane::experiments

@@ -1,0 +1,91 @@
+"""Statistics of samples. Intervals resample tracks, not scenes: scenes of one track are alike, so an interval that
+took them for independent would be far too narrow."""
+
+import numpy as np
+
+CONFIDENCE = 0.95
+RESAMPLES = 2000
+GEOMETRIC_MEAN_SHIFT_MS = 1.0
+
+
+def quantile(values, share):
+    """Nearest rank: the smallest value that at least `share` of the sample does not exceed."""
+    ordered = np.sort(values)
+    return ordered[max(0, int(np.ceil(share * len(ordered))) - 1)]
+
+
+def shifted_geometric_mean(values, shift=GEOMETRIC_MEAN_SHIFT_MS):
+    return float(np.exp(np.mean(np.log(np.asarray(values) + shift))) - shift)
+
+
+def _track_weights(track_count):
+    """How often each track is drawn in each resample: (RESAMPLES, track_count). The same draws every time."""
+    drawn = np.random.default_rng(20).integers(0, track_count, size=(RESAMPLES, track_count))
+    weights = np.zeros((RESAMPLES, track_count))
+    np.add.at(weights, (np.arange(RESAMPLES)[:, None], drawn), 1.0)
+    return weights
+
+
+def _interval(estimates):
+    tail = 100.0 * (1.0 - CONFIDENCE) / 2.0
+    return tuple(float(end) for end in np.percentile(estimates, [tail, 100.0 - tail]))
+
+
+def mean_interval(values, tracks):
+    """Bootstrap interval of the mean; None where there are not two tracks to resample."""
+    _, index = np.unique(tracks.astype(str), return_inverse=True)
+    track_count = index.max() + 1 if len(index) else 0
+    if track_count < 2:
+        return None
+    weights = _track_weights(track_count)
+    sums = np.bincount(index, weights=values, minlength=track_count)
+    counts = np.bincount(index, minlength=track_count)
+    return _interval(weights @ sums / (weights @ counts))
+
+
+def median_interval(values, tracks):
+    """As mean_interval, of the median."""
+    _, index = np.unique(tracks.astype(str), return_inverse=True)
+    track_count = index.max() + 1 if len(index) else 0
+    if track_count < 2:
+        return None
+    order = np.argsort(values, kind="stable")
+    ordered, index = values[order], index[order]
+    medians = np.empty(RESAMPLES)
+    for i, weights in enumerate(_track_weights(track_count)):
+        running = np.cumsum(weights[index])
+        medians[i] = ordered[np.searchsorted(running, running[-1] / 2.0)]
+    return _interval(medians)
+
+
+def paired(first, second):
+    """Row numbers in `first` and `second` of the scenes that both have."""
+    row_of = {scene: i for i, scene in enumerate(second.scene)}
+    pairs = [(i, row_of[scene]) for i, scene in enumerate(first.scene) if scene in row_of]
+    if not pairs:
+        return np.empty(0, int), np.empty(0, int)
+    return tuple(np.array(side) for side in zip(*pairs))
+
+
+def latency_ratio(sample, reference):
+    """Geometric mean of latency / reference's latency over the scenes of both, its interval, their number."""
+    rows, reference_rows = paired(sample, reference)
+    if not len(rows):
+        return None
+    smallest = 1e-6  # ms; a clock's tick keeps the logarithm finite
+    logs = np.log(np.maximum(sample.latency[rows], smallest) /
+                  np.maximum(reference.latency[reference_rows], smallest))
+    interval = mean_interval(logs, sample.track[rows])
+    return (float(np.exp(logs.mean())), tuple(float(np.exp(end)) for end in interval) if interval else None,
+            len(rows))
+
+
+def performance_profiles(times):
+    """Dolan and Moré: from times (scenes, methods), infinite where a method failed, the ratios to the fastest
+    of each scene, sorted per method. The profile of a method at tau is the share of its ratios <= tau. Scenes
+    that no method solved stay in: they count against all."""
+    best = np.min(times, axis=1, keepdims=True)
+    solvable = np.isfinite(best)
+    ratios = np.full(times.shape, np.inf)
+    np.divide(times, best, out=ratios, where=solvable & np.isfinite(times))
+    return np.sort(ratios, axis=0)

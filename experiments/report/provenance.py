@@ -1,0 +1,43 @@
+"""How the numbers came about."""
+
+from html import escape
+
+from .measures import RESAMPLES
+
+
+def _flat(value, prefix=""):
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{prefix}{key}.")
+    elif isinstance(value, list):
+        yield prefix[:-1], ", ".join(str(inner) for inner in value)
+    else:
+        yield prefix[:-1], str(value)
+
+
+def html(results, data):
+    rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(results.run))
+    if data.missing:
+        shown = "There are no scenes on this page."
+    else:
+        which = ("every scored scene" if len(data.frames) == data.scene_count else
+                 f"{len(data.frames)} of {data.scene_count} scored scenes: one pose in {data.stride} of each lap and "
+                 "the gallery's")
+        shown = (f"The viewer holds {which}; positions are rounded to 1 cm. Tables and figures use all "
+                 f"{data.scene_count}.")
+    return f"""
+<p>A car drives the centre line of each track. A scene is what it sees from one pose: the points within range in the
+half-plane ahead, and false positives drawn uniformly among them until they make up the stated share of all points.
+Every method answers the same scenes, in order, and the same code scores the answers.</p>
+<ul>
+<li><b>Success</b>: a lane was found and does not diverge from the annotated boundary within 20 m.
+<b>IoU</b>: area common to lane and ground truth over the area of both; 0 where no lane was found.
+<b>Accurate</b>: at most one cone differs from the ground truth of the method's own cone set, each boundary lies on its
+side of the car, no edges cross, the width is 2.5 m to 6.5 m.</li>
+<li>A method marked n=12 saw only the 12 nearest cones ahead. Success and IoU still refer to all that is visible.</li>
+<li>Intervals are percentile bootstraps over whole tracks ({RESAMPLES} resamples, 95 %), as scenes of one track are
+alike; with few tracks they are rough. There are none where there is one track only.</li>
+<li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
+<li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
+</ul>
+<h3>Run</h3><dl class="run">{rows}</dl>"""

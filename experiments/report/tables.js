@@ -1,0 +1,50 @@
+"use strict";
+// Theme, sorting and filtering.
+(() => {
+  const root = document.documentElement;
+  const stored = () => { try { return localStorage.getItem("conelane-theme"); } catch { return null; } };
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const announce = () => document.dispatchEvent(new Event("themechange"));
+  if (stored()) root.dataset.theme = stored();
+  system.addEventListener("change", announce);
+  document.getElementById("theme").addEventListener("click", () => {
+    const dark = root.dataset.theme ? root.dataset.theme === "dark" : system.matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    try { localStorage.setItem("conelane-theme", root.dataset.theme); } catch { /* a file may have no storage */ }
+    announce();
+  });
+  // Ink on a dark ground does not print.
+  let shown;
+  addEventListener("beforeprint", () => { shown = root.dataset.theme; root.dataset.theme = "light"; });
+  addEventListener("afterprint", () => { if (shown) root.dataset.theme = shown; else delete root.dataset.theme; });
+
+  const compare = (a, b) => {
+    if (a === undefined || b === undefined) return (a === undefined) - (b === undefined); // unknown last
+    const difference = Number(a) - Number(b);
+    return Number.isNaN(difference) ? a.localeCompare(b) : difference;
+  };
+  for (const table of document.querySelectorAll("table.sortable")) {
+    const headers = [...table.tHead.rows[0].cells];
+    headers.forEach((header, column) => header.addEventListener("click", () => {
+      const numeric = header.classList.contains("number");
+      const next = header.ariaSort === (numeric ? "descending" : "ascending") ? !numeric : numeric;
+      for (const other of headers) other.setAttribute("aria-sort", "none");
+      header.setAttribute("aria-sort", next ? "descending" : "ascending");
+      const key = (row) => row.cells[column].dataset.value;
+      const rows = [...table.tBodies[0].rows].sort((a, b) => {
+        const order = compare(key(a), key(b));
+        return next && key(a) !== undefined && key(b) !== undefined ? -order : order;
+      });
+      table.tBodies[0].append(...rows);
+    }));
+  }
+
+  const filters = [...document.querySelectorAll("[data-filter]")];
+  const apply = () => {
+    for (const row of document.querySelectorAll("#comparison tbody tr[data-rate]")) {
+      row.hidden = filters.some((filter) => filter.value && row.dataset[filter.dataset.filter] !== filter.value);
+    }
+  };
+  for (const filter of filters) filter.addEventListener("change", apply);
+  apply(); // a reloaded page keeps what was chosen
+})();

@@ -1,0 +1,76 @@
+"""HTML tables: sortable by their headers, scrolled sideways where the screen is narrow."""
+
+from dataclasses import dataclass, field
+from html import escape
+
+
+@dataclass(frozen=True)
+class Column:
+    title: str
+    kind: str = "number"  # or "text"
+
+
+@dataclass(frozen=True)
+class Cell:
+    """`value` is what sorting goes by, `extra` stands small beside the text."""
+
+    text: str
+    value: object = None
+    extra: str = ""
+    attributes: dict = field(default_factory=dict)
+
+
+def text(value):
+    return Cell(value, value)
+
+
+def _range(interval, show):
+    return f"{show(interval[0])}–{show(interval[1])}" if interval else ""
+
+
+def percent(share, digits=1, interval=None, **attributes):
+    """A share in [0, 1] as per cent; None as unknown."""
+    if share is None:
+        return Cell("–")
+
+    def show(value):
+        return f"{100.0 * value:.{digits}f}"
+    return Cell(show(share), float(share), _range(interval, show), attributes)
+
+
+def milliseconds(value, interval=None, **attributes):
+    def show(number):
+        return f"{number:.2f}" if number < 100 else f"{number:.0f}"
+    return Cell(show(value), float(value), _range(interval, show), attributes)
+
+
+def _cell_html(cell, column, tag):
+    attributes = "".join(f' data-{key}="{escape(str(value))}"' for key, value in cell.attributes.items())
+    if cell.value is not None:
+        attributes += f' data-value="{escape(repr(cell.value) if isinstance(cell.value, float) else str(cell.value))}"'
+    extra = f' <small>{escape(cell.extra)}</small>' if cell.extra else ""
+    name = ' class="number"' if column.kind == "number" else ""
+    scope = ' scope="row"' if tag == "th" else ""
+    return f"<{tag}{scope}{name}{attributes}>{escape(cell.text)}{extra}</{tag}>"
+
+
+def table(name, caption, columns, rows, published_rows=(), row_attributes=None, note=""):
+    """`published_rows`: numbers of the rows that a paper prints, or how many of the first ones."""
+    if isinstance(published_rows, int):
+        published_rows = range(published_rows)
+    published_rows = set(published_rows)
+    head = "".join(f'<th scope="col"{" class=number" if column.kind == "number" else ""} aria-sort="none">'
+                   f'<button type="button">{escape(column.title)}</button></th>' for column in columns)
+    body = []
+    for i, row in enumerate(rows):
+        attributes = ' class="published"' if i in published_rows else ""
+        if row_attributes:
+            attributes += "".join(f' data-{key}="{escape(str(value))}"' for key, value in row_attributes[i].items())
+        cells = "".join(_cell_html(cell, column, "td" if j else "th")
+                        for j, (cell, column) in enumerate(zip(row, columns)))
+        body.append(f"<tr{attributes}>{cells}</tr>")
+    note = f'<p class="note">{escape(note)}</p>' if note else ""
+    return (f'<div class="table" id="{name}"><h4 id="{name}-title">{escape(caption)}</h4>'
+            f'<div class="scroll" tabindex="0" role="region" aria-labelledby="{name}-title">'
+            f'<table class="sortable" aria-labelledby="{name}-title"><thead><tr>{head}</tr></thead>'
+            f'<tbody>{"".join(body)}</tbody></table></div>{note}</div>')

@@ -1,0 +1,318 @@
+"use strict";
+// The scene viewer. Frames are in the car's frame, centimetres: x ahead, y to the left; the car looks up.
+(() => {
+  const source = document.getElementById("scene-data");
+  if (!source) return;
+  const data = JSON.parse(source.textContent);
+  const element = (name) => document.getElementById("view-" + name);
+  const box = document.getElementById("viewer");
+  const scene = element("scene"), map = element("map"), tip = element("tip");
+  const state = { lap: data.laps[0], pose: 0, shown: data.methods.map(() => true), timer: null };
+  const trackFrames = new Map(); // of each track, what its map shows
+
+  const frame = () => data.frames[state.lap.scenes[state.pose]];
+  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  /// Canvas sized to the screen's pixels, and its context in CSS pixels.
+  const prepare = (canvas) => {
+    const ratio = devicePixelRatio || 1;
+    const { clientWidth: width, clientHeight: height } = canvas;
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+    const context = canvas.getContext("2d");
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.lineJoin = "round";
+    return { context, width, height };
+  };
+
+  const trace = (context, points, closed) => {
+    points.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+    if (closed && points.length) context.closePath();
+  };
+
+  const fit = (width, height) => {
+    const reach = 100 * state.lap.range;
+    const scale = Math.min(width / (2.04 * reach), height / (1.1 * reach));
+    return { scale, x: (ahead, left) => width / 2 - left * scale,
+             y: (ahead) => height - 0.05 * reach * scale - ahead * scale };
+  };
+
+  const placed = (view) => {
+    const { c } = frame();
+    return Array.from({ length: c.length / 2 }, (_, i) => [view.x(c[2 * i], c[2 * i + 1]), view.y(c[2 * i])]);
+  };
+
+  const drawRange = (context, view) => {
+    const reach = 100 * state.lap.range;
+    context.strokeStyle = colour("--grid");
+    context.fillStyle = colour("--muted");
+    context.font = "11px system-ui, sans-serif";
+    for (let radius = 1000; radius <= reach + 1; radius += 1000) {
+      context.beginPath();
+      context.arc(view.x(0, 0), view.y(0), radius * view.scale, Math.PI, 2 * Math.PI);
+      context.stroke();
+      context.fillText(radius / 100 + " m", view.x(0, 0) + 3, view.y(radius) - 3);
+    }
+  };
+
+  const drawBoundaries = (context, view) => {
+    const track = data.tracks[state.lap.track];
+    if (!track) return;
+    const [px, py, yaw] = frame().p;
+    const cos = Math.cos(yaw / 1000), sin = Math.sin(yaw / 1000);
+    context.strokeStyle = colour("--line");
+    context.setLineDash([3, 4]);
+    for (const side of [track.left, track.right]) {
+      const points = [];
+      for (let i = 0; i < side.length; i += 2) {
+        const dx = side[i] - px, dy = side[i + 1] - py;
+        const ahead = cos * dx + sin * dy;
+        points.push([view.x(ahead, cos * dy - sin * dx), view.y(ahead)]);
+      }
+      context.beginPath();
+      trace(context, points, track.closed);
+      context.stroke();
+    }
+    context.setLineDash([]);
+  };
+
+  const drawScene = () => {
+    const { context, width, height } = prepare(scene);
+    const view = fit(width, height), current = frame(), points = placed(view);
+    const at = (indices) => indices.map((i) => points[i]);
+    drawRange(context, view);
+    drawBoundaries(context, view);
+
+    const [left, right, closed] = current.g;
+    context.fillStyle = colour("--band");
+    context.beginPath();
+    if (closed) {
+      trace(context, at(left), true);
+      trace(context, at(right), true);
+    } else {
+      trace(context, [...at(left), ...at(right).reverse()], true);
+    }
+    context.fill("evenodd");
+
+    data.methods.forEach((method, i) => {
+      const answer = current.a[i];
+      if (!answer || !state.shown[i]) return;
+      context.strokeStyle = colour("--m" + method.colour);
+      context.lineWidth = 2.4;
+      context.beginPath();
+      for (const side of answer.slice(0, 2)) trace(context, at(side), answer[2]);
+      context.stroke();
+    });
+
+    const cones = points.length - current.f;
+    context.lineWidth = 1.2;
+    context.strokeStyle = colour("--muted");
+    context.fillStyle = colour("--ink");
+    points.forEach(([x, y], i) => {
+      context.beginPath();
+      if (i < cones) {
+        context.arc(x, y, 3, 0, 2 * Math.PI);
+        context.fill();
+      } else {
+        context.moveTo(x - 3, y - 3); context.lineTo(x + 3, y + 3);
+        context.moveTo(x + 3, y - 3); context.lineTo(x - 3, y + 3);
+        context.stroke();
+      }
+    });
+
+    context.fillStyle = colour("--accent");
+    context.beginPath();
+    trace(context, [[view.x(0, 0), view.y(0) - 9], [view.x(0, 0) + 6, view.y(0) + 7],
+                    [view.x(0, 0) - 6, view.y(0) + 7]], true);
+    context.fill();
+  };
+
+  /// Map of the whole track: world coordinates, its poses in order.
+  const mapOf = () => {
+    const { lap } = state;
+    if (!trackFrames.has(lap)) {
+      const track = data.tracks[lap.track];
+      const poses = lap.scenes.map((name) => data.frames[name].p);
+      const flat = track ? [...track.left, ...track.right] : poses.flatMap(([x, y]) => [x, y]);
+      const xs = flat.filter((_, i) => i % 2 === 0), ys = flat.filter((_, i) => i % 2 === 1);
+      trackFrames.set(lap, { track, poses, low: [Math.min(...xs), Math.min(...ys)],
+                             high: [Math.max(...xs), Math.max(...ys)] });
+    }
+    return trackFrames.get(lap);
+  };
+
+  const mapView = (width, height) => {
+    const { low, high } = mapOf();
+    const scale = Math.min((width - 12) / Math.max(1, high[0] - low[0]), (height - 12) / Math.max(1, high[1] - low[1]));
+    const top = (high[1] - low[1]) * scale;
+    return ([x, y]) => [width - 6 - (high[0] - x) * scale, 6 + top - (y - low[1]) * scale];
+  };
+
+  const drawMap = () => {
+    const { context, width, height } = prepare(map);
+    const { track, poses } = mapOf();
+    const place = mapView(width, height);
+    context.strokeStyle = colour("--muted");
+    for (const side of track ? [track.left, track.right] : []) {
+      const points = [];
+      for (let i = 0; i < side.length; i += 2) points.push(place([side[i], side[i + 1]]));
+      context.beginPath();
+      trace(context, points, track.closed);
+      context.stroke();
+    }
+    const [x, y] = place(poses[state.pose]);
+    context.fillStyle = colour("--accent");
+    context.beginPath();
+    context.arc(x, y, 4.5, 0, 2 * Math.PI);
+    context.fill();
+  };
+
+  const rows = data.methods.map((method, i) => {
+    const row = element("methods").insertRow();
+    const head = document.createElement("th");
+    head.scope = "row";
+    head.innerHTML = '<label><input type="checkbox" checked><span class="swatch"></span><span></span></label>';
+    head.querySelector(".swatch").style.background = `var(--m${method.colour})`;
+    head.querySelector("label > :last-child").textContent = method.label;
+    const toggle = head.querySelector("input");
+    toggle.addEventListener("change", () => { state.shown[i] = toggle.checked; drawScene(); });
+    row.append(head);
+    const cells = ["outcome", "number", "accurate", "number"].map((kind) => {
+      const cell = row.insertCell();
+      if (kind === "number") cell.className = kind;
+      return cell;
+    });
+    return { toggle, cells };
+  });
+
+  const drawAnswers = () => frame().a.forEach((answer, i) => {
+    const texts = answer
+      ? [data.categories[answer[5]], (100 * answer[4]).toFixed(1),
+         answer[6] === null ? "–" : answer[6] ? "yes" : "no", answer[3].toPrecision(3)]
+      : ["no answer", "–", "–", "–"];
+    texts.forEach((text, j) => { rows[i].cells[j].textContent = text; });
+  });
+
+  const draw = () => {
+    const name = state.lap.scenes[state.pose], current = frame();
+    element("pose").max = state.lap.scenes.length - 1;
+    element("pose").value = state.pose;
+    element("name").textContent = `${state.pose + 1} / ${state.lap.scenes.length}`;
+    const cones = current.c.length / 2;
+    scene.setAttribute("aria-label", `Scene ${name}: ${cones - current.f} cones, ${current.f} false positives`);
+    box.dataset.scene = name;
+    drawScene();
+    drawMap();
+    drawAnswers();
+  };
+
+  const stop = () => {
+    clearInterval(state.timer);
+    state.timer = null;
+    element("play").textContent = "▶";
+  };
+  const go = (pose) => {
+    state.pose = Math.max(0, Math.min(state.lap.scenes.length - 1, pose));
+    tip.hidden = true;
+    draw();
+  };
+  const play = () => {
+    if (state.timer) return stop();
+    if (state.pose === state.lap.scenes.length - 1) go(0);
+    element("play").textContent = "❚❚";
+    state.timer = setInterval(() => {
+      if (state.pose >= state.lap.scenes.length - 1) stop();
+      else go(state.pose + 1);
+    }, 1000 / Number(element("speed").value));
+  };
+
+  const choices = { track: element("track"), rate: element("rate"), range: element("range") };
+  const fill = (select, values, show) => {
+    for (const value of new Set(values)) select.add(new Option(show(value), value));
+  };
+  fill(choices.track, data.laps.map((lap) => lap.track), (track) => track);
+  fill(choices.rate, data.laps.map((lap) => lap.rate).sort((a, b) => a - b), (rate) => (100 * rate).toFixed(1) + " %");
+  fill(choices.range, data.laps.map((lap) => lap.range).sort((a, b) => a - b), (range) => range + " m");
+  const showLap = (lap, pose) => {
+    state.lap = lap;
+    for (const key in choices) choices[key].value = lap[key];
+    go(pose);
+  };
+  /// The lap as chosen, at the place where the car is now.
+  const choose = () => {
+    const wanted = (lap, key) => String(lap[key]) === choices[key].value;
+    const lap = data.laps.find((one) => Object.keys(choices).every((key) => wanted(one, key))) ||
+                data.laps.find((one) => wanted(one, "track"));
+    const share = state.lap.track === lap.track ? state.pose / Math.max(1, state.lap.scenes.length - 1) : 0;
+    showLap(lap, Math.round(share * (lap.scenes.length - 1)));
+  };
+  for (const select of Object.values(choices)) select.addEventListener("change", choose);
+  const step = (select, by) => {
+    const index = select.selectedIndex + by;
+    if (index < 0 || index >= select.options.length) return;
+    select.selectedIndex = index;
+    choose();
+  };
+
+  element("back").addEventListener("click", () => go(state.pose - 1));
+  element("next").addEventListener("click", () => go(state.pose + 1));
+  element("play").addEventListener("click", play);
+  element("pose").addEventListener("input", (event) => go(Number(event.target.value)));
+  element("speed").addEventListener("change", () => { if (state.timer) { stop(); play(); } });
+
+  box.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const own = event.target.tagName; // these have a use of their own for some keys
+    if (own === "SELECT" || (own === "INPUT" && event.key.startsWith("Arrow") && event.target.type === "range")) return;
+    if (event.key === " " && own !== "DIV") return;
+    const digit = Number(event.key) - 1;
+    if (event.key === "ArrowRight") go(state.pose + 1);
+    else if (event.key === "ArrowLeft") go(state.pose - 1);
+    else if (event.key === "ArrowUp") step(choices.rate, 1);
+    else if (event.key === "ArrowDown") step(choices.rate, -1);
+    else if (event.key === " ") play();
+    else if (rows[digit]) rows[digit].toggle.click();
+    else return;
+    event.preventDefault();
+  });
+  scene.addEventListener("pointerdown", () => box.focus({ preventScroll: true }));
+
+  scene.addEventListener("pointermove", (event) => {
+    const view = fit(scene.clientWidth, scene.clientHeight), points = placed(view), { c, f } = frame();
+    let nearest = -1, least = 12;
+    points.forEach(([x, y], i) => {
+      const distance = Math.hypot(x - event.offsetX, y - event.offsetY);
+      if (distance < least) { least = distance; nearest = i; }
+    });
+    tip.hidden = nearest < 0;
+    if (tip.hidden) return;
+    const kind = nearest < points.length - f ? "cone" : "false positive";
+    tip.textContent = `${kind}, ${(c[2 * nearest] / 100).toFixed(2)} m ahead, ` +
+      `${(Math.abs(c[2 * nearest + 1]) / 100).toFixed(2)} m ${c[2 * nearest + 1] < 0 ? "right" : "left"}`;
+    const [x, y] = points[nearest];
+    tip.style.left = Math.max(4, Math.min(x + 10, scene.clientWidth - tip.offsetWidth - 4)) + "px";
+    tip.style.top = Math.max(4, y - 28) + "px";
+  });
+  scene.addEventListener("pointerleave", () => { tip.hidden = true; });
+  map.addEventListener("click", (event) => {
+    const place = mapView(map.clientWidth, map.clientHeight);
+    const distances = mapOf().poses.map((pose) => {
+      const [x, y] = place(pose);
+      return Math.hypot(x - event.offsetX, y - event.offsetY);
+    });
+    go(distances.indexOf(Math.min(...distances)));
+  });
+
+  for (const button of document.querySelectorAll("[data-open]")) {
+    button.addEventListener("click", () => {
+      const lap = data.laps.find((one) => one.scenes.includes(button.dataset.open));
+      stop();
+      showLap(lap, lap.scenes.indexOf(button.dataset.open));
+      box.scrollIntoView();
+      box.focus({ preventScroll: true });
+    });
+  }
+  document.addEventListener("themechange", draw);
+  addEventListener("resize", draw);
+  showLap(state.lap, 0);
+})();
