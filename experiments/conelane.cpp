@@ -37,6 +37,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_solve_command(program);
     experiments::add_solvers_command(program);
     experiments::add_check_command(program);
+    experiments::add_train_command(program);
     try {
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& help) {

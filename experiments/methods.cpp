@@ -1,6 +1,7 @@
 #include "experiments/methods.hpp"
 
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/rld_detector.hpp"
@@ -42,11 +43,40 @@ std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
     return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
 
-constexpr std::array<MethodEntry, 2> kMethods{{
+template <typename Choose>
+std::unique_ptr<LaneDetector> make_clc(const MethodOptions& options, Choose choose) {
+    ClcOptions clc;
+    choose(clc);
+    return cut_to(make_clc_detector(clc), options.nearest);
+}
+
+constexpr std::array<MethodEntry, 6> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
-    {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt,
-     [](const MethodOptions& options) { return cut_to(make_clc_detector({}), options.nearest); }},
+    {"clc", "CLC, lanes ranked by the network on the paper's eight features", std::nullopt,
+     [](const MethodOptions& options) {
+         return make_clc(options, [](ClcOptions& clc) { clc.ranking = paper_rank_net(); });
+     }},
+    {"clc-plus", "CLC, lanes ranked by the network on all features", std::nullopt,
+     [](const MethodOptions& options) {
+         return make_clc(options, [](ClcOptions& clc) { clc.ranking = extended_rank_net(); });
+     }},
+    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt,
+     [](const MethodOptions& options) {
+         return make_clc(options, [](ClcOptions& clc) {
+             clc.ranking = paper_rank_net();
+             clc.warm_start = true;
+         });
+     }},
+    {"clc-delaunay", "clc on the Delaunay triangulation (section IV-B)", std::nullopt,
+     [](const MethodOptions& options) {
+         return make_clc(options, [](ClcOptions& clc) {
+             clc.ranking = paper_rank_net();
+             clc.graph = SearchGraphKind::delaunay;
+         });
+     }},
+    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt,
+     [](const MethodOptions& options) { return make_clc(options, [](ClcOptions&) {}); }},
 }};
 
 }  // namespace

@@ -14,5 +14,6 @@ void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
+void add_train_command(CLI::App& program);
 
 }  // namespace conelane::experiments
