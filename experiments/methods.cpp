@@ -1,7 +1,6 @@
 #include "experiments/methods.hpp"
 
 #include "graph_search/clc_detector.hpp"
-#include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/rld_detector.hpp"
@@ -43,40 +42,31 @@ std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
     return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
 
-template <typename Choose>
-std::unique_ptr<LaneDetector> make_clc(const MethodOptions& options, Choose choose) {
-    ClcOptions clc;
-    choose(clc);
+std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOptions& options) {
     return cut_to(make_clc_detector(clc), options.nearest);
 }
 
 constexpr std::array<MethodEntry, 6> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
-    {"clc", "CLC, lanes ranked by the network on the paper's eight features", std::nullopt,
-     [](const MethodOptions& options) {
-         return make_clc(options, [](ClcOptions& clc) { clc.ranking = paper_rank_net(); });
-     }},
-    {"clc-plus", "CLC, lanes ranked by the network on all features", std::nullopt,
-     [](const MethodOptions& options) {
-         return make_clc(options, [](ClcOptions& clc) { clc.ranking = extended_rank_net(); });
-     }},
+    {"clc", "CLC; NVD weighs distances, the network ranks by all features", std::nullopt,
+     [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt,
      [](const MethodOptions& options) {
-         return make_clc(options, [](ClcOptions& clc) {
-             clc.ranking = paper_rank_net();
-             clc.warm_start = true;
-         });
+         ClcOptions clc = extended_clc_options();
+         clc.warm_start = true;
+         return make_clc(clc, options);
      }},
-    {"clc-delaunay", "clc on the Delaunay triangulation (section IV-B)", std::nullopt,
+    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt,
+     [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
+    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt,
      [](const MethodOptions& options) {
-         return make_clc(options, [](ClcOptions& clc) {
-             clc.ranking = paper_rank_net();
-             clc.graph = SearchGraphKind::delaunay;
-         });
+         ClcOptions clc = paper_clc_options();
+         clc.graph = SearchGraphKind::delaunay;
+         return make_clc(clc, options);
      }},
     {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt,
-     [](const MethodOptions& options) { return make_clc(options, [](ClcOptions&) {}); }},
+     [](const MethodOptions& options) { return make_clc({}, options); }},
 }};
 
 }  // namespace

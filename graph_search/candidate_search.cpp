@@ -71,6 +71,8 @@ void validate(const CandidateSearchOptions& options) {
             "largest_radius", "must not be below radius");
     require(std::isfinite(options.start.distance_weight) && options.start.distance_weight >= 0.0,
             "distance_weight", "must not be negative");
+    require(std::isfinite(options.next_vertex_distance_weight) && options.next_vertex_distance_weight >= 0.0,
+            "next_vertex_distance_weight", "must not be negative");
 }
 
 CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : options_(options) {
@@ -80,6 +82,7 @@ CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : option
     rules_.bounds = options.bounds;
     rules_.d_max_m = options.d_max_m;
     rules_.width_backtracking = options.width_backtracking;
+    rules_.next_vertex_distance_weight = options.next_vertex_distance_weight;
 }
 
 CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& request) {
@@ -119,8 +122,7 @@ void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, b
     const std::int64_t left = options_.iteration_limit - budget_.iterations;
     budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
     const std::size_t before = pairs_.found().size();
-    report.complete &=
-        enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
+    report.complete &= enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
     if (!rules_.with_features) return;
     const StartPairMeasures measures = start_pair_measures(scene, start);
     for (LaneFeatures& lane : pairs_.features().subspan(before)) {

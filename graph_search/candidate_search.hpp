@@ -22,6 +22,8 @@ struct CandidateSearchOptions {
     StartVertexRules start;          ///< its w_min_m and w_max_m are taken from `bounds`
     std::size_t starting_pairs = 3;  ///< how many are tried
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
+    /// Of the next-vertex decider, see there; 0: equation (3) as printed.
+    double next_vertex_distance_weight = 0.0;
 };
 
 /// Throws InvalidInput naming the option that is out of its range.

@@ -1,11 +1,17 @@
 #include "graph_search/clc_detector.hpp"
 
+#include "graph_search/rank_net_file.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <vector>
 
 namespace conelane {
 namespace {
+
+/// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
+/// positives.
+constexpr double kNextVertexDistanceWeight = 0.8;
 
 class ClcDetector final : public LaneDetector {
   public:
@@ -57,6 +63,19 @@ class ClcDetector final : public LaneDetector {
 };
 
 }  // namespace
+
+ClcOptions paper_clc_options() {
+    ClcOptions options;
+    options.ranking = paper_rank_net();
+    return options;
+}
+
+ClcOptions extended_clc_options() {
+    ClcOptions options;
+    options.next_vertex_distance_weight = kNextVertexDistanceWeight;
+    options.ranking = extended_rank_net();
+    return options;
+}
 
 std::unique_ptr<LaneDetector> make_clc_detector(const ClcOptions& options) {
     return std::make_unique<ClcDetector>(options);

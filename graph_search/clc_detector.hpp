@@ -14,6 +14,12 @@ struct ClcOptions : CandidateSearchOptions {
     bool warm_start = false;
 };
 
+/// The search and the ranking of the paper: equation (3), the network on eight features.
+[[nodiscard]] ClcOptions paper_clc_options();
+/// The same algorithm with two things more: the next-vertex decider weighs distances, and the network sees
+/// all features.
+[[nodiscard]] ClcOptions extended_clc_options();
+
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
 /// cones a side that has the highest score of the ranking, or without one the longest (mean length of both
 /// boundaries). Of equal ones, the one met first. LaneAnswer::enumeration is always there; `complete`: every

@@ -30,7 +30,15 @@ constexpr std::array<std::string_view, kLaneFeatureCount> kNames{
     // Between the two last cones after each step.
     "mean_across_m", "across_variance_m2", "mean_segment_length_m_left", "mean_segment_length_m_right",
     "absolute_mean_turn_rad_left", "absolute_mean_turn_rad_right", "mean_squared_turn_change_rad2_left",
-    "mean_squared_turn_change_rad2_right"};
+    "mean_squared_turn_change_rad2_right", "shortest_segment_m",
+    // Largest chord between the direction of a first segment and the car's heading.
+    "start_skew",
+    // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
+    "cones_beside",
+    // At the far ends: the sharper turn, the longer segment, the last change of a turn.
+    "end_turn_rad", "end_segment_m", "end_turn_change_rad"};
+
+constexpr double kBeside_m = 1.2;
 
 bool is_inside(const Point& point, const Point& a, const Point& b, const Point& c) {
     const double at_ab = cross(b - a, point - a);
@@ -79,8 +87,9 @@ PaperFeatures paper_features(std::span<const Point> left, std::span<const Point>
     return features;
 }
 
-void LaneGrowth::start(const SearchGraph& graph, Vertex left, Vertex right) {
+void LaneGrowth::start(const SearchGraph& graph, Vertex left, Vertex right, const Point& heading) {
     *this = LaneGrowth();
+    heading_ = heading;
     for (const Side side : {kLeft, kRight}) {
         boundaries_[side].last = side == kLeft ? left : right;
         tip_[side] = graph.position(boundaries_[side].last);
@@ -104,22 +113,33 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         if (own.turns.count > 0.0) {
             const double change_rad = turn_rad - own.last_turn_rad;
             own.turn_changes.add(change_rad);
-            sharpest_turn_change_rad_ = std::max(sharpest_turn_change_rad_, std::abs(change_rad));
+            last_turn_change_rad_ = std::abs(change_rad);
+            sharpest_turn_change_rad_ = std::max(sharpest_turn_change_rad_, last_turn_change_rad_);
         }
         own.turns.add(turn_rad);
         own.last_turn_rad = turn_rad;
+    } else {
+        start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.segment_lengths.count > 0.0) skew_.add((direction - facing.direction).norm());
     const std::span<const Vertex> neighbours = graph.neighbours(vertex);
     for (const Vertex neighbour : neighbours) {
-        if (is_inside(graph.position(neighbour), tip_[side], facing_tip, point)) cones_inside_ += 1.0;
+        const Point& cone = graph.position(neighbour);
+        if (is_inside(cone, tip_[side], facing_tip, point)) cones_inside_ += 1.0;
+        const Point offset = cone - tip_[side];
+        const double along_m = offset.dot(direction);
+        if (along_m > 0.0 && along_m < length_m && std::abs(cross(direction, offset)) < kBeside_m) {
+            cones_beside_ += 1.0;
+        }
     }
     own.segment_lengths.add(length_m);
     own.direction = direction;
+    own.last_segment_m = length_m;
     own.last = vertex;
     own.vertices += 1.0;
     tip_[side] = point;
     longest_segment_m_ = std::max(longest_segment_m_, length_m);
+    shortest_segment_m_ = std::min(shortest_segment_m_, length_m);
     across_.add((point - facing_tip).norm());
     degree_.add(static_cast<double>(neighbours.size()));
 }
@@ -147,6 +167,12 @@ LaneFeatures LaneGrowth::features() const {
     features[18] = skew_.mean_of_squares();
     features[19] = across_.mean();
     features[20] = across_.variance();
+    features[27] = shortest_segment_m_;
+    features[28] = start_skew_;
+    features[29] = cones_beside_;
+    features[30] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
+    features[31] = std::max(left.last_segment_m, right.last_segment_m);
+    features[32] = last_turn_change_rad_;
     return features;
 }
 

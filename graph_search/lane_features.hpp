@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -17,7 +18,7 @@ namespace conelane {
 /// consecutive segments left, right [rad^2]. Variances are those of the whole population, 0 where there is
 /// nothing to vary. The others are this project's, see lane_feature_names.
 inline constexpr std::size_t kPaperFeatureCount = 8;
-inline constexpr std::size_t kLaneFeatureCount = 27;
+inline constexpr std::size_t kLaneFeatureCount = 33;
 using PaperFeatures = std::array<double, kPaperFeatureCount>;
 using LaneFeatures = std::array<double, kLaneFeatureCount>;
 
@@ -50,8 +51,9 @@ struct Moments {
 /// search keeps one for each lane that it may come back to.
 class LaneGrowth {
   public:
-    /// A lane of one vertex a side, neither of which has a direction yet.
-    void start(const SearchGraph& graph, Vertex left, Vertex right);
+    /// A lane of one vertex a side, neither of which has a direction yet. `heading`: the car's, a unit
+    /// vector.
+    void start(const SearchGraph& graph, Vertex left, Vertex right, const Point& heading);
     /// Extends a side.
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
@@ -65,6 +67,7 @@ class LaneGrowth {
         Point direction{0.0, 0.0};  ///< unit vector of the last segment; zero where there is none
         double vertices = 1.0;
         double last_turn_rad = 0.0;
+        double last_segment_m = 0.0;
         Moments segment_lengths;
         Moments turns;
         Moments turn_changes;
@@ -78,6 +81,11 @@ class LaneGrowth {
     double sharpest_turn_rad_ = 0.0;
     double sharpest_turn_change_rad_ = 0.0;
     double longest_segment_m_ = 0.0;
+    double shortest_segment_m_ = std::numeric_limits<double>::infinity();
+    Point heading_{0.0, 0.0};
+    double start_skew_ = 0.0;
+    double cones_beside_ = 0.0;
+    double last_turn_change_rad_ = 0.0;
     double cones_inside_ = 0.0;
 };
 

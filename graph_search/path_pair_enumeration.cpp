@@ -42,7 +42,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     graph_ = &graph;
     rules_ = rules;
     const double phi_max = turning_measure(rules.bounds.phi_max_rad);
-    next_vertex_.reset(graph);
+    next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m);
     constraints_.reset(graph.position(start.left), graph.position(start.right), rules.bounds,
                        rules.width_backtracking);
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
@@ -59,7 +59,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     first.step = pairs.add_step(PathPairs::kNone, kLeft, start.left);
     first.step = pairs.add_step(first.step, kRight, start.right);
     first.pushed = kLeft;
-    if (rules_.with_features) first.growth.start(graph, start.left, start.right);
+    if (rules_.with_features) first.growth.start(graph, start.left, start.right, heading);
     calls_.assign(1, first);
     guide_ = guide;
     guide_position_ = {1, 1};
@@ -150,7 +150,8 @@ PathPairEnumeration::NextOptions PathPairEnumeration::guided_options(const Call&
         const NextVertexDecider::Range& unvisited = call.unvisited[side];
         for (std::uint32_t i = unvisited.begin; i != unvisited.end; ++i) {
             const Vertex vertex = next_vertex_.option(i).vertex;
-            if (vertex == guide_[side][guide_position_[side]] && on_path_[side][vertex] == 0) options[side] = i;
+            if (vertex == guide_[side][guide_position_[side]] && on_path_[side][vertex] == 0)
+                options[side] = i;
         }
         // Where it cannot be followed, it ends.
         if (options[side] == kNoOption) guide_position_[side] = guide_[side].size();
@@ -194,7 +195,8 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
         pairs.add_found({call.step, true, iteration, length_m + (left_gap_m + right_gap_m) / 2.0});
         if (rules_.with_features) {
             LaneFeatures features = pairs.features().back();
-            const PaperFeatures closed = paper_features(closing_points_[kLeft], closing_points_[kRight], true);
+            const PaperFeatures closed =
+                paper_features(closing_points_[kLeft], closing_points_[kRight], true);
             std::ranges::copy(closed, features.begin());
             pairs.add_features(features);
         }

@@ -28,7 +28,8 @@ struct EnumerationRules {
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
     /// Without it the search goes on where no extension can become feasible: slower, and finds the same.
     bool backtracking = true;
-    bool with_features = false;  ///< whether PathPairs::features is filled
+    double next_vertex_distance_weight = 0.0;  ///< of NVD; 0: equation (3)
+    bool with_features = false;                ///< whether PathPairs::features is filled
 };
 
 /// What a search may spend, and what it has spent; several enumerations may draw on one.

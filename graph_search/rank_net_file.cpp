@@ -49,8 +49,7 @@ Eigen::Matrix<Scalar, Eigen::Dynamic, 1> vector(const Json& values, const std::s
     array(values, key);
     Eigen::Matrix<Scalar, Eigen::Dynamic, 1> result(static_cast<Eigen::Index>(values.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
-        result(static_cast<Eigen::Index>(i)) =
-            static_cast<Scalar>(number(values[i], element_key(key, i)));
+        result(static_cast<Eigen::Index>(i)) = static_cast<Scalar>(number(values[i], element_key(key, i)));
     }
     return result;
 }

@@ -27,9 +27,9 @@ struct StartPairMeasures {
 /// Pairs to start the search from, best first, at most `count`; section IV-C of the CLC paper. A left vertex
 /// has a positive angle with the car's heading, a right one a negative one. The search radius grows until it
 /// holds `count` pairs: a lane may start a few metres ahead, and a false positive near the car must not shut
-/// out the others. Pairs rank by asymmetry_m + distance_weight * distance_m of their measures. (By asymmetry alone, as printed, any symmetric pair farther
-/// ahead would go before the first cones of a lane that do not face each other.) Ties: the pair with the
-/// smaller vertices.
+/// out the others. Pairs rank by asymmetry_m + distance_weight * distance_m of their measures. (By asymmetry
+/// alone, as printed, any symmetric pair farther ahead would go before the first cones of a lane that do not
+/// face each other.) Ties: the pair with the smaller vertices.
 [[nodiscard]] std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count,
                                                  const StartVertexRules& rules);
 

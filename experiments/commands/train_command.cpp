@@ -2,6 +2,7 @@
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/training/training_run.hpp"
+#include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"
 
 #include <memory>
@@ -20,23 +21,25 @@ struct Options {
         run.candidates.most_per_scene = 120;
     }
     TrainingRunOptions run;
-    bool all_features = false;
+    bool extended = false;
     unsigned threads = 1;
     std::string out;
 };
 
 void print(const char* of, const RankingFigures& figures) {
     if (figures.scenes == 0) return;
-    fmt::print("{:<9} {:>6} scenes  mean IoU {:.2f} % of at most {:.2f} %, a candidate of 98 % in {:.1f} %, "
-               "critical {:.2f} % of at least {:.2f} %\n",
-               of, figures.scenes, 100.0 * figures.mean_iou, 100.0 * figures.mean_best_iou,
-               100.0 * figures.near_best_share, 100.0 * figures.critical_share,
-               100.0 * figures.least_critical_share);
+    fmt::print(
+        "{:<9} {:>6} scenes  mean IoU {:.2f} % of at most {:.2f} %, a candidate of 98 % in {:.1f} %, "
+        "critical {:.2f} % of at least {:.2f} %\n",
+        of, figures.scenes, 100.0 * figures.mean_iou, 100.0 * figures.mean_best_iou,
+        100.0 * figures.near_best_share, 100.0 * figures.critical_share,
+        100.0 * figures.least_critical_share);
 }
 
 void train(Options& options) {
     TrainingRunOptions& run = options.run;
-    run.training.inputs = options.all_features ? kLaneFeatureCount : kPaperFeatureCount;
+    run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
+    if (options.extended) run.candidates.search = extended_clc_options();
     run.training.seed = run.scenes.seed;
     run.candidates.seed = run.scenes.seed;
     run.scenes.threads = options.threads;
@@ -56,16 +59,15 @@ void add_train_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     command
-        .add_option("--tracks", run.tracks,
-                    "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
     add_scene_options(command, run.scenes);
     command
-        .add_option("--candidates", run.candidates.most_per_scene,
-                    "of a scene, drawn at random; 0 for all")
+        .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
-    command.add_flag("--all-features", options->all_features, "beside the paper's eight");
+    command.add_flag("--extended", options->extended,
+                     "the network of clc, on its search and all features; without it that of clc-paper");
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
@@ -73,7 +75,7 @@ void add_train_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--divergence-penalty", run.training.divergence_penalty,
-                    "off the IoU of a lane that diverges below 20 m; 0 as in the paper")
+                    "off the IoU of a lane that diverges below 20 m; 0, as in the paper, without it")
         ->capture_default_str();
     command
         .add_option("--leader-share", run.training.leader_share,

@@ -29,7 +29,8 @@ std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::st
     std::vector<std::size_t> numbers(size);
     std::iota(numbers.begin(), numbers.end(), std::size_t{0});
     if (count == 0 || count >= size) return numbers;
-    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)};
+    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
+                                     static_cast<std::uint32_t>(seed >> 32U)};
     for (const char letter : scene_id) words.push_back(static_cast<unsigned char>(letter));
     boost::random::seed_seq sequence(words.begin(), words.end());
     boost::random::mt19937_64 random(sequence);
@@ -87,8 +88,7 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
                 list.lanes.push_back(pairs.features()[k]);
                 const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), scene.scene);
                 list.iou.push_back(intersection_over_union(lane, ground_truth));
-                list.divergence_m.push_back(
-                    divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
+                list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
             }
             progress.advance();
         });

@@ -252,8 +252,8 @@ RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNe
                                                   all.quality[static_cast<std::size_t>(second)]));
             }
             (void)pair_loss(parameters, batch, &gradient);
-            const double done = (static_cast<double>(epoch) + static_cast<double>(begin) /
-                                                                  static_cast<double>(pairs.size())) /
+            const double done = (static_cast<double>(epoch) +
+                                 static_cast<double>(begin) / static_cast<double>(pairs.size())) /
                                 static_cast<double>(options.epochs);
             adam.step(gradient, options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done)),
                       parameters);
@@ -276,8 +276,7 @@ RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneR
         ranking.score(list.lanes, scores);
         double divergence_m = 0.0;
         if (!scores.empty()) {
-            const auto chosen =
-                static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
+            const auto chosen = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
             figures.mean_iou += list.iou[chosen];
             divergence_m = list.divergence_m[chosen];
         }

@@ -37,9 +37,9 @@ struct RankNetTrainingOptions {
     std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
     double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
     double iou_factor = 50.0;         ///< lambda_iou of equation (14)
-    /// Subtracted from the IoU of equation (14) for a candidate that diverges below kCriticalDivergence_m, half
-    /// of it for one that diverges later; 0 is the paper. A short way off the lane costs little area.
-    double divergence_penalty = 0.3;
+    /// Subtracted from the IoU of equation (14) for a candidate that diverges below kCriticalDivergence_m,
+    /// half of it for one that diverges later; 0 is the paper. A short way off the lane costs little area.
+    double divergence_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
     /// the epoch; the others have any of the scene. What counts in the end is who is first.
     double leader_share = 0.5;
@@ -55,10 +55,10 @@ struct RankNetTrainingOptions {
 /// How a ranking chooses among candidates.
 struct RankingFigures {
     std::size_t scenes = 0;
-    double mean_iou = 0.0;          ///< of the candidates chosen; 0 where a scene has none
-    double mean_best_iou = 0.0;     ///< the ceiling
-    double near_best_share = 0.0;   ///< scenes with a candidate of IoU >= kNearGroundTruthIou
-    double critical_share = 0.0;    ///< scenes without candidate or whose chosen one diverges below 20 m
+    double mean_iou = 0.0;              ///< of the candidates chosen; 0 where a scene has none
+    double mean_best_iou = 0.0;         ///< the ceiling
+    double near_best_share = 0.0;       ///< scenes with a candidate of IoU >= kNearGroundTruthIou
+    double critical_share = 0.0;        ///< scenes without candidate or whose chosen one diverges below 20 m
     double least_critical_share = 0.0;  ///< scenes in which every candidate does
 };
 /// All zero where there is no list.
