@@ -42,7 +42,11 @@ std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
     return std::make_unique<NearestCones>(std::move(detector), *nearest);
 }
 
-constexpr std::array<MethodEntry, 4> kMethods{{
+std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOptions& options) {
+    return cut_to(make_clc_detector(clc), options.nearest);
+}
+
+constexpr std::array<MethodEntry, 8> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
@@ -53,8 +57,24 @@ constexpr std::array<MethodEntry, 4> kMethods{{
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
-    {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt,
-     [](const MethodOptions& options) { return cut_to(make_clc_detector({}), options.nearest); }},
+    {"clc", "CLC; NVD weighs distances, the network ranks by all features", std::nullopt,
+     [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
+    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt,
+     [](const MethodOptions& options) {
+         ClcOptions clc = extended_clc_options();
+         clc.warm_start = true;
+         return make_clc(clc, options);
+     }},
+    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt,
+     [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
+    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt,
+     [](const MethodOptions& options) {
+         ClcOptions clc = paper_clc_options();
+         clc.graph = SearchGraphKind::delaunay;
+         return make_clc(clc, options);
+     }},
+    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt,
+     [](const MethodOptions& options) { return make_clc({}, options); }},
 }};
 
 }  // namespace

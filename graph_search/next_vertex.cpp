@@ -22,8 +22,9 @@ double turning_measure(double angle_rad) {
     return measure(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
 }
 
-void NextVertexDecider::reset(const SearchGraph& graph) {
+void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m) {
     graph_ = &graph;
+    distance_weight_per_m_ = distance_weight_per_m;
     options_.clear();
     ranges_.assign(graph.directed_edge_count(), Range{kUnknown, kUnknown});
 }
@@ -37,11 +38,14 @@ NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& d
     SearchGraph::DirectedEdge edge = graph_->first_edge(vertex);
     for (const Vertex neighbour : graph_->neighbours(vertex)) {
         const Point segment = graph_->position(neighbour) - graph_->position(vertex);
-        const NextVertex option{neighbour, edge++, turning_measure(direction, segment)};
+        const double turning = turning_measure(direction, segment);
+        double cost = turning;
+        if (distance_weight_per_m_ > 0.0) cost += distance_weight_per_m_ * segment.norm();
+        const NextVertex option{neighbour, edge++, turning, cost};
         // Insertion keeps equal ones in the order of the vertices, which is that of `neighbours`.
         options_.push_back(option);
         std::size_t place = options_.size() - 1;
-        for (; place > begin && options_[place - 1].turning > option.turning; --place) {
+        for (; place > begin && options_[place - 1].cost > option.cost; --place) {
             options_[place] = options_[place - 1];
         }
         options_[place] = option;

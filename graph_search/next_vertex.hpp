@@ -19,12 +19,17 @@ struct NextVertex {
     Vertex vertex;
     SearchGraph::DirectedEdge edge;  ///< that leads to it
     double turning;                  ///< turning_measure of the angle that the boundary takes
+    double cost;                     ///< what decides the order
 };
 
 /// Next-vertex decider NVD, equation (3) of the CLC paper: neighbours of a boundary's last vertex in the
 /// order of the absolute angle they make with its last segment, the smallest first; equal ones by vertex. The
 /// order depends on the last two vertices only, so it is computed once for each directed edge that the search
 /// meets.
+///
+/// With a distance weight the cost is not the angle's turning_measure alone: the vertex's distance as a share
+/// of d_max, times the weight, is added. Of vertices almost straight on the nearest then comes first, while
+/// equation (3), weight 0, goes past it as easily, and takes a false positive far off for a bend's next cone.
 class NextVertexDecider {
   public:
     /// A range of `options`.
@@ -34,7 +39,7 @@ class NextVertexDecider {
     };
 
     /// Forgets everything; `graph` must outlive the use of this object.
-    void reset(const SearchGraph& graph);
+    void reset(const SearchGraph& graph, double distance_weight_per_m = 0.0);
 
     /// Neighbours of a first vertex, ordered by their angle with the car's heading (a unit vector).
     [[nodiscard]] Range after_start(Vertex start, const Point& heading);
@@ -52,6 +57,7 @@ class NextVertexDecider {
     [[nodiscard]] Range sorted(Vertex vertex, const Point& direction);
 
     const SearchGraph* graph_ = nullptr;
+    double distance_weight_per_m_ = 0.0;
     std::vector<Range> ranges_;  ///< by directed edge
     std::vector<NextVertex> options_;
 };

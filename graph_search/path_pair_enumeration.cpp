@@ -11,6 +11,9 @@ namespace {
 /// The clock is read once in so many iterations.
 constexpr std::int64_t kIterationsPerClockReading = 32;
 
+constexpr Vertex kNoVertex = ~Vertex{0};
+constexpr std::uint32_t kNoOption = ~std::uint32_t{0};
+
 }  // namespace
 
 void PathPairs::clear() {
@@ -34,11 +37,12 @@ PathPairVertices PathPairs::vertices(const PathPair& pair) const {
 }
 
 bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const Point& heading,
-                              const EnumerationRules& rules, SearchBudget& budget, PathPairs& pairs) {
+                              const EnumerationRules& rules, SearchBudget& budget, PathPairs& pairs,
+                              const PathPairVertices& guide) {
     graph_ = &graph;
     rules_ = rules;
     const double phi_max = turning_measure(rules.bounds.phi_max_rad);
-    next_vertex_.reset(graph);
+    next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m);
     constraints_.reset(graph.position(start.left), graph.position(start.right), rules.bounds,
                        rules.width_backtracking);
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
@@ -48,13 +52,18 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     Call first;
     first.unvisited = {next_vertex_.after_start(start.left, heading),
                        next_vertex_.after_start(start.right, heading)};
+    first.visited_early = {kNoVertex, kNoVertex};
     first.last = {start.left, start.right};
     first.direction = {heading, heading};
     first.length_m = {0.0, 0.0};
     first.step = pairs.add_step(PathPairs::kNone, kLeft, start.left);
     first.step = pairs.add_step(first.step, kRight, start.right);
     first.pushed = kLeft;
+    if (rules_.with_features) first.growth.start(graph, start.left, start.right, heading);
     calls_.assign(1, first);
+    guide_ = guide;
+    guide_position_ = {1, 1};
+    bool follows_guide = guide_[kLeft].size() > 1 || guide_[kRight].size() > 1;
 
     while (!calls_.empty()) {
         if (budget.iterations % kIterationsPerClockReading == 0 &&
@@ -65,15 +74,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         ++budget.iterations;
         Call& call = calls_.back();
         const LaneConstraints::State& lane = constraints_.state();
-        std::array<bool, 2> extensible{};
-        for (const Side side : {kLeft, kRight}) {
-            NextVertexDecider::Range& unvisited = call.unvisited[side];
-            while (unvisited.begin != unvisited.end &&
-                   on_path_[side][next_vertex_.option(unvisited.begin).vertex] != 0) {
-                ++unvisited.begin;
-            }
-            extensible[side] = unvisited.begin != unvisited.end;
-        }
+        const std::array<bool, 2> extensible{drop_visited(call, kLeft), drop_visited(call, kRight)};
         const bool given_up = rules_.backtracking && lane.backtrack(extensible[kLeft], extensible[kRight]);
         if (given_up || (!extensible[kLeft] && !extensible[kRight])) {
             if (calls_.size() > 1) {
@@ -81,12 +82,28 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
                 constraints_.pop(call.pushed);
             }
             calls_.pop_back();
+            follows_guide = false;
             continue;
         }
 
-        Side side = extensible[kLeft] ? kLeft : kRight;
-        if (extensible[kLeft] && extensible[kRight]) side = choose_side(call);
-        const NextVertex next = next_vertex_.option(call.unvisited[side].begin++);
+        NextOptions options{kNoOption, kNoOption};
+        if (follows_guide) options = guided_options(call);
+        const bool guided = options != NextOptions{kNoOption, kNoOption};
+        follows_guide = guided;
+        if (!guided) {
+            for (const Side side : {kLeft, kRight}) {
+                if (extensible[side]) options[side] = call.unvisited[side].begin;
+            }
+        }
+        Side side = options[kLeft] != kNoOption ? kLeft : kRight;
+        if (options[kLeft] != kNoOption && options[kRight] != kNoOption) side = choose_side(call, options);
+        const NextVertex next = next_vertex_.option(options[side]);
+        if (guided) {
+            call.visited_early[side] = next.vertex;
+            ++guide_position_[side];
+        } else {
+            ++call.unvisited[side].begin;
+        }
         const Vertex from = call.last[side];
         const bool first_segment = from == (side == kLeft ? start.left : start.right);
         const Point segment = graph.position(next.vertex) - graph.position(from);
@@ -96,6 +113,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
             rules_.backtracking && extended.backtrack(extensible[kLeft], extensible[kRight]);
         if (backtrack && !extended.feasible) {
             constraints_.pop(side);
+            follows_guide = false;
             continue;
         }
         Call below = call;
@@ -103,27 +121,51 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         below.direction[side] = segment;
         const double segment_m = segment.norm();
         below.length_m[side] += segment_m;
-        if (rules_.with_features) {
-            below.segment_lengths[side].add(segment_m);
-            if (!first_segment) below.turns[side].add(turning_angle(call.direction[side], segment));
-        }
+        if (rules_.with_features) below.growth.push(graph, side, next.vertex);
         below.step = pairs.add_step(call.step, side, next.vertex);
         below.pushed = side;
         if (extended.feasible) record(below, budget.iterations, pairs);
         below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
+        below.visited_early[side] = kNoVertex;
         on_path_[side][next.vertex] = 1;
         calls_.push_back(below);
     }
     return true;
 }
 
-Side PathPairEnumeration::choose_side(const Call& call) const {
+bool PathPairEnumeration::drop_visited(Call& call, Side side) const {
+    NextVertexDecider::Range& unvisited = call.unvisited[side];
+    while (unvisited.begin != unvisited.end) {
+        const Vertex vertex = next_vertex_.option(unvisited.begin).vertex;
+        if (on_path_[side][vertex] == 0 && vertex != call.visited_early[side]) return true;
+        ++unvisited.begin;
+    }
+    return false;
+}
+
+PathPairEnumeration::NextOptions PathPairEnumeration::guided_options(const Call& call) {
+    NextOptions options{kNoOption, kNoOption};
+    for (const Side side : {kLeft, kRight}) {
+        if (guide_position_[side] >= guide_[side].size()) continue;
+        const NextVertexDecider::Range& unvisited = call.unvisited[side];
+        for (std::uint32_t i = unvisited.begin; i != unvisited.end; ++i) {
+            const Vertex vertex = next_vertex_.option(i).vertex;
+            if (vertex == guide_[side][guide_position_[side]] && on_path_[side][vertex] == 0)
+                options[side] = i;
+        }
+        // Where it cannot be followed, it ends.
+        if (options[side] == kNoOption) guide_position_[side] = guide_[side].size();
+    }
+    return options;
+}
+
+Side PathPairEnumeration::choose_side(const Call& call, const NextOptions& options) const {
     const std::array<bool, 2>& needs = constraints_.state().needs;
     if (needs[kLeft] != needs[kRight]) return needs[kLeft] ? kLeft : kRight;
     std::array<BoundaryTip, 2> tips;
     std::array<Vertex, 2> next{};
     for (const Side side : {kLeft, kRight}) {
-        next[side] = next_vertex_.option(call.unvisited[side].begin).vertex;
+        next[side] = next_vertex_.option(options[side]).vertex;
         tips[side] = {graph_->position(call.last[side]), call.direction[side], graph_->position(next[side])};
     }
     return left_right_decision(tips, next[kLeft] < next[kRight] ? kLeft : kRight);
@@ -135,7 +177,11 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
     if (left.size < 2 || right.size < 2) return;
     const double length_m = (call.length_m[kLeft] + call.length_m[kRight]) / 2.0;
     pairs.add_found({call.step, false, iteration, length_m});
-    if (rules_.with_features) pairs.add_features(features(call, length_m));
+    if (rules_.with_features) {
+        LaneFeatures features = call.growth.features();
+        features[kWidthVarianceFeature] = constraints_.width().variance();
+        pairs.add_features(features);
+    }
 
     const double left_gap_m = (left.vertex(left.size - 1) - left.vertex(0)).norm();
     const double right_gap_m = (right.vertex(right.size - 1) - right.vertex(0)).norm();
@@ -148,21 +194,13 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
     if (can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules_.d_max_m, rules_.bounds)) {
         pairs.add_found({call.step, true, iteration, length_m + (left_gap_m + right_gap_m) / 2.0});
         if (rules_.with_features) {
-            pairs.add_features(lane_features(closing_points_[kLeft], closing_points_[kRight], true));
+            LaneFeatures features = pairs.features().back();
+            const PaperFeatures closed =
+                paper_features(closing_points_[kLeft], closing_points_[kRight], true);
+            std::ranges::copy(closed, features.begin());
+            pairs.add_features(features);
         }
     }
-}
-
-LaneFeatures PathPairEnumeration::features(const Call& call, double length_m) const {
-    const OnlineLaneWidth& width = constraints_.width();
-    return {length_m,
-            static_cast<double>(width.boundary(kLeft).size),
-            static_cast<double>(width.boundary(kRight).size),
-            width.variance(),
-            call.segment_lengths[kLeft].variance(),
-            call.segment_lengths[kRight].variance(),
-            call.turns[kLeft].variance(),
-            call.turns[kRight].variance()};
 }
 
 }  // namespace conelane

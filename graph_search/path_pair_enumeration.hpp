@@ -1,14 +1,15 @@
 #pragma once
 
 #include "graph_search/lane_constraints.hpp"
+#include "graph_search/lane_features.hpp"
 #include "graph_search/next_vertex.hpp"
-#include "graph_search/ranking.hpp"
 #include "graph_search/search_graph.hpp"
 
 #include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -27,7 +28,8 @@ struct EnumerationRules {
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
     /// Without it the search goes on where no extension can become feasible: slower, and finds the same.
     bool backtracking = true;
-    bool with_features = false;  ///< whether PathPairs::features is filled
+    double next_vertex_distance_weight = 0.0;  ///< of NVD; 0: equation (3)
+    bool with_features = false;                ///< whether PathPairs::features is filled
 };
 
 /// What a search may spend, and what it has spent; several enumerations may draw on one.
@@ -67,6 +69,8 @@ class PathPairs {
     std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
     void add_found(const PathPair& pair) { found_.push_back(pair); }
     void add_features(const LaneFeatures& features) { features_.push_back(features); }
+    /// To fill in what belongs to the scene.
+    [[nodiscard]] std::span<LaneFeatures> features() { return features_; }
 
   private:
     struct Step {
@@ -95,25 +99,35 @@ class PathPairEnumeration {
     /// met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
     /// which an iteration is one run of the loop in line 3. Returns whether the enumeration is complete.
     /// Keeps memory from call to call. Precondition: `heading` is a unit vector, start.left != start.right.
+    ///
+    /// `guide`: a lane to follow first (warm start, section IV-F), its start included; empty for none. The
+    /// search goes along it as far as it can, LRD deciding between the sides, and then on as ever: the same
+    /// set of pairs in another order.
     bool run(const SearchGraph& graph, StartPair start, const Point& heading, const EnumerationRules& rules,
-             SearchBudget& budget, PathPairs& pairs);
+             SearchBudget& budget, PathPairs& pairs, const PathPairVertices& guide = {});
 
   private:
     /// One call of EPP: the path pair it extends, by its last step, and the visited sets, by position.
     struct Call {
         std::array<NextVertexDecider::Range, 2> unvisited;
+        std::array<Vertex, 2> visited_early;  ///< the guide's vertex, out of the order of `unvisited`
         std::array<Vertex, 2> last;
         std::array<Point, 2> direction;  ///< of the last segments
         std::array<double, 2> length_m;
-        std::array<Moments, 2> segment_lengths;  ///< only where features are asked for
-        std::array<Moments, 2> turns;            ///< only where features are asked for
+        LaneGrowth growth;  ///< only where features are asked for
         std::uint32_t step;
         Side pushed;  ///< the side that was extended to get here
     };
 
-    [[nodiscard]] Side choose_side(const Call& call) const;
+    /// By side, an index of NextVertexDecider::option.
+    using NextOptions = std::array<std::uint32_t, 2>;
+
+    /// Drops visited vertices from the front of what a side has left; returns whether any is left.
+    bool drop_visited(Call& call, Side side) const;
+    /// Where the guide goes on, for the sides where it does; both sides' options keep kNoOption otherwise.
+    [[nodiscard]] NextOptions guided_options(const Call& call);
+    [[nodiscard]] Side choose_side(const Call& call, const NextOptions& next) const;
     void record(const Call& call, std::int64_t iteration, PathPairs& pairs);
-    [[nodiscard]] LaneFeatures features(const Call& call, double length_m) const;
 
     const SearchGraph* graph_ = nullptr;
     EnumerationRules rules_;
@@ -122,6 +136,8 @@ class PathPairEnumeration {
     std::array<std::vector<std::uint8_t>, 2> on_path_;
     std::vector<Call> calls_;
     std::array<std::vector<Point>, 2> closing_points_;
+    PathPairVertices guide_;
+    std::array<std::size_t, 2> guide_position_{0, 0};  ///< next vertex of each side of the guide
 };
 
 }  // namespace conelane

@@ -22,6 +22,14 @@ struct RankedPair {
 
 }  // namespace
 
+StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair) {
+    const Point& left = scene.cones[pair.left].position;
+    const Point& right = scene.cones[pair.right].position;
+    return {std::hypot(scene.pose.ahead_m(left) - scene.pose.ahead_m(right),
+                       scene.pose.left_m(left) + scene.pose.left_m(right)),
+            std::max((left - scene.pose.position).norm(), (right - scene.pose.position).norm())};
+}
+
 std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const StartVertexRules& rules) {
     std::vector<Candidate> left;
     std::vector<Candidate> right;
@@ -38,10 +46,9 @@ std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const 
         for (const Candidate& r : right) {
             const double apart_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m - r.left_m);
             if (apart_m <= rules.w_min_m || apart_m >= rules.w_max_m) continue;
-            const double asymmetry_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m + r.left_m);
-            const double distance_m = std::max(l.distance_m, r.distance_m);
-            pairs.push_back(
-                {asymmetry_m + rules.distance_weight * distance_m, distance_m, {l.vertex, r.vertex}});
+            const StartPair pair{l.vertex, r.vertex};
+            const auto [asymmetry_m, distance_m] = start_pair_measures(scene, pair);
+            pairs.push_back({asymmetry_m + rules.distance_weight * distance_m, distance_m, pair});
         }
     }
     double radius_m = rules.radius_m;

@@ -17,14 +17,19 @@ struct StartVertexRules {
     double w_max_m = 6.5;           ///< a pair as far apart as this is none either
 };
 
+/// How a pair of start vertices stands to the car.
+struct StartPairMeasures {
+    double asymmetry_m;  ///< between one vertex and the mirror image of the other in the car's axis
+    double distance_m;   ///< from the car to the farther vertex
+};
+[[nodiscard]] StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair);
+
 /// Pairs to start the search from, best first, at most `count`; section IV-C of the CLC paper. A left vertex
 /// has a positive angle with the car's heading, a right one a negative one. The search radius grows until it
 /// holds `count` pairs: a lane may start a few metres ahead, and a false positive near the car must not shut
-/// out the others. Pairs rank by asymmetry_m + distance_weight * distance_m, where asymmetry_m is the
-/// distance between one vertex and the mirror image of the other in the car's axis, and distance_m the
-/// distance from the car to the farther vertex. (By asymmetry alone, as printed, any symmetric pair farther
-/// ahead would go before the first cones of a lane that do not face each other.) Ties: the pair with the
-/// smaller vertices.
+/// out the others. Pairs rank by asymmetry_m + distance_weight * distance_m of their measures. (By asymmetry
+/// alone, as printed, any symmetric pair farther ahead would go before the first cones of a lane that do not
+/// face each other.) Ties: the pair with the smaller vertices.
 [[nodiscard]] std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count,
                                                  const StartVertexRules& rules);
 

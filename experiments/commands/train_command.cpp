@@ -1,0 +1,89 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/training/training_run.hpp"
+#include "graph_search/clc_detector.hpp"
+#include "graph_search/rank_net_file.hpp"
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    Options() {
+        run.scenes.false_positive_rates = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
+        run.scenes.ranges_m = {30.0, 50.0};
+        run.scenes.every_m = 1.0;
+        run.candidates.most_per_scene = 120;
+    }
+    TrainingRunOptions run;
+    bool extended = false;
+    unsigned threads = 1;
+    std::string out;
+};
+
+void print(const char* of, const RankingFigures& figures) {
+    if (figures.scenes == 0) return;
+    fmt::print(
+        "{:<9} {:>6} scenes  mean IoU {:.2f} % of at most {:.2f} %, a candidate of 98 % in {:.1f} %, "
+        "critical {:.2f} % of at least {:.2f} %\n",
+        of, figures.scenes, 100.0 * figures.mean_iou, 100.0 * figures.mean_best_iou,
+        100.0 * figures.near_best_share, 100.0 * figures.critical_share,
+        100.0 * figures.least_critical_share);
+}
+
+void train(Options& options) {
+    TrainingRunOptions& run = options.run;
+    run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
+    if (options.extended) run.candidates.search = extended_clc_options();
+    run.training.seed = run.scenes.seed;
+    run.candidates.seed = run.scenes.seed;
+    run.scenes.threads = options.threads;
+    run.candidates.threads = options.threads;
+    AtomicFile output(options.out);
+    const TrainingRun result = run_training(run);
+    output.stream() << rank_net_json(result.weights, result.record);
+    output.commit();
+    print("training", result.trained);
+    print("hold-out", result.held_out);
+}
+
+}  // namespace
+
+void add_train_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("train", "the ranking network of clc");
+    auto options = std::make_shared<Options>();
+    TrainingRunOptions& run = options->run;
+    command
+        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        ->required();
+    command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
+    add_scene_options(command, run.scenes);
+    command
+        .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
+        ->capture_default_str();
+    command.add_flag("--extended", options->extended,
+                     "the network of clc, on its search and all features; without it that of clc-paper");
+    command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
+    command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
+    command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
+    command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
+        ->capture_default_str();
+    command
+        .add_option("--divergence-penalty", run.training.divergence_penalty,
+                    "off the IoU of a lane that diverges below 20 m; 0, as in the paper, without it")
+        ->capture_default_str();
+    command
+        .add_option("--leader-share", run.training.leader_share,
+                    "share of the pairs with the candidate that the network ranks first")
+        ->capture_default_str();
+    add_threads_option(command, options->threads, "same weights with any number");
+    command.add_option("--out", options->out, "weights (JSON)")->required();
+    command.callback([options] { train(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,99 @@
+#include "experiments/training/candidate_lists.hpp"
+
+#include "experiments/progress.hpp"
+#include "experiments/scoring/divergence.hpp"
+#include "experiments/scoring/lane_polygon.hpp"
+#include "experiments/scoring/score.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/seed_seq.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kNever_m = std::numeric_limits<double>::infinity();
+
+/// `count` of the numbers below `size`, ascending, each set of them as likely as any other.
+std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::string& scene_id,
+                              std::uint64_t seed) {
+    std::vector<std::size_t> numbers(size);
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    if (count == 0 || count >= size) return numbers;
+    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
+                                     static_cast<std::uint32_t>(seed >> 32U)};
+    for (const char letter : scene_id) words.push_back(static_cast<unsigned char>(letter));
+    boost::random::seed_seq sequence(words.begin(), words.end());
+    boost::random::mt19937_64 random(sequence);
+    for (std::size_t i = 0; i < count; ++i) {
+        boost::random::uniform_int_distribution<std::size_t> rest(i, size - 1);
+        std::swap(numbers[i], numbers[rest(random)]);
+    }
+    numbers.resize(count);
+    std::ranges::sort(numbers);
+    return numbers;
+}
+
+LaneOutline outline(const Lane& lane, const Scene& scene) {
+    std::unordered_map<ConeId, Point> position_of;  // for look-up only
+    for (const Cone& cone : scene.cones) position_of.emplace(cone.id, cone.position);
+    LaneOutline result;
+    for (const ConeId id : lane.left) result.left.push_back(position_of.at(id));
+    for (const ConeId id : lane.right) result.right.push_back(position_of.at(id));
+    result.closed = lane.closed;
+    return result;
+}
+
+}  // namespace
+
+double CandidateList::best_iou() const {
+    return iou.empty() ? 0.0 : *std::ranges::max_element(iou);
+}
+
+std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const CandidateListOptions& options) {
+    std::vector<const AnnotatedScene*> counted;
+    for (const AnnotatedScene& scene : set.scenes) {
+        if (counts(scene)) counted.push_back(&scene);
+    }
+    std::vector<CandidateList> lists(counted.size());
+    Progress progress("candidates", options.show_progress ? counted.size() : 0);
+    oneapi::tbb::enumerable_thread_specific<CandidateSearch> searches(
+        [&] { return CandidateSearch(options.search); });
+    oneapi::tbb::task_arena arena(static_cast<int>(options.threads));
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, counted.size(), [&](std::size_t i) {
+            const AnnotatedScene& scene = *counted[i];
+            CandidateSearch& search = searches.local();
+            CandidateSearch::Request request;
+            request.with_features = true;
+            (void)search.run(scene.scene, request);
+            const PathPairs& pairs = search.pairs();
+            const LaneOutline ground_truth = outline(*scene.ground_truth, scene.scene);
+            const TrackBoundaries& annotated = set.tracks.at(scene.track);
+            CandidateList& list = lists[i];
+            list.track = scene.track;
+            list.false_positive_rate = scene.false_positive_rate.value_or(0.0);
+            list.range_m = scene.range_m.value_or(0.0);
+            for (const std::size_t k :
+                 draw(options.most_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
+                list.lanes.push_back(pairs.features()[k]);
+                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), scene.scene);
+                list.iou.push_back(intersection_over_union(lane, ground_truth));
+                list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
+            }
+            progress.advance();
+        });
+    });
+    return lists;
+}
+
+}  // namespace conelane::experiments

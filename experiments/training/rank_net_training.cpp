@@ -1,0 +1,300 @@
+#include "experiments/training/rank_net_training.hpp"
+
+#include "experiments/progress.hpp"
+#include "experiments/scoring/score.hpp"
+#include "model/invalid_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using Generator = boost::random::mt19937_64;
+
+/// Adam's constants as its authors propose them.
+constexpr double kFirstDecay = 0.9;
+constexpr double kSecondDecay = 0.999;
+constexpr double kSmallest = 1e-8;
+
+/// All candidates, a column each, and where each list of them begins.
+struct Candidates {
+    Eigen::MatrixXd inputs;
+    std::vector<double> quality;      ///< what equation (14) compares
+    std::vector<std::size_t> begins;  ///< one more than there are lists
+};
+
+double penalty(double divergence_m, double divergence_penalty) {
+    if (divergence_m < kCriticalDivergence_m) return divergence_penalty;
+    return std::isfinite(divergence_m) ? 0.5 * divergence_penalty : 0.0;
+}
+
+Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
+    const std::size_t inputs = options.inputs;
+    Candidates all;
+    all.begins.push_back(0);
+    for (const CandidateList& list : lists) {
+        if (list.lanes.size() < 2) continue;
+        all.begins.push_back(all.begins.back() + list.lanes.size());
+        for (std::size_t i = 0; i < list.lanes.size(); ++i) {
+            all.quality.push_back(list.iou[i] - penalty(list.divergence_m[i], options.divergence_penalty));
+        }
+    }
+    if (all.quality.empty()) throw InvalidInput("tracks", "no scene has two candidates to compare");
+    all.inputs.resize(static_cast<Eigen::Index>(inputs), static_cast<Eigen::Index>(all.quality.size()));
+    Eigen::Index column = 0;
+    for (const CandidateList& list : lists) {
+        if (list.lanes.size() < 2) continue;
+        for (const LaneFeatures& lane : list.lanes) {
+            network_inputs(lane, {all.inputs.col(column++).data(), inputs});
+        }
+    }
+    return all;
+}
+
+/// Standardises the inputs; returns their mean and deviation, 1 for the deviation of what does not vary.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> standardise(Eigen::MatrixXd& inputs) {
+    const Eigen::VectorXd mean = inputs.rowwise().mean();
+    inputs.colwise() -= mean;
+    Eigen::VectorXd deviation = inputs.rowwise().squaredNorm() / static_cast<double>(inputs.cols());
+    deviation = deviation.cwiseSqrt();
+    for (double& value : deviation) {
+        if (!(value > 0.0)) value = 1.0;
+    }
+    inputs.array().colwise() /= deviation.array();
+    return {mean, deviation};
+}
+
+/// Uniform within plus and minus the root of 6 / (number of inputs) for the hidden layer (He), of 6 / (inputs
+/// + outputs) for the output; no bias.
+RankNetParameters initial(const RankNetTrainingOptions& options, Generator& random) {
+    const auto units = static_cast<Eigen::Index>(options.units);
+    const auto inputs = static_cast<Eigen::Index>(options.inputs);
+    RankNetParameters parameters{Eigen::MatrixXd(units, inputs), Eigen::VectorXd::Zero(units),
+                                 Eigen::VectorXd(units)};
+    const auto fill = [&](auto& values, double bound) {
+        boost::random::uniform_real_distribution<double> uniform(-bound, bound);
+        for (Eigen::Index i = 0; i < values.size(); ++i) values(i) = uniform(random);
+    };
+    fill(parameters.hidden, std::sqrt(6.0 / static_cast<double>(inputs)));
+    fill(parameters.output, std::sqrt(6.0 / static_cast<double>(units + 1)));
+    return parameters;
+}
+
+Eigen::RowVectorXd scores(const RankNetParameters& parameters, const Eigen::MatrixXd& inputs) {
+    constexpr Eigen::Index kBatch = 1024;
+    Eigen::RowVectorXd result(inputs.cols());
+    for (Eigen::Index first = 0; first < inputs.cols(); first += kBatch) {
+        const Eigen::Index count = std::min(kBatch, inputs.cols() - first);
+        Eigen::MatrixXd units = parameters.hidden * inputs.middleCols(first, count);
+        units.colwise() += parameters.hidden_bias;
+        result.segment(first, count).noalias() = parameters.output.transpose() * units.cwiseMax(0.0);
+    }
+    return result;
+}
+
+/// One layer's way forward and back.
+struct Pass {
+    Eigen::MatrixXd units;
+    Eigen::RowVectorXd scores;
+
+    Pass(const RankNetParameters& parameters, const Eigen::MatrixXd& inputs) {
+        units.noalias() = parameters.hidden * inputs;
+        units.colwise() += parameters.hidden_bias;
+        units = units.cwiseMax(0.0);
+        scores.noalias() = parameters.output.transpose() * units;
+    }
+    /// Adds the derivatives, given that of the loss by each score.
+    void add_gradient(const RankNetParameters& parameters, const Eigen::MatrixXd& inputs,
+                      const Eigen::RowVectorXd& by_score, RankNetParameters& gradient) const {
+        gradient.output.noalias() += units * by_score.transpose();
+        const Eigen::MatrixXd by_unit =
+            ((parameters.output * by_score).array() * (units.array() > 0.0).cast<double>()).matrix();
+        gradient.hidden_bias += by_unit.rowwise().sum();
+        gradient.hidden.noalias() += by_unit * inputs.transpose();
+    }
+};
+
+double sigmoid(double value) {
+    return 1.0 / (1.0 + std::exp(-value));
+}
+
+class Adam {
+  public:
+    explicit Adam(const RankNetParameters& parameters)
+        : first_{parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0},
+          second_(first_) {}
+
+    void step(const RankNetParameters& gradient, double learning_rate, RankNetParameters& parameters) {
+        first_power_ *= kFirstDecay;
+        second_power_ *= kSecondDecay;
+        move(gradient.hidden, learning_rate, first_.hidden, second_.hidden, parameters.hidden);
+        move(gradient.hidden_bias, learning_rate, first_.hidden_bias, second_.hidden_bias,
+             parameters.hidden_bias);
+        move(gradient.output, learning_rate, first_.output, second_.output, parameters.output);
+    }
+
+  private:
+    template <typename Values>
+    void move(const Values& gradient, double learning_rate, Values& first, Values& second,
+              Values& parameters) const {
+        first = kFirstDecay * first + (1.0 - kFirstDecay) * gradient;
+        second = kSecondDecay * second + (1.0 - kSecondDecay) * gradient.cwiseAbs2();
+        parameters.array() -= learning_rate * (first.array() / (1.0 - first_power_)) /
+                              ((second.array() / (1.0 - second_power_)).sqrt() + kSmallest);
+    }
+
+    RankNetParameters first_;
+    RankNetParameters second_;
+    double first_power_ = 1.0;
+    double second_power_ = 1.0;
+};
+
+using Pair = std::pair<Eigen::Index, Eigen::Index>;
+
+/// The pairs of an epoch, shuffled.
+std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& parameters,
+                             const RankNetTrainingOptions& options, Generator& random) {
+    const Eigen::RowVectorXd score = scores(parameters, all.inputs);
+    boost::random::uniform_01<double> uniform;
+    std::vector<Pair> pairs;
+    pairs.reserve(all.quality.size());
+    for (std::size_t list = 0; list + 1 < all.begins.size(); ++list) {
+        const auto begin = static_cast<Eigen::Index>(all.begins[list]);
+        const auto size = static_cast<Eigen::Index>(all.begins[list + 1]) - begin;
+        Eigen::Index leader = 0;
+        score.segment(begin, size).maxCoeff(&leader);
+        boost::random::uniform_int_distribution<Eigen::Index> any(0, size - 1);
+        for (Eigen::Index first = 0; first < size; ++first) {
+            const Eigen::Index second = uniform(random) < options.leader_share ? leader : any(random);
+            if (second != first) pairs.emplace_back(begin + first, begin + second);
+        }
+    }
+    for (std::size_t i = pairs.size(); i > 1; --i) {
+        std::swap(pairs[i - 1],
+                  pairs[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+    }
+    return pairs;
+}
+
+void validate(const RankNetTrainingOptions& options) {
+    const auto require = [](bool valid, const char* key, const char* reason) {
+        if (!valid) throw InvalidInput(key, reason);
+    };
+    require(options.inputs == kPaperFeatureCount || options.inputs == kLaneFeatureCount, "inputs",
+            "must be the paper's features or all");
+    require(options.units > 0, "units", "must be positive");
+    require(options.epochs > 0, "epochs", "must be positive");
+    require(options.pairs_a_step > 0, "pairs_a_step", "must be positive");
+    require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
+            "must be positive");
+    require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
+    require(options.divergence_penalty >= 0.0 && std::isfinite(options.divergence_penalty),
+            "divergence_penalty", "must not be negative");
+    require(options.leader_share >= 0.0 && options.leader_share <= 1.0, "leader_share", "must be in [0, 1]");
+}
+
+}  // namespace
+
+double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pairs,
+                 RankNetParameters* gradient) {
+    const Pass first(parameters, pairs.first);
+    const Pass second(parameters, pairs.second);
+    const auto count = static_cast<double>(pairs.first.cols());
+    const Eigen::RowVectorXd difference = first.scores - second.scores;
+    double loss = 0.0;
+    for (Eigen::Index i = 0; i < difference.size(); ++i) {
+        // -p log(sigmoid(d)) - (1 - p) log(1 - sigmoid(d)), so that nothing overflows.
+        const double d = difference(i);
+        loss += std::max(d, 0.0) - pairs.first_is_better(i) * d + std::log1p(std::exp(-std::abs(d)));
+    }
+    if (gradient != nullptr) {
+        const Eigen::RowVectorXd by_score = (difference.unaryExpr(&sigmoid) - pairs.first_is_better) / count;
+        *gradient = {parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0};
+        first.add_gradient(parameters, pairs.first, by_score, *gradient);
+        second.add_gradient(parameters, pairs.second, -by_score, *gradient);
+    }
+    return loss / count;
+}
+
+RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
+    validate(options);
+    Candidates all = gather(lists, options);
+    const auto [mean, deviation] = standardise(all.inputs);
+    Generator random(options.seed);
+    RankNetParameters parameters = initial(options, random);
+    RankNetParameters gradient;
+    Adam adam(parameters);
+    CandidatePairs batch;
+    Progress progress("training", options.show_progress ? options.epochs : 0);
+    for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
+        const std::vector<Pair> pairs = draw_pairs(all, parameters, options, random);
+        for (std::size_t begin = 0; begin < pairs.size(); begin += options.pairs_a_step) {
+            const std::size_t count = std::min(options.pairs_a_step, pairs.size() - begin);
+            const auto columns = static_cast<Eigen::Index>(count);
+            batch.first.resize(all.inputs.rows(), columns);
+            batch.second.resize(all.inputs.rows(), columns);
+            batch.first_is_better.resize(columns);
+            for (Eigen::Index i = 0; i < columns; ++i) {
+                const auto [first, second] = pairs[begin + static_cast<std::size_t>(i)];
+                batch.first.col(i) = all.inputs.col(first);
+                batch.second.col(i) = all.inputs.col(second);
+                batch.first_is_better(i) =
+                    sigmoid(options.iou_factor * (all.quality[static_cast<std::size_t>(first)] -
+                                                  all.quality[static_cast<std::size_t>(second)]));
+            }
+            (void)pair_loss(parameters, batch, &gradient);
+            const double done = (static_cast<double>(epoch) +
+                                 static_cast<double>(begin) / static_cast<double>(pairs.size())) /
+                                static_cast<double>(options.epochs);
+            adam.step(gradient, options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done)),
+                      parameters);
+        }
+        progress.advance();
+    }
+    return {mean,
+            deviation,
+            parameters.hidden.cast<float>(),
+            parameters.hidden_bias.cast<float>(),
+            parameters.output.cast<float>(),
+            0.0F};
+}
+
+RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneRanking& ranking) {
+    RankingFigures figures;
+    std::vector<double> scores;
+    for (const CandidateList& list : lists) {
+        scores.resize(list.lanes.size());
+        ranking.score(list.lanes, scores);
+        double divergence_m = 0.0;
+        if (!scores.empty()) {
+            const auto chosen = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
+            figures.mean_iou += list.iou[chosen];
+            divergence_m = list.divergence_m[chosen];
+        }
+        const auto is_critical = [](double distance_m) { return distance_m < kCriticalDivergence_m; };
+        if (is_critical(divergence_m)) figures.critical_share += 1.0;
+        if (std::ranges::all_of(list.divergence_m, is_critical)) figures.least_critical_share += 1.0;
+        figures.mean_best_iou += list.best_iou();
+        if (list.best_iou() >= kNearGroundTruthIou) figures.near_best_share += 1.0;
+    }
+    figures.scenes = lists.size();
+    if (lists.empty()) return figures;
+    const auto count = static_cast<double>(lists.size());
+    figures.mean_iou /= count;
+    figures.mean_best_iou /= count;
+    figures.near_best_share /= count;
+    figures.critical_share /= count;
+    figures.least_critical_share /= count;
+    return figures;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "experiments/training/candidate_lists.hpp"
+#include "graph_search/ranking.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <Eigen/Core>
+
+namespace conelane::experiments {
+
+/// The parameters of a network in training; the bias of the output cancels in every difference of scores.
+struct RankNetParameters {
+    Eigen::MatrixXd hidden;  ///< a row for each unit, a column for each input
+    Eigen::VectorXd hidden_bias;
+    Eigen::VectorXd output;
+};
+
+/// Pairs of candidates of the same scene, a column each, standardised.
+struct CandidatePairs {
+    Eigen::MatrixXd first;
+    Eigen::MatrixXd second;
+    Eigen::RowVectorXd first_is_better;  ///< p_GT of equation (14)
+};
+
+/// Binary cross-entropy of p_pred = sigmoid(Net(first) - Net(second)) with p_GT, mean over the pairs; section
+/// VII of the CLC paper. Writes the derivatives by the parameters to `gradient` where that is not null.
+[[nodiscard]] double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pairs,
+                               RankNetParameters* gradient);
+
+struct RankNetTrainingOptions {
+    std::size_t inputs = kPaperFeatureCount;  ///< the paper's features, or kLaneFeatureCount for all
+    std::size_t units = 100;
+    std::size_t epochs = 60;          ///< in each, every candidate is the first of one pair
+    std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
+    double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
+    double iou_factor = 50.0;         ///< lambda_iou of equation (14)
+    /// Subtracted from the IoU of equation (14) for a candidate that diverges below kCriticalDivergence_m,
+    /// half of it for one that diverges later; 0 is the paper. A short way off the lane costs little area.
+    double divergence_penalty = 0.0;
+    /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
+    /// the epoch; the others have any of the scene. What counts in the end is who is first.
+    double leader_share = 0.5;
+    std::uint64_t seed = 0;
+    bool show_progress = true;
+};
+
+/// Trains a network from nothing. The same lists, options and build give the same weights to the last bit;
+/// runs on one thread. Throws InvalidInput where no list has two candidates or an option is out of range.
+[[nodiscard]] RankNetWeights train_rank_net(std::span<const CandidateList> lists,
+                                            const RankNetTrainingOptions& options);
+
+/// How a ranking chooses among candidates.
+struct RankingFigures {
+    std::size_t scenes = 0;
+    double mean_iou = 0.0;              ///< of the candidates chosen; 0 where a scene has none
+    double mean_best_iou = 0.0;         ///< the ceiling
+    double near_best_share = 0.0;       ///< scenes with a candidate of IoU >= kNearGroundTruthIou
+    double critical_share = 0.0;        ///< scenes without candidate or whose chosen one diverges below 20 m
+    double least_critical_share = 0.0;  ///< scenes in which every candidate does
+};
+/// All zero where there is no list.
+[[nodiscard]] RankingFigures ranking_figures(std::span<const CandidateList> lists,
+                                             const LaneRanking& ranking);
+
+}  // namespace conelane::experiments

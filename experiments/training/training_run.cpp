@@ -1,0 +1,88 @@
+#include "experiments/training/training_run.hpp"
+
+#include "experiments/files/input_error.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_set.hpp"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json track_names(const SceneSet& set) {
+    Json names = Json::array();
+    for (const auto& [name, boundaries] : set.tracks) names.push_back(name);
+    return names;
+}
+
+double rounded(double value) {
+    return std::round(value * 1e6) / 1e6;
+}
+
+Json describe(const RankingFigures& figures) {
+    return {{"scenes", figures.scenes},
+            {"mean_iou", rounded(figures.mean_iou)},
+            {"mean_best_iou", rounded(figures.mean_best_iou)},
+            {"near_best_share", rounded(figures.near_best_share)},
+            {"critical_share", rounded(figures.critical_share)},
+            {"least_critical_share", rounded(figures.least_critical_share)}};
+}
+
+Json describe(const SceneOptions& scenes) {
+    return {{"fp", scenes.false_positive_rates},
+            {"range", scenes.ranges_m},
+            {"every", scenes.every_m},
+            {"noise", scenes.noise_sigma_m},
+            {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
+            {"miss", scenes.miss_rate},
+            {"seed", scenes.seed}};
+}
+
+Json describe(const RankNetTrainingOptions& training) {
+    return {{"units", training.units},
+            {"epochs", training.epochs},
+            {"pairs_a_step", training.pairs_a_step},
+            {"learning_rate", training.learning_rate},
+            {"iou_factor", training.iou_factor},
+            {"divergence_penalty", training.divergence_penalty},
+            {"leader_share", training.leader_share},
+            {"seed", training.seed}};
+}
+
+}  // namespace
+
+TrainingRun run_training(const TrainingRunOptions& options) {
+    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    SceneSet held_out;
+    if (!options.hold_out.empty()) held_out = make_scene_set(options.hold_out, options.scenes);
+    for (const auto& [name, boundaries] : held_out.tracks) {
+        if (set.tracks.contains(name)) {
+            throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
+        }
+    }
+    const std::vector<CandidateList> lists = enumerate_candidates(set, options.candidates);
+    TrainingRun run;
+    run.weights = train_rank_net(lists, options.training);
+    const std::shared_ptr<const LaneRanking> ranking = make_rank_net(run.weights);
+    run.trained = ranking_figures(lists, *ranking);
+    CandidateListOptions all_candidates = options.candidates;
+    all_candidates.most_per_scene = 0;
+    run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
+
+    const Json record{{"tracks", track_names(set)},
+                      {"hold_out_tracks", track_names(held_out)},
+                      {"scenes", describe(options.scenes)},
+                      {"most_candidates_per_scene", options.candidates.most_per_scene},
+                      {"network", describe(options.training)},
+                      {"figures_of_training", describe(run.trained)},
+                      {"figures_of_hold_out", describe(run.held_out)},
+                      {"commit", provenance().commit}};
+    run.record = record.dump();
+    return run;
+}
+
+}  // namespace conelane::experiments

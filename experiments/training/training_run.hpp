@@ -1,0 +1,32 @@
+#pragma once
+
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/training/candidate_lists.hpp"
+#include "experiments/training/rank_net_training.hpp"
+#include "graph_search/ranking.hpp"
+
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+struct TrainingRunOptions {
+    std::vector<std::string> tracks;    ///< SPECs of load_tracks
+    std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
+    SceneOptions scenes;
+    CandidateListOptions candidates;
+    RankNetTrainingOptions training;
+};
+
+struct TrainingRun {
+    RankNetWeights weights;
+    RankingFigures trained;   ///< on the lists of the training
+    RankingFigures held_out;  ///< on all candidates of the hold-out scenes; all zero where there are none
+    std::string record;       ///< JSON object: what it depended on, both figures, the commit
+};
+
+/// From track names to a trained network and the record of its training. The record names tracks, not files.
+/// Throws InputError or InvalidInput; also where a track is both trained on and held out.
+[[nodiscard]] TrainingRun run_training(const TrainingRunOptions& options);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,144 @@
+#include "graph_search/candidate_search.hpp"
+
+#include "model/invalid_input.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+namespace conelane {
+namespace {
+
+void require(bool valid, const std::string& key, const std::string& reason) {
+    if (!valid) throw InvalidInput(key, reason);
+}
+
+SearchBudget::Clock::time_point deadline(double time_limit_ms) {
+    using Clock = SearchBudget::Clock;
+    const Clock::time_point now = Clock::now();
+    const std::chrono::duration<double, std::milli> limit(std::max(time_limit_ms, 0.0));
+    // Written so that NaN and what the clock cannot hold mean no limit.
+    if (!(limit < std::chrono::hours(24))) return Clock::time_point::max();
+    return now + std::chrono::duration_cast<Clock::duration>(limit);
+}
+
+/// What is left of a lane: from the first cone of each side that is still seen and ahead of the car, as far
+/// as every cone is seen. Nothing where a side has none left.
+std::optional<PathPairVertices> still_ahead(const Lane& lane, const Scene& scene) {
+    std::unordered_map<ConeId, Vertex> vertex_of;  // for look-up only
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        vertex_of.emplace(scene.cones[i].id, static_cast<Vertex>(i));
+    }
+    PathPairVertices rest;
+    for (const Side side : {kLeft, kRight}) {
+        for (const ConeId id : side == kLeft ? lane.left : lane.right) {
+            const auto found = vertex_of.find(id);
+            const bool seen = found != vertex_of.end();
+            if (rest[side].empty() &&
+                (!seen || scene.pose.ahead_m(scene.cones[found->second].position) < 0.0)) {
+                continue;
+            }
+            if (!seen) break;
+            rest[side].push_back(found->second);
+        }
+        if (rest[side].empty()) return std::nullopt;
+    }
+    if (rest[kLeft].front() == rest[kRight].front()) return std::nullopt;
+    return rest;
+}
+
+}  // namespace
+
+void validate(const CandidateSearchOptions& options) {
+    const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
+    require(options.iteration_limit > 0, "iteration_limit", "must be positive");
+    require(options.starting_pairs > 0, "starting_pairs", "must be positive");
+    require(positive(options.d_max_m), "d_max", "must be positive");
+    require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
+            "must be in (0, pi]");
+    require(std::isfinite(options.bounds.w_min_m) && options.bounds.w_min_m >= 0.0, "w_min",
+            "must not be negative");
+    require(std::isfinite(options.bounds.w_max_m) && options.bounds.w_max_m > options.bounds.w_min_m, "w_max",
+            "must be above w_min");
+    require(positive(options.start.radius_m), "radius", "must be positive");
+    require(positive(options.start.radius_growth_m), "radius_growth", "must be positive");
+    require(std::isfinite(options.start.largest_radius_m) &&
+                options.start.largest_radius_m >= options.start.radius_m,
+            "largest_radius", "must not be below radius");
+    require(std::isfinite(options.start.distance_weight) && options.start.distance_weight >= 0.0,
+            "distance_weight", "must not be negative");
+    require(std::isfinite(options.next_vertex_distance_weight) && options.next_vertex_distance_weight >= 0.0,
+            "next_vertex_distance_weight", "must not be negative");
+}
+
+CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : options_(options) {
+    validate(options);
+    options_.start.w_min_m = options.bounds.w_min_m;
+    options_.start.w_max_m = options.bounds.w_max_m;
+    rules_.bounds = options.bounds;
+    rules_.d_max_m = options.d_max_m;
+    rules_.width_backtracking = options.width_backtracking;
+    rules_.next_vertex_distance_weight = options.next_vertex_distance_weight;
+}
+
+CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& request) {
+    Report report;
+    rules_.with_features = request.with_features;
+    budget_ = SearchBudget{};
+    budget_.deadline = deadline(request.time_limit_ms);
+    points_.clear();
+    for (const Cone& cone : scene.cones) points_.push_back(cone.position);
+    graph_.build(points_, options_.d_max_m, options_.graph);
+    pairs_.clear();
+
+    const std::vector<StartPair> starts = start_pairs(scene, options_.starting_pairs, options_.start);
+    std::optional<PathPairVertices> warm;
+    if (request.last_lane != nullptr) warm = still_ahead(*request.last_lane, scene);
+    if (warm) {
+        const StartPair start{(*warm)[kLeft].front(), (*warm)[kRight].front()};
+        const bool is_last = starts.empty() || (starts.size() == 1 && starts.front() == start);
+        run_from(start, *warm, is_last, scene, report);
+    }
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        const bool met = warm && starts[i] == StartPair{(*warm)[kLeft].front(), (*warm)[kRight].front()};
+        if (!met) run_from(starts[i], {}, i + 1 == starts.size(), scene, report);
+    }
+    if (request.with_features) {
+        double longest_m = 0.0;
+        for (const LaneFeatures& lane : pairs_.features()) longest_m = std::max(longest_m, lane[0]);
+        for (LaneFeatures& lane : pairs_.features()) lane[kLongestShareFeature] = lane[0] / longest_m;
+    }
+    report.iterations = budget_.iterations;
+    report.out_of_time = budget_.out_of_time;
+    return report;
+}
+
+void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, bool is_last,
+                               const Scene& scene, Report& report) {
+    const std::int64_t left = options_.iteration_limit - budget_.iterations;
+    budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
+    const std::size_t before = pairs_.found().size();
+    report.complete &= enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
+    if (!rules_.with_features) return;
+    const StartPairMeasures measures = start_pair_measures(scene, start);
+    for (LaneFeatures& lane : pairs_.features().subspan(before)) {
+        lane[kStartAsymmetryFeature] = measures.asymmetry_m;
+        lane[kStartDistanceFeature] = measures.distance_m;
+        lane[kConesFeature] = static_cast<double>(scene.cones.size());
+    }
+}
+
+Lane CandidateSearch::lane(const PathPair& pair, const Scene& scene) const {
+    const PathPairVertices vertices = pairs_.vertices(pair);
+    Lane lane;
+    for (const Vertex vertex : vertices[kLeft]) lane.left.push_back(scene.cones[vertex].id);
+    for (const Vertex vertex : vertices[kRight]) lane.right.push_back(scene.cones[vertex].id);
+    lane.closed = pair.closed;
+    return lane;
+}
+
+}  // namespace conelane
