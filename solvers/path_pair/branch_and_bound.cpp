@@ -8,7 +8,7 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr double kMemory = 0.8;  ///< of the averaged edge use, per step
+constexpr double kMemory = 0.9;  ///< of the averaged edge use, per step
 constexpr int kMostCliques = 600;
 constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
