@@ -19,6 +19,8 @@ constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
 constexpr std::int64_t kFirstBudget = 2000;
 constexpr int kRestSteps = 2;
+constexpr double kLeastRepeat = 0.02;
+constexpr int kMostArcs = 3000;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -45,6 +47,8 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     pair_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
+    repeat_use_.assign(at(graph_.cone_count()), 0.0);
+    visits_.assign(at(graph_.cone_count()), 0);
     index_.assign(at(graph_.cone_count()), 0);
     std::vector<char> starting = system.kinds[0].start;
     for (std::size_t cone = 0; cone < starting.size(); ++cone) {
@@ -143,7 +147,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             work = 0;
         }
         if (last) break;
-        if (since_best >= kPatience) {
+        const bool stalled = since_best >= kPatience;
+        if (stalled) {
             // Too far: from the best prices again, in shorter steps.
             since_best = 0;
             scale *= 0.5;
@@ -154,6 +159,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
         }
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
+        if (options_.remember_cones && stalled && remember_a_cone(here)) scale = std::min(1.0, 2.0 * scale);
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);
         }
@@ -170,6 +176,7 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     usage_.along_heading = 0;
     for (double& use : edge_use_) use *= kMemory;
     for (double& use : end_use_) use *= kMemory;
+    for (double& use : repeat_use_) use *= kMemory;
     for (const int end : relaxation_.ends()) {
         if (end >= 0) end_use_[at(end)] += 1.0 - kMemory;
     }
@@ -177,12 +184,18 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     for (const std::vector<int>& walk : relaxation_.walks(graph)) {
         if (walk.empty()) continue;
         ++usage_.cone[at(graph.tail[at(walk.front())])];
+        visits_[at(graph.tail[at(walk.front())])] = 1;
         for (const int a : walk) {
             ++usage_.cone[at(graph.head[at(a)])];
+            if (++visits_[at(graph.head[at(a)])] > 1) {
+                repeat_use_[at(graph.head[at(a)])] += 1.0 - kMemory;
+            }
             edge_use_[at(graph.edge(a))] += 1.0 - kMemory;
             ++index_[at(graph.edge(a))];
             usage_.along_heading += graph_.along_heading(graph.edge(a)) ? 1 : 0;
         }
+        visits_[at(graph.tail[at(walk.front())])] = 0;
+        for (const int a : walk) visits_[at(graph.head[at(a)])] = 0;
     }
     for (int q = 0; q < cliques_.size(); ++q) {
         for (const int edge : cliques_.edges(q)) usage_.clique[at(q)] += index_[at(edge)];
@@ -237,6 +250,16 @@ void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
                                               : in ? Decisions::End::always
                                                    : Decisions::End::never);
     }
+}
+
+/// Where walks keep returning to a cone, gives them a memory of it.
+bool BranchAndBound::remember_a_cone(Node& here) {
+    const auto most = std::ranges::max_element(repeat_use_);
+    if (most == repeat_use_.end() || *most < kLeastRepeat || here.graph.size() > kMostArcs) return false;
+    spare_.split(here.graph, static_cast<int>(most - repeat_use_.begin()), index_);
+    std::swap(spare_, here.graph);
+    *most = 0.0;
+    return true;
 }
 
 void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,

@@ -52,6 +52,7 @@ class BranchAndBound {
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
     bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
+    bool remember_a_cone(Node& node);
     struct Branching {
         enum class On { nothing, end, edge } on;
         int what;  ///< the cone or the edge
@@ -80,6 +81,8 @@ class BranchAndBound {
     Prices root_prices_;
     std::vector<double> edge_use_;  ///< averaged over the steps
     std::vector<double> end_use_;   ///< legs that end at a cone, averaged
+    std::vector<double> repeat_use_;  ///< visits of a cone after a walk's first, averaged
+    std::vector<int> visits_;
     std::vector<std::unique_ptr<Node>> nodes_by_depth_;
     ResidualGraph spare_;
     std::vector<int> order_;
