@@ -14,13 +14,13 @@ constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
 constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
-constexpr int kPatience = 5;          ///< steps without progress
+constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
 constexpr std::int64_t kFirstBudget = 2000;
 constexpr int kRestSteps = 2;
 constexpr double kLeastRepeat = 0.02;
-constexpr int kMostArcs = 3000;
+constexpr int kMostArcs = 1500;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -39,6 +39,19 @@ BranchAndBound::Node& BranchAndBound::node(std::size_t depth) {
 
 BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
                                             std::function<bool()> stopped) {
+    begin(system, tolerance, std::move(stopped));
+    explore(0, graph_.share_bound(), options_.root_steps);
+    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
+}
+
+double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
+    begin(system, tolerance, std::move(stopped));
+    double bound = -kUnreachable;
+    ascend(0, bound, options_.root_steps);
+    return bound;
+}
+
+void BranchAndBound::begin(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     tolerance_ = tolerance;
     stopped_ = std::move(stopped);
     cliques_.clear();
@@ -60,14 +73,11 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     root.prices.clique.clear();
     root.prices.heading = 0.0;
     open_bound_ = kUnreachable;
-    explore(0, graph_.share_bound(), options_.root_steps);
-    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
 }
 
 void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
     ++nodes_;
     const Verdict verdict = ascend(depth, bound, most_steps);
-    if (depth == 0) root_prices_ = node(0).prices;
     if (verdict == Verdict::closed) return;
     if (verdict == Verdict::stopped) {
         open_bound_ = std::min(open_bound_, bound);
@@ -109,7 +119,6 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     double failed_gap = kUnreachable;  // at which the enumeration was given up
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
-        ++steps_;
         const double value = relaxation_.evaluate(here.graph, prices_);
         if (value == -kUnreachable) return Verdict::stopped;
         work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
@@ -159,7 +168,9 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
         }
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
-        if (options_.remember_cones && stalled && remember_a_cone(here)) scale = std::min(1.0, 2.0 * scale);
+        if (options_.remember_cones && stalled && remember_a_cone(here)) {
+            scale = std::min(1.0, 2.0 * scale);
+        }
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);
         }

@@ -36,9 +36,9 @@ struct ResidualGraph {
     void filter(const ResidualGraph& source, std::span<const int> order, std::span<const char> keep_out,
                 std::vector<int>& index);
 
-    /// Gives walks a memory of one cone: every arc in two copies, one for walks that have not been at the cone
-    /// up to the arc's head and one for those that have, which no longer lead to it. A path is still exactly one
-    /// walk; a walk that meets the cone twice is none any more.
+    /// Gives walks a memory of one cone: every arc in two copies, one for walks that have not been at the
+    /// cone up to the arc's head and one for those that have, which no longer lead to it. A path is still
+    /// exactly one walk; a walk that meets the cone twice is none any more.
     void split(const ResidualGraph& source, int cone, std::vector<int>& index);
 
   private:
