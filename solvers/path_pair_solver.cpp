@@ -29,7 +29,7 @@ class PathPairSolver : public RldSolver {
         report.build_ms = build_watch.elapsed_ms();
         const Stopwatch solve_watch;
         const double tolerance = std::max(limits.absolute_gap, kLeastGap);
-        search_.reset_counts();
+        search_.reset_nodes();
 
         // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
         Outcome outcome{};
@@ -53,6 +53,28 @@ class PathPairSolver : public RldSolver {
         return report;
     }
 
+    BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
+        const Deadline deadline(time_limit_ms);
+        graph_.build(problem);
+        incumbent_.reset(graph_, 0.0);
+        near_to_far(problem);
+        BoundCertificate certificate;
+        certificate.bound = search_.run_root(system_, kLeastGap, [&deadline] { return deadline.passed(); });
+        const Prices& prices = search_.root_prices();
+        certificate.cone_price = prices.cone;
+        certificate.heading_price = prices.heading;
+        for (std::size_t q = 0; q < prices.clique.size(); ++q) {
+            if (prices.clique[q] <= 0.0) continue;
+            BoundCertificate::Clique clique{{}, prices.clique[q]};
+            for (const int edge : search_.cliques().edges(static_cast<int>(q))) {
+                const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
+                clique.edges.push_back({e.i, e.j});
+            }
+            certificate.cliques.push_back(std::move(clique));
+        }
+        return certificate;
+    }
+
   private:
     using Outcome = BranchAndBound::Outcome;
 
@@ -64,8 +86,8 @@ class PathPairSolver : public RldSolver {
         return sum;
     }
 
-    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
-        const auto stopped = [&deadline] { return deadline.passed(); };
+    /// Both legs from the near cones to the far ones.
+    void near_to_far(const LaneGraphProblem& problem) {
         const std::size_t n = problem.cone_count;
         for (LegSystem::Kind& kind : system_.kinds) {
             kind.start.assign(n, 0);
@@ -76,6 +98,11 @@ class PathPairSolver : public RldSolver {
         }
         system_.kind_count = 1;
         system_.ends_are_partners = true;
+    }
+
+    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
+        const auto stopped = [&deadline] { return deadline.passed(); };
+        near_to_far(problem);
         Outcome outcome = search_.run(system_, tolerance, stopped);
         if (problem.parameters.pairing == Pairing::near_far) return outcome;
 
@@ -120,6 +147,15 @@ class PathPairSolver : public RldSolver {
 };
 
 }  // namespace
+
+BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time_limit_ms) {
+    // Prices alone have to carry the bound: nothing may be dropped by the incumbent, no walk have a memory.
+    PathPairOptions options;
+    options.fix_arcs = false;
+    options.remember_cones = false;
+    options.enumerate_pairs = false;
+    return PathPairSolver(options).certify(problem, time_limit_ms);
+}
 
 std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options) {
     return std::make_unique<PathPairSolver>(options);

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "model/bound_certificate.hpp"
 #include "solvers/rld_solver.hpp"
 
-#include <cstdint>
+#include <limits>
 #include <memory>
 
 namespace conelane {
@@ -11,6 +12,7 @@ namespace conelane {
 struct PathPairOptions {
     bool fix_arcs = true;        ///< drop arcs whose reduced-cost bound reaches the incumbent
     bool clique_prices = true;   ///< price cliques of incompatible edges, not cones alone
+    bool remember_cones = true;  ///< forbid walks to return to the cones they return to most
     bool complete_walks = true;  ///< look for incumbents around the relaxation's walks
     bool enumerate_pairs =
         true;              ///< end nodes by the half-gap enumeration, not by branching to the last edge
@@ -21,5 +23,10 @@ struct PathPairOptions {
 /// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its
 /// workspace and reuses it from call to call. A gap below 1e-10 counts as 1e-10.
 [[nodiscard]] std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options = {});
+
+/// Prices and cliques that prove a lower bound for the pairing near_far, for `verify_bound`: those of the
+/// root, of a search that rests on prices alone, so its bound may be below the solver's own.
+[[nodiscard]] BoundCertificate certify_root_bound(
+    const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 
 }  // namespace conelane

@@ -8,17 +8,19 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr double kMemory = 0.8;  ///< of the averaged edge use, per step
+constexpr double kMemory = 0.9;  ///< of the averaged edge use, per step
 constexpr int kMostCliques = 600;
 constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
 constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
-constexpr int kPatience = 5;          ///< steps without progress
+constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
 constexpr std::int64_t kFirstBudget = 2000;
 constexpr int kRestSteps = 2;
+constexpr double kLeastRepeat = 0.02;
+constexpr int kMostArcs = 1500;
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -37,6 +39,19 @@ BranchAndBound::Node& BranchAndBound::node(std::size_t depth) {
 
 BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
                                             std::function<bool()> stopped) {
+    begin(system, tolerance, std::move(stopped));
+    explore(0, graph_.share_bound(), options_.root_steps);
+    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
+}
+
+double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
+    begin(system, tolerance, std::move(stopped));
+    double bound = -kUnreachable;
+    ascend(0, bound, options_.root_steps);
+    return bound;
+}
+
+void BranchAndBound::begin(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     tolerance_ = tolerance;
     stopped_ = std::move(stopped);
     cliques_.clear();
@@ -45,6 +60,8 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     pair_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
+    repeat_use_.assign(at(graph_.cone_count()), 0.0);
+    visits_.assign(at(graph_.cone_count()), 0);
     index_.assign(at(graph_.cone_count()), 0);
     std::vector<char> starting = system.kinds[0].start;
     for (std::size_t cone = 0; cone < starting.size(); ++cone) {
@@ -56,14 +73,11 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     root.prices.clique.clear();
     root.prices.heading = 0.0;
     open_bound_ = kUnreachable;
-    explore(0, graph_.share_bound(), options_.root_steps);
-    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
 }
 
 void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
     ++nodes_;
     const Verdict verdict = ascend(depth, bound, most_steps);
-    if (depth == 0) root_prices_ = node(0).prices;
     if (verdict == Verdict::closed) return;
     if (verdict == Verdict::stopped) {
         open_bound_ = std::min(open_bound_, bound);
@@ -105,7 +119,6 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     double failed_gap = kUnreachable;  // at which the enumeration was given up
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
-        ++steps_;
         const double value = relaxation_.evaluate(here.graph, prices_);
         if (value == -kUnreachable) return Verdict::stopped;
         work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
@@ -143,7 +156,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             work = 0;
         }
         if (last) break;
-        if (since_best >= kPatience) {
+        const bool stalled = since_best >= kPatience;
+        if (stalled) {
             // Too far: from the best prices again, in shorter steps.
             since_best = 0;
             scale *= 0.5;
@@ -154,6 +168,9 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
         }
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
+        if (options_.remember_cones && stalled && remember_a_cone(here)) {
+            scale = std::min(1.0, 2.0 * scale);
+        }
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);
         }
@@ -170,6 +187,7 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     usage_.along_heading = 0;
     for (double& use : edge_use_) use *= kMemory;
     for (double& use : end_use_) use *= kMemory;
+    for (double& use : repeat_use_) use *= kMemory;
     for (const int end : relaxation_.ends()) {
         if (end >= 0) end_use_[at(end)] += 1.0 - kMemory;
     }
@@ -177,12 +195,18 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     for (const std::vector<int>& walk : relaxation_.walks(graph)) {
         if (walk.empty()) continue;
         ++usage_.cone[at(graph.tail[at(walk.front())])];
+        visits_[at(graph.tail[at(walk.front())])] = 1;
         for (const int a : walk) {
             ++usage_.cone[at(graph.head[at(a)])];
+            if (++visits_[at(graph.head[at(a)])] > 1) {
+                repeat_use_[at(graph.head[at(a)])] += 1.0 - kMemory;
+            }
             edge_use_[at(graph.edge(a))] += 1.0 - kMemory;
             ++index_[at(graph.edge(a))];
             usage_.along_heading += graph_.along_heading(graph.edge(a)) ? 1 : 0;
         }
+        visits_[at(graph.tail[at(walk.front())])] = 0;
+        for (const int a : walk) visits_[at(graph.head[at(a)])] = 0;
     }
     for (int q = 0; q < cliques_.size(); ++q) {
         for (const int edge : cliques_.edges(q)) usage_.clique[at(q)] += index_[at(edge)];
@@ -237,6 +261,16 @@ void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
                                               : in ? Decisions::End::always
                                                    : Decisions::End::never);
     }
+}
+
+/// Where walks keep returning to a cone, gives them a memory of it.
+bool BranchAndBound::remember_a_cone(Node& here) {
+    const auto most = std::ranges::max_element(repeat_use_);
+    if (most == repeat_use_.end() || *most < kLeastRepeat || here.graph.size() > kMostArcs) return false;
+    spare_.split(here.graph, static_cast<int>(most - repeat_use_.begin()), index_);
+    std::swap(spare_, here.graph);
+    *most = 0.0;
+    return true;
 }
 
 void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,

@@ -33,11 +33,14 @@ class BranchAndBound {
     /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
     Outcome run(const LegSystem& system, double tolerance, std::function<bool()> stopped);
 
-    [[nodiscard]] std::int64_t nodes() const { return nodes_; }
-    [[nodiscard]] std::int64_t steps() const { return steps_; }
-    void reset_counts() { nodes_ = steps_ = 0; }
+    /// The root's ascent alone: its best bound, minus infinity if stopped before there was one.
+    double run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped);
 
-    [[nodiscard]] const Prices& root_prices() const { return root_prices_; }
+    [[nodiscard]] std::int64_t nodes() const { return nodes_; }
+    void reset_nodes() { nodes_ = 0; }
+
+    /// Prices of the root's best bound.
+    [[nodiscard]] const Prices& root_prices() const { return nodes_by_depth_.front()->prices; }
     [[nodiscard]] const CliquePool& cliques() const { return cliques_; }
 
   private:
@@ -47,11 +50,13 @@ class BranchAndBound {
     };
     enum class Verdict { closed, open, stopped };
 
+    void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
     bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
+    bool remember_a_cone(Node& node);
     struct Branching {
         enum class On { nothing, end, edge } on;
         int what;  ///< the cone or the edge
@@ -76,10 +81,11 @@ class BranchAndBound {
     PairSearch pair_search_;
     Ascent ascent_;
     Usage usage_;
-    Prices prices_;  ///< of the current step
-    Prices root_prices_;
-    std::vector<double> edge_use_;  ///< averaged over the steps
-    std::vector<double> end_use_;   ///< legs that end at a cone, averaged
+    Prices prices_;                   ///< of the current step
+    std::vector<double> edge_use_;    ///< averaged over the steps
+    std::vector<double> end_use_;     ///< legs that end at a cone, averaged
+    std::vector<double> repeat_use_;  ///< visits of a cone after a walk's first, averaged
+    std::vector<int> visits_;
     std::vector<std::unique_ptr<Node>> nodes_by_depth_;
     ResidualGraph spare_;
     std::vector<int> order_;
@@ -89,7 +95,6 @@ class BranchAndBound {
     std::vector<int> walk_edges_;
     double open_bound_ = 0.0;
     std::int64_t nodes_ = 0;
-    std::int64_t steps_ = 0;
 };
 
 }  // namespace conelane::path_pair

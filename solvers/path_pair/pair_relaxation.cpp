@@ -52,7 +52,7 @@ void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& pri
         start.resize(residual.arc.size());
         for (int a = 0; a < residual.size(); ++a) {
             const int cone = residual.tail[at(a)];
-            start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
+            start[at(a)] = residual.first[at(a)] != 0 && system_->kinds[at(kind)].start[at(cone)] != 0 &&
                                    decisions_->may_be_last(cone, residual.edge(a))
                                ? prices.cone[at(cone)]
                                : kUnreachable;

@@ -1,0 +1,194 @@
+#include "model/bound_certificate.hpp"
+
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kAgreement = 1e-6;
+// A walk that is shorter by less than this is not shorter.
+constexpr double kShorter = 1e-12;
+
+double fourth(double value) {
+    return value * value * value * value;
+}
+
+class Verification {
+  public:
+    Verification(const Scene& scene, const RldParameters& parameters, const BoundCertificate& certificate)
+        : scene_(scene), p_(parameters), certificate_(certificate), heading_(scene.pose.heading()) {}
+
+    BoundVerdict run() {
+        if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
+        prices();
+        cliques();
+        if (!verdict_.violations.empty()) return std::move(verdict_);
+        arcs();
+        if (!shortest_walks()) {
+            violated("a walk gains from a cycle without end: the prices prove no bound");
+            return std::move(verdict_);
+        }
+        const double bound = combine();
+        verdict_.bound = bound;
+        if (!(certificate_.bound <= bound + kAgreement)) {
+            violated("the bound " + std::to_string(certificate_.bound) + " is claimed, the prices prove " +
+                     std::to_string(bound));
+        }
+        return std::move(verdict_);
+    }
+
+  private:
+    struct Arc {
+        std::size_t from;
+        std::size_t to;
+        double cost;  ///< reduced, with the price of `to`
+    };
+
+    void violated(std::string what) { verdict_.violations.push_back(std::move(what)); }
+    [[nodiscard]] const Point& position(std::size_t cone) const { return scene_.cones[cone].position; }
+    [[nodiscard]] bool near(std::size_t cone) const {
+        return (position(cone) - scene_.pose.position).norm() <= p_.d_near + kTieTolerance;
+    }
+    [[nodiscard]] double turn_cost(std::size_t i, std::size_t middle, std::size_t k) const {
+        return fourth((interior_angle(position(i), position(middle), position(k)) - p_.theta_e) / p_.theta_t);
+    }
+
+    void prices() {
+        if (certificate_.cone_price.size() != scene_.cones.size()) violated("not one price a cone");
+        const auto bad = [](double price) { return !(price >= 0.0 && std::isfinite(price)); };
+        if (std::ranges::any_of(certificate_.cone_price, bad) || bad(certificate_.heading_price) ||
+            std::ranges::any_of(certificate_.cliques, bad, &BoundCertificate::Clique::price)) {
+            violated("a price is negative or not finite");
+        }
+    }
+
+    /// Whether (7) or (28) forbids two edges together.
+    [[nodiscard]] bool excluded(const Edge& a, const Edge& b) const {
+        if (a == b) return false;
+        for (const auto& [middle, i] : {std::pair{a.i, a.j}, std::pair{a.j, a.i}}) {
+            for (const auto& [other, k] : {std::pair{b.i, b.j}, std::pair{b.j, b.i}}) {
+                if (middle == other) return turn_cost(i, middle, k) > p_.t_crit + kTieTolerance;
+            }
+        }
+        const SegmentDistance gap =
+            segment_distance({position(a.i), position(a.j)}, {position(b.i), position(b.j)});
+        return gap.distance_m < p_.d_min - kTieTolerance && !gap.between_ends;
+    }
+
+    void cliques() {
+        for (const BoundCertificate::Clique& clique : certificate_.cliques) {
+            for (std::size_t k = 0; k < clique.edges.size(); ++k) {
+                const Edge& edge = clique.edges[k];
+                if (edge.i >= edge.j || edge.j >= scene_.cones.size()) {
+                    violated("a clique holds what is no edge");
+                    return;
+                }
+                for (std::size_t l = 0; l < k; ++l) {
+                    if (!excluded(clique.edges[l], edge)) {
+                        violated("a clique holds two edges that may go together");
+                        return;
+                    }
+                }
+            }
+        }
+    }
+
+    void arcs() {
+        std::map<Edge, double> clique_price;
+        for (const BoundCertificate::Clique& clique : certificate_.cliques) {
+            for (const Edge& edge : clique.edges) clique_price[edge] += clique.price;
+        }
+        leaving_.resize(scene_.cones.size());
+        for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
+            for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
+                const Point v = position(j) - position(i);
+                const double spacing = fourth((v.norm() - p_.d_e) / p_.d_t);
+                if (v.norm() == 0.0 || spacing > p_.s_crit + kTieTolerance) continue;
+                const Segment segment{position(i), position(j)};
+                const double across = std::abs(cross(v, heading_));
+                const double car_distance =
+                    std::max((0.5 * (position(i) + position(j)) - scene_.pose.position).norm(), 0.5);
+                double cost = p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b;
+                const bool along_heading =
+                    foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
+                    std::atan2(across, std::abs(v.dot(heading_))) <= p_.theta_heading + kTieTolerance;
+                if (along_heading) cost -= certificate_.heading_price;
+                const auto priced = clique_price.find({i, j});
+                if (priced != clique_price.end()) cost += priced->second;
+                for (const auto& [from, to] : {std::pair{i, j}, std::pair{j, i}}) {
+                    leaving_[from].push_back(arcs_.size());
+                    arcs_.push_back({from, to, cost + certificate_.cone_price[to]});
+                }
+            }
+        }
+    }
+
+    /// Bellman and Ford's rounds; false where they do not end.
+    bool shortest_walks() {
+        walk_.assign(arcs_.size(), kNone);
+        for (std::size_t a = 0; a < arcs_.size(); ++a) {
+            if (near(arcs_[a].from)) walk_[a] = certificate_.cone_price[arcs_[a].from] + arcs_[a].cost;
+        }
+        for (std::size_t round = 0; round <= arcs_.size(); ++round) {
+            bool shorter = false;
+            for (std::size_t a = 0; a < arcs_.size(); ++a) {
+                if (walk_[a] == kNone) continue;
+                for (const std::size_t b : leaving_[arcs_[a].to]) {
+                    if (arcs_[b].to == arcs_[a].from) continue;
+                    const double turn = turn_cost(arcs_[a].from, arcs_[a].to, arcs_[b].to);
+                    if (turn > p_.t_crit + kTieTolerance) continue;
+                    const double length = walk_[a] + p_.w_t * turn + arcs_[b].cost;
+                    if (!(length < walk_[b] - kShorter)) continue;
+                    walk_[b] = length;
+                    shorter = true;
+                }
+            }
+            if (!shorter) return true;
+        }
+        return false;
+    }
+
+    /// Two walks to far cones within d_max of each other, less what the prices promise back.
+    [[nodiscard]] double combine() const {
+        std::vector<double> best(scene_.cones.size(), kNone);
+        for (std::size_t a = 0; a < arcs_.size(); ++a) {
+            if (!near(arcs_[a].to)) best[arcs_[a].to] = std::min(best[arcs_[a].to], walk_[a]);
+        }
+        double pair = kNone;
+        for (std::size_t f = 0; f < best.size(); ++f) {
+            for (std::size_t g = f + 1; g < best.size(); ++g) {
+                if ((position(f) - position(g)).norm() > p_.d_max + kTieTolerance) continue;
+                pair = std::min(pair, best[f] + best[g]);
+            }
+        }
+        double promised = -2.0 * certificate_.heading_price;
+        for (const double price : certificate_.cone_price) promised += price;
+        for (const BoundCertificate::Clique& clique : certificate_.cliques) promised += clique.price;
+        return pair - promised;
+    }
+
+    const Scene& scene_;
+    const RldParameters& p_;
+    const BoundCertificate& certificate_;
+    Point heading_;
+    std::vector<Arc> arcs_;
+    std::vector<std::vector<std::size_t>> leaving_;  ///< arcs by their first cone
+    std::vector<double> walk_;                       ///< shortest one that ends with the arc
+    BoundVerdict verdict_;
+};
+
+}  // namespace
+
+BoundVerdict verify_bound(const Scene& scene, const RldParameters& parameters,
+                          const BoundCertificate& certificate) {
+    return Verification(scene, parameters, certificate).run();
+}
+
+}  // namespace conelane
