@@ -5,7 +5,7 @@
 
 #include "model/check.hpp"
 #include "model/lane_graph.hpp"
-#include "random_scenes.hpp"
+#include "tests/random_scenes.hpp"
 
 #include <string>
 #include <vector>

@@ -4,8 +4,8 @@
 
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "random_scenes.hpp"
 #include "solvers/cbc_solver.hpp"
+#include "tests/random_scenes.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -2,9 +2,9 @@
 
 #include "model/check.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "random_scenes.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/random_scenes.hpp"
 
 #include <algorithm>
 #include <array>
