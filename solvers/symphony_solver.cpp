@@ -44,7 +44,7 @@ class SymphonySession : public MilpSession {
             sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
         }
         sym_solve(env);
-        read(env, deadline, report);
+        read(env, limits, deadline, report);
         return report;
     }
 
@@ -99,7 +99,8 @@ class SymphonySession : public MilpSession {
                                   ranges.data(), 1);
     }
 
-    void read(sym_environment* env, const Deadline& deadline, MilpReport& report) const {
+    void read(sym_environment* env, const MilpLimits& limits, const Deadline& deadline,
+              MilpReport& report) const {
         int nodes = 0;
         sym_get_iteration_count(env, &nodes);
         report.nodes = std::max(nodes, 0);
@@ -107,10 +108,14 @@ class SymphonySession : public MilpSession {
             report.status = SolveStatus::infeasible;
             return;
         }
+        // Asked for a solution that it does not have, SYMPHONY complains on stdout: its primal bound tells.
+        double value = limits.cutoff;
+        sym_get_primal_bound(env, &value);
         std::vector<double> point(program_.columns.size());
-        const bool has_point = sym_get_col_solution(env, point.data()) == FUNCTION_TERMINATED_NORMALLY;
+        const bool has_point =
+            (sym_is_proven_optimal(env) || value < std::min(limits.cutoff, sym_get_infinity())) &&
+            sym_get_col_solution(env, point.data()) == FUNCTION_TERMINATED_NORMALLY;
         if (sym_is_proven_optimal(env) && has_point) {
-            double value = 0.0;
             sym_get_obj_val(env, &value);
             report.status = SolveStatus::optimal;
             report.bound = value;

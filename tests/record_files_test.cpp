@@ -185,6 +185,28 @@ TEST_F(ParameterFileTest, RoundTripAndDefaultPairing) {
     EXPECT_EQ(read_rld_parameters(file_with(text.substr(0, pairing) + "}")).pairing, Pairing::near_far);
 }
 
+/// A file speaks of extras where they are on; one that does not has them off.
+TEST_F(ParameterFileTest, ExtrasAreOptional) {
+    write_rld_parameters(path("p"), RldParameters{});
+    EXPECT_EQ(text_of(path("p")).find("w_color"), std::string::npos);
+    EXPECT_EQ(read_rld_parameters(path("p")).w_color, 0.0);
+
+    RldParameters parameters;
+    parameters.w_color = 0.25;
+    parameters.use_confidence = true;
+    parameters.forbid_crossing = true;
+    write_rld_parameters(path("p"), parameters);
+    const RldParameters read = read_rld_parameters(path("p"));
+    EXPECT_EQ(read.w_color, 0.25);
+    EXPECT_TRUE(read.use_confidence);
+    EXPECT_TRUE(read.forbid_crossing);
+
+    std::string text = text_of(path("p"));
+    text.replace(text.find("\"use_confidence\": 1"), 19, "\"use_confidence\": 2");
+    EXPECT_EQ(error_of([&] { static_cast<void>(read_rld_parameters(file_with(text, "p"))); }),
+              "p: use_confidence: must be 0 or 1");
+}
+
 TEST_F(ParameterFileTest, NamesBadParameters) {
     write_rld_parameters(path("p"), RldParameters{});
     const std::string good = text_of(path("p"));

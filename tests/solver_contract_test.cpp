@@ -7,6 +7,8 @@
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -156,6 +158,130 @@ TEST_P(SolverContract, AgreesWithEveryPairOfPathsOnRandomScenes) {
         EXPECT_THAT(verdict.violations, testing::IsEmpty());
     }
     EXPECT_GT(feasible, 60);
+}
+
+/// A lane two metres wide, less than d_min. Exactly facing edges tie between ends and interior points, which
+/// counts as between ends, so (7) lets them pass; moved by a quarter of the spacing they exclude each other.
+TEST_P(SolverContract, ExactlyFacingEdgesAreBetweenEnds) {
+    const auto lane = [](double shift) {
+        return scene_of({{1, 1}, {4.2, 1}, {7.4, 1}, {1 + shift, -1}, {4.2 + shift, -1}, {7.4 + shift, -1}});
+    };
+    const RldReport facing = solve(lane(0.0));
+    ASSERT_EQ(facing.status, SolveStatus::optimal) << facing.message;
+    EXPECT_NEAR(*facing.objective, -4.0, 1e-9);
+    const RldReport shifted = solve(lane(0.8));
+    if (shifted.status == SolveStatus::optimal) {
+        EXPECT_GT(*shifted.objective, -4.0 + 1e-3);
+    } else {
+        EXPECT_EQ(shifted.status, SolveStatus::infeasible);
+    }
+}
+
+/// The left boundary goes on to either of two cones at the same cost: any of the two is right.
+TEST_P(SolverContract, EquallyGoodLanesTie) {
+    RldParameters parameters;
+    parameters.w_p = 0.0;
+    const Scene scene =
+        scene_of({{4, 1.5}, {7.2, 1.5}, {10.3, 2.3}, {10.3, 0.7}, {4, -2.5}, {7.2, -2.5}, {10.4, -2.5}});
+    const double length = std::hypot(3.1, 0.8);
+    const double stated = -4.0 + parameters.w_s * std::pow((length - 3.2) / 1.7, 4.0) +
+                          parameters.w_t * std::pow(std::atan2(0.8, 3.1) / 0.9, 4.0);
+    const RldReport report = solve(scene, parameters);
+    ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+    EXPECT_NEAR(*report.objective, stated, 1e-9);
+    EXPECT_THAT(
+        check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
+        testing::IsEmpty());
+}
+
+/// However little time there is, a claim is true: no wrong optimum, a bound that is one, a lane graph that is
+/// one.
+TEST_P(SolverContract, ATimeLimitNeverMakesAClaimWrong) {
+    const std::size_t cones = GetParam().entry->uses_formulation ? 14 : kExhaustiveMostCones;
+    const auto reference_solver = find_rld_solver("cbc")->make(Formulation::tight);
+    int stopped = 0;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        const Scene scene = tests::random_scene(seed, cones);
+        const RldParameters parameters;
+        const RldReport reference = reference_solver->solve(make_problem(scene, parameters), {});
+        for (const double time_limit_ms : {1e-6, 0.3, 1.0, 4.0, 15.0}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", limit " << time_limit_ms << " ms");
+            const RldReport report = solve(scene, parameters, {time_limit_ms});
+            if (report.bound && reference.objective) {
+                EXPECT_LE(*report.bound, *reference.objective + 1e-6);
+            }
+            switch (report.status) {
+                case SolveStatus::optimal:
+                    EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
+                    break;
+                case SolveStatus::feasible:
+                    ++stopped;
+                    EXPECT_THAT(
+                        check(scene, parameters, *report.lane_graph, {false, *report.objective, report.bound})
+                            .violations,
+                        testing::IsEmpty());
+                    break;
+                case SolveStatus::time_limit:
+                    ++stopped;
+                    EXPECT_FALSE(report.lane_graph.has_value());
+                    break;
+                case SolveStatus::infeasible:
+                    EXPECT_EQ(reference.status, SolveStatus::infeasible);
+                    break;
+                case SolveStatus::error:
+                    ADD_FAILURE() << report.message;
+            }
+        }
+    }
+    EXPECT_GE(stopped, 6) << "the shortest limit stops every scene";
+}
+
+/// Extras are constraints and costs like all others.
+TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
+    int changed = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Scene scene = tests::random_scene(seed, 6 + seed % 4);
+        for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+            constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown,
+                                         ConeColor::orange};
+            scene.cones[i].color = seed % 3 == 0 ? kColors[(i * 7 + seed) % 4] : kColors[i % 2];
+            scene.cones[i].confidence = 1.0 - 0.08 * static_cast<double>((i * 5 + seed) % 8);
+        }
+        RldParameters parameters;
+        parameters.d_min = 0.0;
+        const RldReport plain = solve(scene, parameters);
+        parameters.w_color = 0.4;
+        parameters.use_confidence = true;
+        parameters.forbid_crossing = true;
+        const RldReport reference = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
+        const RldReport report = solve(scene, parameters);
+        ASSERT_EQ(report.status, reference.status) << report.message;
+        if (report.status != SolveStatus::optimal) continue;
+        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+        if (*report.lane_graph != *plain.lane_graph) ++changed;
+    }
+    EXPECT_GT(changed, 0) << "the extras decided nothing";
+}
+
+/// Two near edges that cross pay more than a lane that does not; with d_min = 0 only forbid_crossing tells.
+TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
+    // Crosswise edges have the expected spacing, straight ones are too short to be allowed.
+    const Scene scene = scene_of({{4, 1.0}, {6.5, 1.0}, {4, -1.0}, {6.5, -1.0}});
+    RldParameters parameters;
+    parameters.d_min = 0.0;
+    parameters.s_crit = 1e-4;
+    parameters.w_p = 0.0;
+    const RldReport crosswise = solve(scene, parameters);
+    ASSERT_EQ(crosswise.status, SolveStatus::optimal) << crosswise.message;
+    const LaneGraph expected{{{0, 3}, {1, 2}}};
+    EXPECT_EQ(*crosswise.lane_graph, expected);
+    parameters.forbid_crossing = true;
+    EXPECT_EQ(solve(scene, parameters).status, SolveStatus::infeasible);
+    EXPECT_THAT(check(scene, parameters, expected).violations, testing::SizeIs(1));
 }
 
 /// The optimum as start stays the optimum, with proof; so does any other lane graph; one that is none for

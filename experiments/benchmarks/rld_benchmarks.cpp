@@ -1,0 +1,150 @@
+// What each stage from scene to lane graph takes: the problem's numbers, building the program, updating it,
+// and a whole solve by each backend, by cone-set size. Scenes are of generated tracks with a false positive
+// among five points, or those of the file that the environment variable CONELANE_SCENES names. An iteration
+// is one scene; the scenes take turns.
+
+#include "experiments/generated_tracks.hpp"
+#include "experiments/scene_file.hpp"
+#include "experiments/scene_generation.hpp"
+#include "model/lane_graph_model.hpp"
+#include "solvers/registry.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
+/// The paper formulation takes seconds beyond.
+constexpr std::int64_t kLargestPaperSize = 12;
+
+std::vector<AnnotatedScene> make_scenes() {
+    if (const char* file = std::getenv("CONELANE_SCENES")) return read_scenes(file);
+    SceneOptions options;
+    options.false_positive_rates = {0.2};
+    options.ranges_m = {30.0};
+    options.every_m = 15.0;
+    std::vector<AnnotatedScene> all;
+    for (const std::string& name : generated_track_names()) {
+        std::vector<AnnotatedScene> scenes = generate_scenes(generate_track(name, 0), options);
+        std::move(scenes.begin(), scenes.end(), std::back_inserter(all));
+    }
+    return all;
+}
+
+std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size) {
+    std::vector<Scene> scenes;
+    for (const AnnotatedScene& annotated : all) {
+        Scene scene = nearest_ahead(annotated.scene, size);
+        if (scene.cones.size() == size) scenes.push_back(std::move(scene));
+    }
+    return scenes;
+}
+
+std::vector<LaneGraphProblem> problems_of(const std::vector<Scene>& scenes, EdgeExtent extent) {
+    std::vector<LaneGraphProblem> problems;
+    for (const Scene& scene : scenes) problems.push_back(make_problem(scene, {}, extent));
+    return problems;
+}
+
+/// Calls `step` with the index of the next scene in each iteration.
+template <typename Step>
+void take_turns(benchmark::State& state, std::size_t count, const Step& step) {
+    if (count == 0) {
+        state.SkipWithError("no scene has so many cones");
+        return;
+    }
+    std::size_t next = 0;
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        step(next);
+        next = (next + 1) % count;
+    }
+}
+
+using Scenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
+
+void register_stages(const Scenes& all, Formulation formulation, std::int64_t size) {
+    const std::string ending = "/" + std::string(to_string(formulation)) + "/" + std::to_string(size);
+    const EdgeExtent extent = parts(formulation).extent;
+    const auto cones = static_cast<std::size_t>(size);
+    benchmark::RegisterBenchmark(("problem" + ending).c_str(), [=](benchmark::State& state) {
+        const std::vector<Scene> scenes = scenes_of_size(*all, cones);
+        take_turns(state, scenes.size(),
+                   [&](std::size_t i) { benchmark::DoNotOptimize(make_problem(scenes[i], {}, extent)); });
+    });
+    benchmark::RegisterBenchmark(("build" + ending).c_str(), [=](benchmark::State& state) {
+        const auto problems = problems_of(scenes_of_size(*all, cones), extent);
+        take_turns(state, problems.size(), [&](std::size_t i) {
+            const LaneGraphModel model(problems[i], formulation);
+            benchmark::DoNotOptimize(model.program().rows.size());
+        });
+    });
+    benchmark::RegisterBenchmark(("update" + ending).c_str(), [=](benchmark::State& state) {
+        const auto problems = problems_of(scenes_of_size(*all, cones), extent);
+        if (problems.empty()) return state.SkipWithError("no scene has so many cones");
+        LaneGraphModel model(problems.front(), formulation);
+        take_turns(state, problems.size(), [&](std::size_t i) {
+            model.update(problems[i]);
+            benchmark::DoNotOptimize(model.program().rows.size());
+        });
+    });
+}
+
+void register_solve(const Scenes& all, const RldSolverEntry& entry, Formulation formulation,
+                    std::int64_t size) {
+    std::string name = "solve/" + std::string(entry.name);
+    if (entry.uses_formulation) name += "/" + std::string(to_string(formulation));
+    const auto cones = static_cast<std::size_t>(size);
+    benchmark::RegisterBenchmark((name + "/" + std::to_string(size)).c_str(), [=, &entry](
+                                                                                  benchmark::State& state) {
+        const std::vector<Scene> scenes = scenes_of_size(*all, cones);
+        const auto solver = entry.make(formulation);
+        take_turns(state, scenes.size(), [&](std::size_t i) {
+            const auto problem = make_problem(scenes[i], {}, solver->extent());
+            const RldReport report = solver->solve(problem, {});
+            if (report.status == SolveStatus::error) state.SkipWithError(report.message.c_str());
+        });
+    })->UseRealTime();
+}
+
+void register_all(const Scenes& all) {
+    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+        for (const std::int64_t size : kSizes) register_stages(all, formulation, size);
+    }
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        for (const std::int64_t size : kSizes) {
+            if (!entry.uses_formulation) {
+                if (size <= 9) register_solve(all, entry, Formulation::tight, size);
+                continue;
+            }
+            register_solve(all, entry, Formulation::tight, size);
+            if (size <= kLargestPaperSize) register_solve(all, entry, Formulation::paper, size);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace conelane::experiments
+
+int main(int argument_count, char** arguments) {
+    benchmark::Initialize(&argument_count, arguments);
+    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
+    try {
+        using namespace conelane::experiments;
+        register_all(std::make_shared<const std::vector<AnnotatedScene>>(make_scenes()));
+    } catch (const std::exception& failure) {
+        std::cerr << "conelane_benchmarks: " << failure.what() << '\n';
+        return 2;
+    }
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+}
