@@ -145,6 +145,69 @@ TEST(ClcDetector, AMirroredSceneHasTheMirroredLane) {
     }
 }
 
+TEST(ClcDetector, TheRankingOfAMirroredSceneIsTheSame) {
+    for (const ClcOptions& options : {paper_clc_options(), extended_clc_options()}) {
+        for (unsigned seed = 0; seed < 40; ++seed) {
+            SCOPED_TRACE(seed);
+            const Scene scene = with_false_positives(winding_lane(8, 0.4, seed), seed % 20, seed);
+            const LaneAnswer answer = detect(scene, options);
+            const LaneAnswer of_mirrored = detect(mirrored(scene), options);
+            EXPECT_EQ(answer.lane.left, of_mirrored.lane.right);
+            EXPECT_EQ(answer.lane.right, of_mirrored.lane.left);
+        }
+    }
+}
+
+TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
+    ClcOptions options;
+    options.iteration_limit = 1'000'000;
+    options.starting_pairs = 1;
+    options.warm_start = true;
+    DetectionLimits limits;
+    limits.keep_candidates = true;
+    const auto candidates = [](const LaneAnswer& answer) {
+        std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> lanes;
+        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+            EXPECT_TRUE(lanes.insert({candidate.lane.left, candidate.lane.right}).second) << "met twice";
+        }
+        return lanes;
+    };
+    for (unsigned seed = 0; seed < 15; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = with_false_positives(winding_lane(6, 0.4, seed), 6, seed);
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        const LaneAnswer cold = detector->detect(scene, limits);
+        const LaneAnswer warm = detector->detect(scene, limits);
+        ASSERT_TRUE(cold.enumeration->complete);
+        ASSERT_TRUE(warm.enumeration->complete);
+        EXPECT_EQ(candidates(cold), candidates(warm));
+        EXPECT_EQ(cold.lane, warm.lane);
+        // The way along the last answer comes first: as many steps as it has cones beyond the first two.
+        const auto steps = static_cast<std::int64_t>(cold.lane.left.size() + cold.lane.right.size() - 2);
+        const auto at = std::ranges::find(warm.enumeration->candidates, cold.lane, &LaneCandidate::lane);
+        ASSERT_NE(at, warm.enumeration->candidates.end());
+        EXPECT_EQ(at->iteration, steps);
+    }
+}
+
+TEST(ClcDetector, ResetForgetsTheLastLane) {
+    ClcOptions options;
+    options.warm_start = true;
+    const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+    DetectionLimits limits;
+    limits.keep_candidates = true;
+    const Scene scene = with_false_positives(winding_lane(10, 0.4, 2), 20, 2);
+    const auto order = [&] {
+        const LaneAnswer answer = detector->detect(scene, limits);
+        std::vector<Lane> lanes;
+        for (const LaneCandidate& candidate : answer.enumeration->candidates) lanes.push_back(candidate.lane);
+        return lanes;
+    };
+    const std::vector<Lane> cold = order();
+    detector->reset();
+    EXPECT_EQ(order(), cold);
+}
+
 TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
     Scene scene;
     for (int i = 0; i < 6; ++i) {
@@ -252,6 +315,8 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.largest_radius_m = 1.0; }), "largest_radius");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
+              "next_vertex_distance_weight");
 }
 
 }  // namespace

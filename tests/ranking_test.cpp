@@ -4,9 +4,13 @@
 #include "graph_search/path_pair_enumeration.hpp"
 #include "model/invalid_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -16,21 +20,22 @@
 namespace conelane {
 namespace {
 
-/// One unit that passes the given feature on, standardised; a negative weight turns the preference round.
-RankNetWeights only_feature(std::size_t feature, float weight = 1.0F) {
+/// One unit that passes the given input on, standardised; a negative weight turns the preference round.
+RankNetWeights only_input(std::size_t input, float weight = 1.0F) {
     RankNetWeights weights;
-    weights.deviation.fill(1.0);
-    weights.hidden = Eigen::Matrix<float, Eigen::Dynamic, 8>::Zero(1, 8);
-    weights.hidden(0, static_cast<Eigen::Index>(feature)) = weight;
+    weights.mean = Eigen::VectorXd::Zero(8);
+    weights.deviation = Eigen::VectorXd::Ones(8);
+    weights.hidden = Eigen::MatrixXf::Zero(1, 8);
+    weights.hidden(0, static_cast<Eigen::Index>(input)) = weight;
     weights.hidden_bias = Eigen::VectorXf::Constant(1, 1000.0F);  // far from where the unit is cut off
     weights.output = Eigen::VectorXf::Ones(1);
     return weights;
 }
 
-TEST(LaneFeatures, OfALaneToFollowByHand) {
+TEST(PaperFeatures, OfALaneToFollowByHand) {
     const std::vector<Point> left{{0, 4}, {3, 4}, {8, 4}};
     const std::vector<Point> right{{0, 0}, {4, 0}, {4, -3}};
-    const LaneFeatures features = lane_features(left, right);
+    const PaperFeatures features = paper_features(left, right);
     EXPECT_DOUBLE_EQ(features[0], 7.5);
     EXPECT_EQ(features[1], 3);
     EXPECT_EQ(features[2], 3);
@@ -43,24 +48,24 @@ TEST(LaneFeatures, OfALaneToFollowByHand) {
     EXPECT_DOUBLE_EQ(features[7], 0.0) << "a single angle does not vary";
 }
 
-TEST(LaneFeatures, TurnsToEitherSideDiffer) {
+TEST(PaperFeatures, TurnsToEitherSideDiffer) {
     const std::vector<Point> zigzag{{0, 4}, {1, 5}, {2, 4}};
     const std::vector<Point> arc{{0, 0}, {1, 0}, {2, 1}, {2, 2}};
     const std::vector<Point> both_ways{{0, 0}, {1, 0}, {2, 1}, {3, 1}};
-    EXPECT_NEAR(lane_features(zigzag, arc)[7], 0.0, 1e-12);
-    EXPECT_NEAR(lane_features(zigzag, both_ways)[7], std::pow(std::atan(1.0), 2), 1e-12);
+    EXPECT_NEAR(paper_features(zigzag, arc)[7], 0.0, 1e-12);
+    EXPECT_NEAR(paper_features(zigzag, both_ways)[7], std::pow(std::atan(1.0), 2), 1e-12);
 }
 
-TEST(LaneFeatures, OfAClosedLaneIncludeTheClosing) {
+TEST(PaperFeatures, OfAClosedLaneIncludeTheClosing) {
     const std::vector<Point> inner{{2, 2}, {-2, 2}, {-2, -2}, {2, -2}};
     const std::vector<Point> outer{{5, 5}, {-5, 5}, {-5, -5}, {5, -5}};
-    const LaneFeatures features = lane_features(inner, outer, true);
+    const PaperFeatures features = paper_features(inner, outer, true);
     EXPECT_DOUBLE_EQ(features[0], 28.0);
     EXPECT_NEAR(features[4], 0.0, 1e-12);
     EXPECT_NEAR(features[6], 0.0, 1e-12);
 }
 
-TEST(LaneFeatures, OfTheEnumerationEqualTheirDefinition) {
+TEST(PaperFeatures, OfTheEnumerationEqualTheirDefinition) {
     std::size_t compared = 0;
     for (unsigned seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(seed);
@@ -87,8 +92,8 @@ TEST(LaneFeatures, OfTheEnumerationEqualTheirDefinition) {
             for (const Side side : {kLeft, kRight}) {
                 for (const Vertex vertex : vertices[side]) boundaries[side].push_back(points[vertex]);
             }
-            const LaneFeatures expected =
-                lane_features(boundaries[kLeft], boundaries[kRight], pairs.found()[i].closed);
+            const PaperFeatures expected =
+                paper_features(boundaries[kLeft], boundaries[kRight], pairs.found()[i].closed);
             for (std::size_t k = 0; k < expected.size(); ++k) {
                 ASSERT_NEAR(pairs.features()[i][k], expected[k], 1e-9) << "feature " << k + 1;
             }
@@ -98,13 +103,61 @@ TEST(LaneFeatures, OfTheEnumerationEqualTheirDefinition) {
     EXPECT_GT(compared, 1000u);
 }
 
+TEST(NetworkInputs, DoNotTellLeftFromRight) {
+    LaneFeatures lane{};
+    for (std::size_t i = 0; i < lane.size(); ++i) lane[i] = static_cast<double>(i * i);
+    LaneFeatures mirrored = lane;
+    std::size_t pairs = 0;
+    const std::span<const std::string_view> names = lane_feature_names();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!names[i].ends_with("_left")) continue;
+        ASSERT_TRUE(names[i + 1].ends_with("_right"));
+        std::swap(mirrored[i], mirrored[i + 1]);
+        ++pairs;
+    }
+    EXPECT_EQ(pairs, 6u);
+    std::vector<double> inputs(lane.size());
+    std::vector<double> of_mirrored(lane.size());
+    network_inputs(lane, inputs);
+    network_inputs(mirrored, of_mirrored);
+    EXPECT_EQ(inputs, of_mirrored);
+    EXPECT_DOUBLE_EQ(inputs[1], (1.0 + 4.0) / 2.0);
+    EXPECT_DOUBLE_EQ(inputs[2], (4.0 - 1.0) / 2.0);
+}
+
+TEST(LaneGrowth, OfALaneToFollowByHand) {
+    // Two cones on a side, 4 m apart, a stray one inside the lane and one beside its left boundary.
+    const std::vector<Point> points{{0, 2}, {0, -2}, {4, 2}, {4, -2}, {2, 1}, {3, 2.5}};
+    SearchGraph graph;
+    graph.build(points, 5.5);
+    LaneGrowth growth;
+    growth.start(graph, 0, 1, {1.0, 0.0});
+    growth.push(graph, kLeft, 2);
+    growth.push(graph, kRight, 3);
+    const LaneFeatures features = growth.features();
+    const auto of = [&](std::string_view name) {
+        const auto names = lane_feature_names();
+        return features[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+    };
+    EXPECT_DOUBLE_EQ(of("length_m"), 4.0);
+    EXPECT_DOUBLE_EQ(of("cones_inside"), 1.0);
+    EXPECT_DOUBLE_EQ(of("cones_beside"), 2.0) << "the one inside is 1 m off the left boundary too";
+    EXPECT_DOUBLE_EQ(of("longest_segment_m"), 4.0);
+    EXPECT_DOUBLE_EQ(of("shortest_segment_m"), 4.0);
+    EXPECT_DOUBLE_EQ(of("start_skew"), 0.0);
+    EXPECT_DOUBLE_EQ(of("mean_squared_skew"), 0.0);
+    EXPECT_DOUBLE_EQ(of("mean_across_m"), (4.0 + std::sqrt(32.0) + 4.0) / 3.0);
+    EXPECT_DOUBLE_EQ(of("end_deviation"), 0.0);
+    EXPECT_DOUBLE_EQ(of("end_segment_m"), 4.0);
+}
+
 TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     RankNetWeights weights;
-    weights.mean.fill(1.0);
-    weights.deviation.fill(2.0);
-    weights.hidden = Eigen::Matrix<float, Eigen::Dynamic, 8>::Zero(2, 8);
+    weights.mean = Eigen::VectorXd::Ones(8);
+    weights.deviation = Eigen::VectorXd::Constant(8, 2.0);
+    weights.hidden = Eigen::MatrixXf::Zero(2, 8);
     weights.hidden(0, 0) = 1.0F;
-    weights.hidden(1, 1) = -1.0F;
+    weights.hidden(1, 3) = -1.0F;
     weights.hidden_bias.resize(2);
     weights.hidden_bias << 0.5F, 0.0F;
     weights.output.resize(2);
@@ -115,8 +168,8 @@ TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     average.fill(1.0);
     std::vector<LaneFeatures> lanes(150, average);
     lanes.front()[0] = 5.0;  // standardised 2: first unit 2.5, second 0
-    lanes.back()[1] = -3.0;  // standardised -2: first unit 0.5, second 2
-    lanes[70][1] = 9.0;      // standardised 4: the second unit is cut off at 0
+    lanes.back()[3] = -3.0;  // standardised -2: first unit 0.5, second 2
+    lanes[70][3] = 9.0;      // standardised 4: the second unit is cut off at 0
     std::vector<double> scores(lanes.size());
     make_rank_net(weights)->score(lanes, scores);
     EXPECT_DOUBLE_EQ(scores.front(), 3 * 2.5 - 1);
@@ -127,7 +180,7 @@ TEST(RankNet, IsTwoLayersWithARectifierBetween) {
 
 TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
     const auto key_of = [](auto change) -> std::string {
-        RankNetWeights weights = only_feature(0);
+        RankNetWeights weights = only_input(0);
         change(weights);
         try {
             (void)make_rank_net(weights);
@@ -138,13 +191,16 @@ TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
     };
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(key_of([](RankNetWeights&) {}), "accepted");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.mean.resize(9); }), "mean");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.deviation.resize(7); }), "deviation");
     EXPECT_EQ(key_of([](RankNetWeights& w) { w.hidden.resize(0, 8); }), "hidden");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.hidden.resize(1, 7); }), "hidden");
     EXPECT_EQ(key_of([&](RankNetWeights& w) { w.hidden(0, 3) = nan; }), "hidden");
     EXPECT_EQ(key_of([](RankNetWeights& w) { w.hidden_bias.resize(2); }), "hidden_bias");
     EXPECT_EQ(key_of([](RankNetWeights& w) { w.output.resize(0); }), "output");
     EXPECT_EQ(key_of([&](RankNetWeights& w) { w.output_bias = nan; }), "output_bias");
-    EXPECT_EQ(key_of([&](RankNetWeights& w) { w.mean[7] = nan; }), "mean");
-    EXPECT_EQ(key_of([](RankNetWeights& w) { w.deviation[0] = 0.0; }), "deviation");
+    EXPECT_EQ(key_of([&](RankNetWeights& w) { w.mean(7) = nan; }), "mean");
+    EXPECT_EQ(key_of([](RankNetWeights& w) { w.deviation(0) = 0.0; }), "deviation");
 }
 
 TEST(RankNet, DecidesWhichCandidateTheDetectorAnswers) {
@@ -155,7 +211,7 @@ TEST(RankNet, DecidesWhichCandidateTheDetectorAnswers) {
     }
     const auto cones_with = [&](std::size_t feature, float weight) {
         ClcOptions options;
-        options.ranking = make_rank_net(only_feature(feature, weight));
+        options.ranking = make_rank_net(only_input(feature, weight));
         const LaneAnswer answer = make_clc_detector(options)->detect(scene, {});
         return std::pair(answer.lane.left.size(), answer.lane.right.size());
     };

@@ -1,0 +1,180 @@
+#include "experiments/training/rank_net_training.hpp"
+
+#include "experiments/training/training_run.hpp"
+#include "graph_search/rank_net_file.hpp"
+#include "model/invalid_input.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Scenes of ten candidates whose IoU falls with their fourth feature, whatever the others are.
+std::vector<CandidateList> lists_by_fourth_feature(std::size_t count, std::uint64_t seed) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::uniform_01<double> uniform;
+    std::vector<CandidateList> lists(count);
+    for (CandidateList& list : lists) {
+        for (int i = 0; i < 10; ++i) {
+            LaneFeatures lane{};
+            for (double& feature : lane) feature = 100.0 + 20.0 * uniform(random);
+            list.iou.push_back(1.0 - (lane[3] - 100.0) / 20.0);
+            list.divergence_m.push_back(std::numeric_limits<double>::infinity());
+            list.lanes.push_back(lane);
+        }
+    }
+    return lists;
+}
+
+RankNetTrainingOptions quick() {
+    RankNetTrainingOptions options;
+    options.units = 8;
+    options.epochs = 20;
+    options.pairs_a_step = 64;
+    options.show_progress = false;
+    return options;
+}
+
+TEST(PairLoss, OfOnePairByHand) {
+    // One unit that passes the only input on: scores 3 and 1.
+    const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
+                                       Eigen::VectorXd::Ones(1)};
+    CandidatePairs pairs{Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::MatrixXd::Ones(1, 1),
+                         Eigen::RowVectorXd::Constant(1, 0.8)};
+    const double p = 1.0 / (1.0 + std::exp(-2.0));
+    EXPECT_NEAR(pair_loss(parameters, pairs, nullptr), -0.8 * std::log(p) - 0.2 * std::log(1.0 - p), 1e-12);
+    pairs.first *= 1e6;
+    EXPECT_TRUE(std::isfinite(pair_loss(parameters, pairs, nullptr)));
+}
+
+TEST(PairLoss, GradientEqualsFiniteDifferences) {
+    boost::random::mt19937_64 random(4);
+    const auto fill = [&](auto& values) {
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
+        }
+    };
+    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
+    fill(parameters.hidden);
+    fill(parameters.hidden_bias);
+    fill(parameters.output);
+    CandidatePairs pairs{Eigen::MatrixXd(8, 7), Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7)};
+    fill(pairs.first);
+    fill(pairs.second);
+    fill(pairs.first_is_better);
+    pairs.first_is_better = pairs.first_is_better.cwiseAbs();
+    RankNetParameters gradient;
+    (void)pair_loss(parameters, pairs, &gradient);
+    const auto check = [&](auto& values, const auto& derivatives) {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            const double value = values(i);
+            values(i) = value + kStep;
+            const double above = pair_loss(parameters, pairs, nullptr);
+            values(i) = value - kStep;
+            const double below = pair_loss(parameters, pairs, nullptr);
+            values(i) = value;
+            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
+        }
+    };
+    check(parameters.hidden, gradient.hidden);
+    check(parameters.hidden_bias, gradient.hidden_bias);
+    check(parameters.output, gradient.output);
+}
+
+TEST(RankNetTraining, LearnsWhatDecides) {
+    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), quick());
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
+    EXPECT_EQ(figures.scenes, 50u);
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+    EXPECT_EQ(figures.critical_share, 0.0);
+}
+
+TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 3);
+    for (CandidateList& list : lists) {
+        for (LaneFeatures& lane : list.lanes) lane[0] = 7.0;  // does not vary
+    }
+    const RankNetWeights weights = train_rank_net(lists, quick());
+    EXPECT_EQ(weights.mean.size(), 8);
+    EXPECT_DOUBLE_EQ(weights.mean(0), 7.0);
+    EXPECT_DOUBLE_EQ(weights.deviation(0), 1.0);
+    EXPECT_NEAR(weights.mean(3), 110.0, 1.0);
+    EXPECT_NEAR(weights.deviation(3), 20.0 / std::sqrt(12.0), 0.3);
+    EXPECT_NEAR(weights.mean(2), 20.0 / 6.0, 0.3) << "half the distance of left and right";
+}
+
+TEST(RankNetTraining, ThePenaltyMakesDivergingLanesWorse) {
+    // The better half by the fourth feature diverges at 5 m.
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
+    for (CandidateList& list : lists) {
+        for (std::size_t i = 0; i < list.lanes.size(); ++i) {
+            if (list.lanes[i][3] < 110.0) list.divergence_m[i] = 5.0;
+        }
+    }
+    RankNetTrainingOptions options = quick();
+    const auto critical_share = [&] {
+        return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options))).critical_share;
+    };
+    const double without = critical_share();
+    options.divergence_penalty = 1.0;
+    EXPECT_GT(without, 0.9);
+    EXPECT_LT(critical_share(), 0.1);
+}
+
+TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
+    const auto key_of = [](auto change) -> std::string {
+        RankNetTrainingOptions options = quick();
+        change(options);
+        try {
+            (void)train_rank_net(lists_by_fourth_feature(2, 0), options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](RankNetTrainingOptions&) {}), "accepted");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.inputs = 9; }), "inputs");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.units = 0; }), "units");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.epochs = 0; }), "epochs");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
+    EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
+}
+
+TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {
+    TrainingRunOptions options;
+    options.tracks = {"generated:circle@1"};
+    options.hold_out = {"generated:curvy@2"};
+    options.scenes.false_positive_rates = {0.0, 0.2};
+    options.scenes.ranges_m = {20.0};
+    options.scenes.every_m = 20.0;
+    options.candidates.most_per_scene = 10;
+    options.candidates.show_progress = false;
+    options.training = quick();
+    const auto file = [&] {
+        const TrainingRun run = run_training(options);
+        EXPECT_GT(run.held_out.scenes, 0u);
+        return rank_net_json(run.weights, run.record);
+    };
+    const std::string first = file();
+    options.candidates.threads = 2;
+    options.scenes.threads = 2;
+    EXPECT_EQ(file(), first);
+    options.training.seed = 1;
+    EXPECT_NE(file(), first);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
