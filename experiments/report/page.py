@@ -47,7 +47,7 @@ def _viewer(results, data):
               for track, boundaries in results.tracks.items()}
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
-    content = {"methods": methods, "tracks": tracks, "laps": data.laps, "frames": data.frames,
+    content = {"methods": methods, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES]}
     return f'{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}</script>'
 

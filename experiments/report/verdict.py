@@ -83,10 +83,11 @@ def _stretches(rates, leaders):
     return runs
 
 
-def _sentence(rates, nearest, title, leaders):
-    runs = _stretches(rates, leaders)
+def _sentence(results, nearest, title, leaders):
+    runs = _stretches(results.rates, leaders)
     if not runs:
         return ""
+    alone = nearest != "any" and sum(sample.nearest == nearest for sample in results.samples) == 1
     pieces = []
     for labels, first, last, means in runs:
         where = (f"at {percent_label(first)} %" if first == last else
@@ -96,7 +97,7 @@ def _sentence(rates, nearest, title, leaders):
         names = _joined([f"<b>{escape(label)}</b>" for label in labels])
         pieces.append(f"{names} {where} false positives ({numbers}{level})")
     lead = "Of all methods" if nearest == "any" else f"On {_name_of_set(nearest)}"
-    return f"<li>{lead}, most {title}: {'; '.join(pieces)}.</li>"
+    return f"<li>{lead}, {f'{title}, a single method' if alone else f'most {title}'}: {'; '.join(pieces)}.</li>"
 
 
 def _speed_sentence(results):
@@ -164,7 +165,7 @@ def _grid_table(results, grid):
 
 def html(results):
     grid = _grid(results)
-    sentences = "".join(_sentence(results.rates, nearest, dict((n, t) for n, t, _ in MEASURES)[name], leaders)
+    sentences = "".join(_sentence(results, nearest, dict((n, t) for n, t, _ in MEASURES)[name], leaders)
                         for (nearest, name), leaders in grid.items())
     return (_tiles(results) + f'<ul class="verdict">{sentences}{_speed_sentence(results)}'
             f"{_agreement_sentence(results)}</ul>" + _grid_table(results, grid))
