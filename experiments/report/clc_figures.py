@@ -111,7 +111,9 @@ def first_candidate(results):
         shares = 100 * np.arange(1, len(iterations) + 1) / len(sample)
         places = np.unique(np.linspace(0, len(iterations) - 1, 200).astype(int))
         style = method_style(results.methods, sample.method, variant) | {"marker": ""}
-        axes.step(iterations[places], shares[places], where="post", label=sample.label, **style)
+        end = max(iterations[-1], np.nanmax(sample.iterations))  # the curve stays level to the limit
+        axes.step([*iterations[places], end], [*shares[places], shares[-1]], where="post", label=sample.label,
+                  **style)
     axes.set_xlabel("iterations")
     axes.set_ylabel("scenes with one [%]")
     axes.set_ylim(0, 102)

@@ -4,7 +4,7 @@ import json
 import pkgutil
 from html import escape
 
-from . import clc_figures, comparison, gallery, provenance, rld_figures, verdict
+from . import clc_figures, comparison, gallery, provenance, rld_figures, sweep, verdict
 from .load import CATEGORIES
 from .scenes import read_scenes
 from .theme import METHOD_COLOURS
@@ -60,8 +60,8 @@ def render(results, published):
     """The whole page as text; the same results give the same bytes."""
     data = read_scenes(results)
     sections = (
-        ("verdict", "Verdict", verdict.html(results)),
-        ("comparison", "Comparison", comparison.html(results)),
+        ("verdict", "Verdict", verdict.html(results) + sweep.html(results)),
+        ("comparison", "Comparison", comparison.html(results) + sweep.figures(results)),
         ("rld", "Beside the RLD paper", rld_figures.html(results, published)),
         ("clc", "Beside the CLC paper", clc_figures.html(results, published)),
         ("gallery", "Scenes", gallery.html(results, data)),

@@ -113,7 +113,8 @@ def inaccurate_by_topology(results, published):
         exact = [(100 * row["rate"], row["inaccurate"]) for row in published["rld"]]
         axes.plot(*zip(*exact), marker="*", markersize=11, linestyle="", color=ACCENT,
                   label="RLD paper, all three (1:1 is a bound)")
-        axes.set_xticks([100 * rate for rate in results.rates], [percent_label(rate) for rate in results.rates])
+        ticks = sorted({round(rate, 4) for rate in results.rates} | {round(row["rate"], 4) for row in published["rld"]})
+        axes.set_xticks([100 * rate for rate in ticks], [percent_label(rate) for rate in ticks])
         axes.set_ylim(0, 1.06 * most)
         axes.set_xlabel("false positives [% of all points]")
         axes.set_ylabel("inaccurate [%]")

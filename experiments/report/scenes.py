@@ -110,7 +110,7 @@ def _add_answers(results, lanes_files, frames, indices):
     scores = {sample.label: {scene: row for row, scene in enumerate(sample.scene) if scene in frames}
               for sample in results.samples}
     for path in lanes_files:
-        for number, line in read_lines(path):
+        for number, line in read_lines(path, frames):
             scene = require(path, number, line, "scene", (str,))
             label = label_of(require(path, number, line, "method", (str,)), line.get("nearest"))
             row = scores.get(label, {}).get(scene)
@@ -162,7 +162,7 @@ def read_scenes(results):
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
     frames, indices = {}, {}
-    for number, line in read_lines(scenes_file):
+    for number, line in read_lines(scenes_file, wanted):
         scene = line.get("id")
         if scene in wanted:
             frame, index_of = _frame(scenes_file, number, line, boundaries.get(line.get("track")), noise_m)

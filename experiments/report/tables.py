@@ -47,7 +47,7 @@ def percent(share, digits=1, interval=None, **attributes):
 
 def milliseconds(value, interval=None, **attributes):
     def show(number):
-        return f"{number:.2f}" if number < 100 else f"{number:.0f}"
+        return f"{number:.2f}" if number < 1000 else f"{number:.0f}"
     return Cell(show(value), float(value), _range(interval, show), attributes)
 
 

@@ -97,8 +97,9 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(used - set(self.page.ids), set())
 
     def test_has_every_figure_or_says_why_not(self):
-        for name in ("success-by-rate", "latency", "rld-fig-5", "rld-fig-6", "clc-table-1", "clc-table-2", "clc-fig-9",
-                     "clc-fig-11", "clc-fig-12", "clc-fig-15", "clc-fig-16a", "clc-fig-16b"):
+        for name in ("winners", "by-size", "accurate-by-size", "success-by-rate", "latency", "rld-fig-5", "rld-fig-6",
+                     "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12", "clc-fig-15",
+                     "clc-fig-16a", "clc-fig-16b"):
             self.assertIn(name, self.page.ids)
         self.assertTrue({"rld-fig-7-straight", "rld-fig-7-circle"} <= set(self.page.ids))
         self.assertNotIn("the results hold no sweep", self.text)
