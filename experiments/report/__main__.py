@@ -39,7 +39,7 @@ def main(arguments):
         print(f"conelane: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"conelane: {error.filename or page}: {error.strerror}", file=sys.stderr)
+        print(f"conelane: {page}: {error.strerror}", file=sys.stderr)
         return 2
     return 0
 

@@ -6,7 +6,7 @@ import numpy as np
 from .comparison_figures import box_plot, variants
 from .figures import drawn, group, left_out
 from .load import CATEGORIES
-from .tables import Cell, Column, percent, table, text
+from .tables import Cell, Column, method_cell, percent, table, text
 from .theme import ACCENT, INK, legend, method_colour, method_style, new_figure
 
 MOST_RATE = 0.3 + 1e-9
@@ -31,7 +31,7 @@ def _rows_by_rate(results, published, samples, of_paper, of_ours):
         for sample in samples:
             part = sample.where(np.abs(sample.rate - rate) < 1e-6)
             if len(part):
-                rows.append([text(sample.label), percent(rate)] + of_ours(part))
+                rows.append([method_cell(results.methods, sample.method, sample.label), percent(rate)] + of_ours(part))
     return rows, marks
 
 
@@ -111,7 +111,9 @@ def first_candidate(results):
         shares = 100 * np.arange(1, len(iterations) + 1) / len(sample)
         places = np.unique(np.linspace(0, len(iterations) - 1, 200).astype(int))
         style = method_style(results.methods, sample.method, variant) | {"marker": ""}
-        axes.step(iterations[places], shares[places], where="post", label=sample.label, **style)
+        end = max(iterations[-1], np.nanmax(sample.iterations))  # the curve stays level to the limit
+        axes.step([*iterations[places], end], [*shares[places], shares[-1]], where="post", label=sample.label,
+                  **style)
     axes.set_xlabel("iterations")
     axes.set_ylabel("scenes with one [%]")
     axes.set_ylim(0, 102)

@@ -4,16 +4,16 @@ from . import measures
 from .comparison_figures import profile_figures, quality_figures
 from .figures import group
 from .load import CATEGORIES, label_of
-from .tables import Cell, Column, milliseconds, percent, table, text
+from .tables import Cell, Column, method_cell, milliseconds, percent, table, text
 
 _CATEGORY_TITLES = {"ground_truth": "ground truth %", "near_ground_truth": "near %", "too_short": "too short %",
                     "diverging_from_20": "diverging ≥ 20 m %", "diverging_below_20": "diverging < 20 m %",
                     "none": "none %"}
 
 
-def _key_cells(row):
+def _key_cells(results, row):
     label = label_of(row["method"], row.get("nearest"))
-    return [text(label), percent(row["false_positive_rate"]), Cell(f"{row['range']:g}", row["range"]),
+    return [method_cell(results.methods, row["method"], label), percent(row["false_positive_rate"]), Cell(f"{row['range']:g}", row["range"]),
             Cell(str(row["scenes"]), row["scenes"])]
 
 
@@ -36,7 +36,7 @@ def quality_table(results):
     for row in results.rows:
         part = _part(results, row)
         accurate = part.known("accurate")
-        rows.append(_key_cells(row) + [
+        rows.append(_key_cells(results, row) + [
             percent(row["success_share"], interval=measures.mean_interval(part.success, part.track),
                     measure="success_share"),
             percent(row["mean_iou"], interval=measures.mean_interval(part.iou, part.track), measure="mean_iou"),
@@ -57,7 +57,7 @@ def latency_table(results):
         part = _part(results, row)
         latency = row["latency_ms"]
         interval = measures.median_interval(part.latency, part.track)
-        rows.append(_key_cells(row) + [milliseconds(latency["median"], interval=interval, measure="median")] + [
+        rows.append(_key_cells(results, row) + [milliseconds(latency["median"], interval=interval, measure="median")] + [
             milliseconds(latency[key], measure=key)
             for key in ("mean", "shifted_geometric_mean", "p95", "p99", "max")] +
             [percent(row.get("within_budget_share"), measure="within_budget_share")])
@@ -69,7 +69,7 @@ def latency_table(results):
 
 
 def category_table(results):
-    rows = [_key_cells(row) + [percent(row["share"].get(key), measure=key) for key in CATEGORIES]
+    rows = [_key_cells(results, row) + [percent(row["share"].get(key), measure=key) for key in CATEGORIES]
             for row in results.rows]
     columns = _KEYS + [Column(_CATEGORY_TITLES[key]) for key in CATEGORIES]
     return table("categories", "What became of the scenes", columns, rows, row_attributes=_attributes(results),
@@ -92,7 +92,7 @@ def ratio_table(results):
             if ratio:
                 mean, interval, count = ratio
                 small = f"{interval[0]:.2f}–{interval[1]:.2f}" if interval else ""
-                rows.append([text(sample.label), text(fastest.label), Cell(f"{mean:.2f}", mean, small),
+                rows.append([method_cell(results.methods, sample.method, sample.label), text(fastest.label), Cell(f"{mean:.2f}", mean, small),
                              Cell(str(count), count)])
     if not rows:
         return '<p class="left-out"><b>Paired latencies.</b> Left out: no two methods saw the same cone sets.</p>'

@@ -4,7 +4,7 @@ import numpy as np
 
 from . import measures
 from .figures import drawn, left_out, percent_label
-from .theme import ACCENT, INK, SURFACE, legend, method_colour, method_style, new_figure
+from .theme import ACCENT, INK, SURFACE, legend, logarithmic, method_colour, method_style, new_figure
 
 REAL_TIME_BUDGET_MS = 50.0
 
@@ -83,6 +83,7 @@ def box_plot(axes, results, samples):
         for line in shapes["whiskers"][2 * i:2 * i + 2] + shapes["caps"][2 * i:2 * i + 2]:
             line.set(color=colour)
     axes.set_xscale("log")
+    logarithmic(axes.xaxis)
     axes.grid(False, axis="y")
     axes.set_xlabel("latency [ms]")
     axes.tick_params(axis="y", labelcolor=INK)
@@ -130,6 +131,8 @@ def profile_figures(results):
             style = method_style(results.methods, sample.method) | {"marker": ""}
             axes.step(places, 100 * shares, where="post", label=sample.label, **style)
         axes.set_xscale("log")
+        axes.set_xticks([tick for tick in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000) if tick <= most])
+        logarithmic(axes.xaxis)
         axes.set_xlabel("time / fastest method's time on the same scene")
         axes.set_ylabel("scenes solved [%]")
         axes.set_ylim(-2, 103)

@@ -12,6 +12,9 @@ CATEGORY_WORDS = {"ground_truth": "ground truth", "near_ground_truth": "near gro
                   "none": "no lane"}
 
 
+_ASPECT = 1.35  # width over height of a drawing
+
+
 def _points(frame, indices):
     """Car frame to drawing: x ahead becomes up, y to the left stays left; metres."""
     cones = frame["c"]
@@ -32,14 +35,17 @@ def _band(frame):
 
 def drawing(frame, samples, methods, subject):
     """All lanes of a scene, that of `subject` above the others."""
-    everything = _points(frame, range(len(frame["c"]) // 2)) + [(0.0, 0.0)]
-    xs, ys = zip(*everything)
-    half = max(max(abs(x) for x in xs), 0.5 * (max(ys) - min(ys)), 5.0) + 1.5
-    top = min(ys) - 1.5
-    height = max(max(ys) + 1.5 - top, half)
+    shown = set(frame["g"][0] + frame["g"][1])
+    for answer in frame["a"]:
+        shown.update(answer[0] + answer[1] if answer else ())
+    xs, ys = zip(*_points(frame, sorted(shown)), (0.0, 0.0))
+    middle = 0.5 * (min(xs) + max(xs))
+    half = 0.5 * max(max(xs) - min(xs), _ASPECT * (max(ys) - min(ys)), 12.0) + 3.0  # round what matters: the lanes
+    height = 2.0 * half / _ASPECT
+    top = 0.5 * (min(ys) + max(ys)) - 0.5 * height
     parts = [f'<path class="band" fill-rule="evenodd" d="{_band(frame)}"/>']
     split = len(frame["c"]) // 2 - frame["f"]
-    radius = half / 75
+    radius = half / 70
     for x, y in _points(frame, range(split, len(frame["c"]) // 2)):
         r = radius * 1.1
         parts.append(f'<path class="stray" d="M{x - r:.2f} {y - r:.2f}l{2 * r:.2f} {2 * r:.2f}m0 {-2 * r:.2f}'
@@ -59,7 +65,7 @@ def drawing(frame, samples, methods, subject):
         parts.append(f'<circle class="cone" cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}"/>')
     car = half / 26
     parts.append(f'<path class="car" d="M0 {-car:.2f}L{0.7 * car:.2f} {car:.2f}H{-0.7 * car:.2f}Z"/>')
-    return (f'<svg viewBox="{-half:.1f} {top:.1f} {2 * half:.1f} {height:.1f}" aria-hidden="true">'
+    return (f'<svg viewBox="{middle - half:.1f} {top:.1f} {2 * half:.1f} {height:.1f}" aria-hidden="true">'
             f'{"".join(parts)}</svg>')
 
 
@@ -67,7 +73,7 @@ def _card(data, samples, methods, label, word, scene):
     frame = data.frames[scene]
     slot = next(i for i, sample in enumerate(samples) if sample.label == label)
     answer = frame["a"][slot]
-    what = (f"IoU {100 * answer[4]:.1f} %, {CATEGORY_WORDS[CATEGORIES[answer[5]]]}, {answer[3]:.3g} ms" if answer
+    what = (f"IoU {100 * answer[4]:.1f} %, {CATEGORY_WORDS[CATEGORIES[answer[5]]]}, {answer[3]:.2f} ms" if answer
             else "no answer stored")
     return (f'<figure class="scene"><div role="img" aria-label="{escape(f"{word} scene of {label}: {what}")}">'
             f"{drawing(frame, samples, methods, label)}</div>"

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -99,8 +100,12 @@ class Results:
         return os.path.join(self.directory, name)
 
 
-def read_lines(path):
-    """Yields (line number, object) of a file in JSON Lines."""
+_SCENE_AT_START = re.compile(r'\{"(?:id|scene)":"([^"\\]*)"')
+
+
+def read_lines(path, scenes=None):
+    """Yields (line number, object) of a file in JSON Lines. With `scenes`, lines that begin with the id of another
+    scene are passed over unread: lanes with all their candidates are large."""
     try:
         stream = open(path, encoding="utf-8")
     except OSError as error:
@@ -109,7 +114,8 @@ def read_lines(path):
         number = 0
         try:
             for number, line in enumerate(stream, 1):
-                if not line.strip():
+                start = _SCENE_AT_START.match(line) if scenes is not None else None
+                if not line.strip() or (start and start[1] not in scenes):
                     continue
                 value = json.loads(line)
                 if not isinstance(value, dict):

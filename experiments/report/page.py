@@ -4,7 +4,7 @@ import json
 import pkgutil
 from html import escape
 
-from . import clc_figures, comparison, gallery, provenance, rld_figures, verdict
+from . import clc_figures, comparison, gallery, provenance, rld_figures, sweep, verdict
 from .load import CATEGORIES
 from .scenes import read_scenes
 from .theme import METHOD_COLOURS
@@ -47,7 +47,7 @@ def _viewer(results, data):
               for track, boundaries in results.tracks.items()}
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
-    content = {"methods": methods, "tracks": tracks, "laps": data.laps, "frames": data.frames,
+    content = {"methods": methods, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES]}
     return f'{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}</script>'
 
@@ -60,8 +60,8 @@ def render(results, published):
     """The whole page as text; the same results give the same bytes."""
     data = read_scenes(results)
     sections = (
-        ("verdict", "Verdict", verdict.html(results)),
-        ("comparison", "Comparison", comparison.html(results)),
+        ("verdict", "Verdict", verdict.html(results) + sweep.html(results)),
+        ("comparison", "Comparison", comparison.html(results) + sweep.figures(results)),
         ("rld", "Beside the RLD paper", rld_figures.html(results, published)),
         ("clc", "Beside the CLC paper", clc_figures.html(results, published)),
         ("gallery", "Scenes", gallery.html(results, data)),

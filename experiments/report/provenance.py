@@ -2,7 +2,15 @@
 
 from html import escape
 
+from .load import label_of
 from .measures import RESAMPLES
+
+
+def _word(value):
+    """An entry of a list; a method with its cone-set size as in the tables."""
+    if isinstance(value, dict) and "name" in value:
+        return label_of(value["name"], value.get("nearest"))
+    return str(value)
 
 
 def _flat(value, prefix=""):
@@ -10,13 +18,21 @@ def _flat(value, prefix=""):
         for key, inner in value.items():
             yield from _flat(inner, f"{prefix}{key}.")
     elif isinstance(value, list):
-        yield prefix[:-1], ", ".join(str(inner) for inner in value)
+        yield prefix[:-1], ", ".join(_word(inner) for inner in value)
     else:
         yield prefix[:-1], str(value)
 
 
 def html(results, data):
-    rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(results.run))
+    def listed(entries):
+        rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(entries))
+        return f'<dl class="run">{rows}</dl>'
+
+    kept = ("" if not results.run.get("candidates") else
+            "<li>This run kept all enumerated lanes to score them, which costs time: the latencies of enumerating "
+            "methods hold it.</li>")
+    run = {key: value for key, value in results.run.items() if key != "rld_parameters"}
+    parameters = results.run.get("rld_parameters", {})
     if data.missing:
         shown = "There are no scenes on this page."
     else:
@@ -37,7 +53,9 @@ side of the car, no edges cross, the width is 2.5 m to 6.5 m.</li>
 <li>A method marked n=12 saw only the 12 nearest cones ahead. Success and IoU still refer to all that is visible.</li>
 <li>Intervals are percentile bootstraps over whole tracks ({RESAMPLES} resamples, 95 %), as scenes of one track are
 alike; with few tracks they are rough. There are none where there is one track only.</li>
+{kept}
 <li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
 <li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
 </ul>
-<h3>Run</h3><dl class="run">{rows}</dl>"""
+<h3>Run</h3>{listed(run)}
+<h3>Parameters of RLD</h3>{listed(parameters) if parameters else "<p>Not stored.</p>"}"""

@@ -4,9 +4,9 @@ numbers beside."""
 import numpy as np
 
 from .figures import drawn, group, left_out, percent_label
-from .tables import Cell, Column, milliseconds, percent, table, text
+from .tables import Cell, Column, method_cell, milliseconds, percent, table, text
 from .comparison_figures import variants
-from .theme import ACCENT, INK, legend, method_colour, method_style, new_figure
+from .theme import ACCENT, legend, logarithmic, method_colour, method_style, new_figure
 
 TOPOLOGIES = ("straight", "circle", "curvy")
 
@@ -30,6 +30,7 @@ def latency_by_size(results, published):
     axes.plot([published["rld_cone_set"]], [published["rld_mean_ms"]], marker="*", markersize=11, linestyle="",
               color=ACCENT, label="RLD paper (solved)")
     axes.set_yscale("log")
+    logarithmic(axes.yaxis)
     axes.set_xlabel("cones in the set, n")
     axes.set_ylabel("latency [ms]")
     legend(axes)
@@ -58,6 +59,7 @@ def latency_distribution(results, published):
         axes.annotate(label, (value, 0.98), xycoords=("data", "axes fraction"), rotation=90, ha="right", va="top",
                       color=ACCENT, fontsize=8)
     axes.set_xscale("log")
+    logarithmic(axes.xaxis)
     axes.set_xlabel("latency [ms], bins of equal ratio")
     axes.set_ylabel("scenes [%]")
     legend(axes)
@@ -79,7 +81,7 @@ def solved_table(results, published):
     for sample in samples:
         solved = sample.solved == 1.0
         ordered = np.sort(sample.latency)
-        rows.append([text(sample.label), percent(solved.mean(), 2),
+        rows.append([method_cell(results.methods, sample.method, sample.label), percent(solved.mean(), 2),
                      milliseconds(sample.latency[solved].mean()) if solved.any() else Cell("–"),
                      milliseconds(ordered[max(0, int(np.ceil(0.95 * len(ordered))) - 1)]),
                      milliseconds(sample.latency.std()), Cell(str(len(sample)), len(sample))])
@@ -97,6 +99,9 @@ def inaccurate_by_topology(results, published):
         return [left_out(name, title, f"no method with n = {size} ran on a track called "
                          f"{', '.join(TOPOLOGIES[:-1])} or {TOPOLOGIES[-1]}.")]
     figures = []
+    shares = [1 - s.where((s.track == t) & (s.rate == rate)).accurate.mean() for s in samples for t in present
+              for rate in results.rates if np.any((s.track == t) & (s.rate == rate))]
+    most = max([row["inaccurate"] for row in published["rld"]] + [100 * share for share in shares])
     for topology in present:
         figure, axes = new_figure(height=2.7)
         for sample, variant in variants(samples):
@@ -108,15 +113,15 @@ def inaccurate_by_topology(results, published):
         exact = [(100 * row["rate"], row["inaccurate"]) for row in published["rld"]]
         axes.plot(*zip(*exact), marker="*", markersize=11, linestyle="", color=ACCENT,
                   label="RLD paper, all three (1:1 is a bound)")
-        axes.set_xticks([100 * rate for rate in results.rates], [percent_label(rate) for rate in results.rates])
-        axes.set_ylim(bottom=0)
+        ticks = sorted({round(rate, 4) for rate in results.rates} | {round(row["rate"], 4) for row in published["rld"]})
+        axes.set_xticks([100 * rate for rate in ticks], [percent_label(rate) for rate in ticks])
+        axes.set_ylim(0, 1.06 * most)
         axes.set_xlabel("false positives [% of all points]")
         axes.set_ylabel("inaccurate [%]")
-        axes.set_title(topology, color=INK, fontsize=9, loc="left")
         legend(axes)
         figures.append(drawn(f"{name}-{topology}", f"{title}: {topology}",
                              "Share of scenes where one of the paper's four checks fails. 16.7 % is the paper's "
-                             "ratio 1:5, 50 % its 1:1.", figure))
+                             "ratio 1:5, 50 % its 1:1. One scale for all topologies.", figure))
     return figures
 
 

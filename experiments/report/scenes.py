@@ -1,6 +1,8 @@
 """The scenes that viewer and gallery show: cones in the car's frame, the ground truth, each method's lane. They are
 reduced to whole centimetres and to as many poses as the page has room for."""
 
+import glob
+import json
 import math
 import os
 from dataclasses import dataclass, field
@@ -23,6 +25,7 @@ GALLERY_RATE = 0.3
 class SceneData:
     frames: dict = field(default_factory=dict)  # scene id -> frame
     laps: list = field(default_factory=list)  # {"track", "rate", "range", "scenes": [ids in order of travel]}
+    start: str = ""  # the scene to begin with
     stride: int = 1
     scene_count: int = 0  # scored ones, of which `frames` has a part
     picks: dict = field(default_factory=dict)  # label -> [(word, scene id)]
@@ -51,7 +54,8 @@ def _laps(results):
     place = {}
     for sample in results.samples:
         for row in zip(sample.scene, sample.track, sample.rate, sample.range, sample.cones):
-            place.setdefault(row[0], row[1:])
+            if row[0] not in place or row[4] > place[row[0]][3]:
+                place[row[0]] = row[1:]
     laps = {}
     for scene, (track, rate, range_m, _) in place.items():
         laps.setdefault((track, rate, range_m), []).append(scene)
@@ -101,14 +105,12 @@ def _frame(path, number, scene, boundary, noise_m):
         raise InputError(f"{path}:{number}: no scene with pose, cones and ground truth ({error})") from None
 
 
-def _add_answers(results, frames, indices):
-    files = sorted({sample.method for sample in results.samples})
-    for method in files:
-        path = results.path(f"{method}.lanes.jsonl")
-        slots = {sample.label: slot for slot, sample in enumerate(results.samples)}
-        scores = {sample.label: {scene: row for row, scene in enumerate(sample.scene) if scene in frames}
-                  for sample in results.samples if sample.method == method}
-        for number, line in read_lines(path):
+def _add_answers(results, lanes_files, frames, indices):
+    slots = {sample.label: slot for slot, sample in enumerate(results.samples)}
+    scores = {sample.label: {scene: row for row, scene in enumerate(sample.scene) if scene in frames}
+              for sample in results.samples}
+    for path in lanes_files:
+        for number, line in read_lines(path, frames):
             scene = require(path, number, line, "scene", (str,))
             label = label_of(require(path, number, line, "method", (str,)), line.get("nearest"))
             row = scores.get(label, {}).get(scene)
@@ -127,12 +129,29 @@ def _add_answers(results, frames, indices):
                 None if math.isnan(accurate) else int(accurate)]
 
 
+def _thin(laps, picks, frames, stride):
+    """Drops frames until the rest has room, and returns one pose in how many is left. The estimate beforehand
+    keeps most of them from being read; cone sets cut to a size hide how many cones a scene has."""
+    picked = {scene for chosen in picks.values() for _, scene in chosen}
+    sizes = {scene: len(json.dumps(frame, separators=(",", ":"))) + len(scene) for scene, frame in frames.items()}
+    while sum(sizes[scene] for scene in frames) > MOST_BYTES:
+        stride *= 2  # of the poses that were read
+        kept = {scene for scenes in laps.values() for scene in scenes[::stride]} | picked
+        if all(scene in kept for scene in frames) and stride > max(map(len, laps.values())):
+            break  # the gallery's alone
+        for scene in [scene for scene in frames if scene not in kept]:
+            del frames[scene]
+    return stride
+
+
 def read_scenes(results):
     """What fits on the page, or why there is nothing."""
     scenes_file = results.path("scenes.scenes.jsonl")
-    for path in [scenes_file] + [results.path(f"{sample.method}.lanes.jsonl") for sample in results.samples]:
-        if not os.path.exists(path):
-            return SceneData(missing=f"the results hold no {os.path.basename(path)}.")
+    if not os.path.exists(scenes_file):
+        return SceneData(missing=f"the results hold no {os.path.basename(scenes_file)}.")
+    lanes_files = sorted(glob.glob(results.path("*.lanes.jsonl")))
+    if not lanes_files:
+        return SceneData(missing="the results hold no lanes files.")
     laps, stride, count = _laps(results)
     picks = _picks(results)
     wanted = {scene for scenes in laps.values() for scene in scenes[::stride]}
@@ -143,7 +162,7 @@ def read_scenes(results):
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
     frames, indices = {}, {}
-    for number, line in read_lines(scenes_file):
+    for number, line in read_lines(scenes_file, wanted):
         scene = line.get("id")
         if scene in wanted:
             frame, index_of = _frame(scenes_file, number, line, boundaries.get(line.get("track")), noise_m)
@@ -151,7 +170,9 @@ def read_scenes(results):
             frames[scene], indices[scene] = frame, index_of
     if len(frames) < len(wanted):
         raise InputError(f"{scenes_file}: has no scene {min(wanted - set(frames))}")
-    _add_answers(results, frames, indices)
+    _add_answers(results, lanes_files, frames, indices)
+    stride = _thin(laps, picks, frames, stride)
     lap_list = [{"track": track, "rate": rate, "range": range_m, "scenes": [s for s in scenes if s in frames]}
                 for (track, rate, range_m), scenes in laps.items()]
-    return SceneData(frames, lap_list, stride, count, picks)
+    start = next(scene for chosen in picks.values() for word, scene in chosen if word == "median")
+    return SceneData(frames, [lap for lap in lap_list if lap["scenes"]], start, stride, count, picks)

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from html import escape
 
+from .theme import METHOD_COLOURS
+
 
 @dataclass(frozen=True)
 class Column:
@@ -18,10 +20,15 @@ class Cell:
     value: object = None
     extra: str = ""
     attributes: dict = field(default_factory=dict)
+    colour: int | None = None  # of a method's swatch
 
 
 def text(value):
     return Cell(value, value)
+
+
+def method_cell(methods, method, label):
+    return Cell(label, label, colour=methods.index(method) % METHOD_COLOURS)
 
 
 def _range(interval, show):
@@ -40,7 +47,7 @@ def percent(share, digits=1, interval=None, **attributes):
 
 def milliseconds(value, interval=None, **attributes):
     def show(number):
-        return f"{number:.2f}" if number < 100 else f"{number:.0f}"
+        return f"{number:.2f}" if number < 1000 else f"{number:.0f}"
     return Cell(show(value), float(value), _range(interval, show), attributes)
 
 
@@ -51,7 +58,8 @@ def _cell_html(cell, column, tag):
     extra = f' <small>{escape(cell.extra)}</small>' if cell.extra else ""
     name = ' class="number"' if column.kind == "number" else ""
     scope = ' scope="row"' if tag == "th" else ""
-    return f"<{tag}{scope}{name}{attributes}>{escape(cell.text)}{extra}</{tag}>"
+    swatch = "" if cell.colour is None else f'<span class="swatch" style="background:var(--m{cell.colour})"></span>'
+    return f"<{tag}{scope}{name}{attributes}>{swatch}{escape(cell.text)}{extra}</{tag}>"
 
 
 def table(name, caption, columns, rows, published_rows=(), row_attributes=None, note=""):

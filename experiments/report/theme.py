@@ -38,6 +38,12 @@ def method_style(methods, method, variant=0):
             "linestyle": _DASHES[(index // METHOD_COLOURS + variant) % len(_DASHES)]}
 
 
+def logarithmic(axis):
+    """Ticks at powers of ten, written out: 0.1, 1, 10."""
+    axis.set_major_formatter(lambda value, _: f"{value:g}")
+    axis.set_minor_formatter(lambda value, _: "")
+
+
 def new_figure(height=2.9, width=4.7):
     return pyplot.subplots(figsize=(width, height), layout="constrained")
 

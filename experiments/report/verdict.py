@@ -30,10 +30,11 @@ def difference_interval(first, second, values_of):
     return measures.mean_interval(differences, np.array([tracks[scene] for scene in scenes], dtype=object))
 
 
-MEASURES = (("accurate", "accurate lanes", accurate_values), ("success", "success", success_values))
+MEASURES = (("accurate", "accurate", accurate_values), ("success", "successful", success_values))
+_NBSP = "\u00a0"
 
 
-def _leaders(parts, values_of):
+def leaders_of(parts, values_of):
     """(mean, samples): the highest mean, and all that the tracks do not tell from it. None without values."""
     means = [(float(np.mean(list(values_of(part)[0].values()))), part) for part in parts if values_of(part)[0]]
     if not means:
@@ -60,7 +61,7 @@ def _grid(results):
     for nearest in sizes + (["any"] if len(sizes) > 1 else []):
         samples = [s for s in results.samples if nearest == "any" or s.nearest == nearest]
         for name, _, values_of in MEASURES:
-            grid[nearest, name] = [_leaders([s.at(rate) for s in samples], values_of) for rate in results.rates]
+            grid[nearest, name] = [leaders_of([s.at(rate) for s in samples], values_of) for rate in results.rates]
     return grid
 
 
@@ -83,20 +84,49 @@ def _stretches(rates, leaders):
     return runs
 
 
-def _sentence(rates, nearest, title, leaders):
+def _span(values, digits=1):
+    """First and last of what goes with neighbouring rates."""
+    shown = [f"{100 * value:.{digits}f}{_NBSP}%" for value in values]
+    return shown[0] if len(shown) == 1 else f"{shown[0]} to {shown[-1]}"
+
+
+def _pieces(rates, leaders):
+    """Who is ahead where, as text; "at every rate" where nothing changes."""
     runs = _stretches(rates, leaders)
-    if not runs:
-        return ""
     pieces = []
     for labels, first, last, means in runs:
-        where = (f"at {percent_label(first)} %" if first == last else
-                 f"from {percent_label(first)} to {percent_label(last)} %")
-        numbers = f"{100 * means[0]:.1f} %" if len(means) == 1 else f"{100 * means[0]:.1f} to {100 * means[-1]:.1f} %"
-        level = ", level within what the tracks can tell" if len(labels) > 1 else ""
+        if len(runs) == 1 and len(means) == len(rates) > 1:
+            where = "at every rate of false positives"
+        elif first == last:
+            where = f"at {percent_label(first)}{_NBSP}% false positives"
+        else:
+            where = f"from {percent_label(first)} to {percent_label(last)}{_NBSP}% false positives"
         names = _joined([f"<b>{escape(label)}</b>" for label in labels])
-        pieces.append(f"{names} {where} false positives ({numbers}{level})")
+        level = "level, " if len(labels) > 1 else ""
+        pieces.append(f"{names} {where} ({level}{_span(means)})")
+    return ", ".join(pieces)
+
+
+def _sentence(results, nearest, grid):
+    """The leaders on one cone set by both measures."""
     lead = "Of all methods" if nearest == "any" else f"On {_name_of_set(nearest)}"
-    return f"<li>{lead}, most {title}: {'; '.join(pieces)}.</li>"
+    samples = [sample for sample in results.samples if nearest in ("any", sample.nearest)]
+    parts = []
+    for name, words, _ in MEASURES:
+        known = [cell for cell in grid[nearest, name] if cell]
+        if not known:
+            continue
+        if len(samples) == 1:
+            parts.append(f"{words} in {_span([mean for mean, _ in known])}")
+        else:
+            parts.append(f"most often {words}: {_pieces(results.rates, grid[nearest, name])}")
+    if not parts:
+        return ""
+    if len(samples) == 1:
+        rates = f"{percent_label(results.rates[0])} to {percent_label(results.rates[-1])}{_NBSP}%"
+        return (f"<li>{lead}, <b>{escape(samples[0].label)}</b> alone: {', '.join(parts)} of the scenes, false "
+                f"positives from {rates}.</li>")
+    return f"<li>{lead}, {'; '.join(parts)}.</li>"
 
 
 def _speed_sentence(results):
@@ -106,7 +136,7 @@ def _speed_sentence(results):
     for sample in results.samples:
         share = float(np.mean(sample.latency > REAL_TIME_BUDGET_MS))
         if share > 0:
-            late.append(f"{escape(sample.label)} in {100 * share:.2g} %")
+            late.append(f"{escape(sample.label)} in {100 * share:.2g}{_NBSP}%")
     budget = (f"The 50 ms of a 20 Hz LiDAR are exceeded by {_joined(late)} of the scenes." if late else
               "No method exceeds the 50 ms of a 20 Hz LiDAR in any scene.")
     return (f"<li>Lowest median latency: <b>{escape(fastest)}</b>, {medians[fastest]:.2f} ms over all scenes. "
@@ -146,7 +176,7 @@ def _grid_table(results, grid):
     columns = [Column("cone set", "text"), Column("measure", "text")] + [
         Column(f"{percent_label(rate)} % false positives", "text") for rate in results.rates]
     rows = []
-    titles = {name: title for name, title, _ in MEASURES}
+    titles = {name: words for name, words, _ in MEASURES}
     for (nearest, name), leaders in grid.items():
         where = "any" if nearest == "any" else "all visible" if nearest is None else f"nearest {nearest}"
         cells = []
@@ -159,12 +189,12 @@ def _grid_table(results, grid):
         rows.append([text(where), text(titles[name])] + cells)
     return table("winners", "Ahead, by cone set and false positives", columns, rows,
                  note="All ranges together. Several names: their paired difference to the best has a 95 % interval, "
-                 "tracks resampled, that holds zero. The number is the best one's mean.")
+                 "tracks resampled, that holds zero. The number is the best one's mean. Accurate refers to the method's own "
+                 "cone set, so of all methods those on few cones have the easier task; success does not.")
 
 
 def html(results):
     grid = _grid(results)
-    sentences = "".join(_sentence(results.rates, nearest, dict((n, t) for n, t, _ in MEASURES)[name], leaders)
-                        for (nearest, name), leaders in grid.items())
+    sentences = "".join(_sentence(results, nearest, grid) for nearest in dict.fromkeys(key[0] for key in grid))
     return (_tiles(results) + f'<ul class="verdict">{sentences}{_speed_sentence(results)}'
             f"{_agreement_sentence(results)}</ul>" + _grid_table(results, grid))

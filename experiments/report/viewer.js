@@ -94,11 +94,12 @@
     }
     context.fill("evenodd");
 
-    data.methods.forEach((method, i) => {
+    // Lanes that lie on one another show as stripes: the first ones are broader.
+    const visible = data.methods.map((_, i) => i).filter((i) => current.a[i] && state.shown[i]);
+    visible.forEach((i, place) => {
       const answer = current.a[i];
-      if (!answer || !state.shown[i]) return;
-      context.strokeStyle = colour("--m" + method.colour);
-      context.lineWidth = 2.4;
+      context.strokeStyle = colour("--m" + data.methods[i].colour);
+      context.lineWidth = 2.2 + 2.4 * (visible.length - 1 - place);
       context.beginPath();
       for (const side of answer.slice(0, 2)) trace(context, at(side), answer[2]);
       context.stroke();
@@ -303,16 +304,19 @@
     go(distances.indexOf(Math.min(...distances)));
   });
 
+  const open = (name) => {
+    const lap = data.laps.find((one) => one.scenes.includes(name));
+    showLap(lap, lap.scenes.indexOf(name));
+  };
   for (const button of document.querySelectorAll("[data-open]")) {
     button.addEventListener("click", () => {
-      const lap = data.laps.find((one) => one.scenes.includes(button.dataset.open));
       stop();
-      showLap(lap, lap.scenes.indexOf(button.dataset.open));
+      open(button.dataset.open);
       box.scrollIntoView();
       box.focus({ preventScroll: true });
     });
   }
   document.addEventListener("themechange", draw);
   addEventListener("resize", draw);
-  showLap(state.lap, 0);
+  open(data.start);
 })();

@@ -1,0 +1,142 @@
+"""browser_test.py PAGE [CHROMIUM]: uses the page as a reader would, in headless Chromium: plays the viewer, turns
+methods off, sorts, filters, changes the theme. Fails on anything the page reports as an error. Exit code 77 without
+Chromium."""
+
+import html
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+WATCH = """<script>
+const problems = [];
+addEventListener("error", (event) => problems.push(String(event.message)));
+addEventListener("unhandledrejection", (event) => problems.push(String(event.reason)));
+console.error = (...words) => problems.push(words.join(" "));
+</script>"""
+
+USE = """<script>
+addEventListener("load", async () => {
+  const check = (holds, what) => { if (!holds) problems.push("not so: " + what); };
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  const box = document.getElementById("viewer"), scene = document.getElementById("view-scene");
+  const key = (name) => box.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true }));
+  const pixels = () => scene.toDataURL();
+  const pose = () => Number(document.getElementById("view-pose").value);
+  const last = () => Number(document.getElementById("view-pose").max);
+  try {
+    const track = document.getElementById("view-track");
+    track.value = "circle";
+    track.dispatchEvent(new Event("change"));
+    const slider = document.getElementById("view-pose");
+    slider.value = 0;
+    slider.dispatchEvent(new Event("input"));
+    check(box.dataset.scene.startsWith("circle/"), "the chosen track is shown");
+
+    const before = pixels(), name = box.dataset.scene;
+    document.getElementById("view-next").click();
+    check(pose() === 1 && box.dataset.scene !== name, "the button goes to the next pose");
+    check(pixels() !== before, "another pose looks different");
+    key("ArrowLeft");
+    check(pose() === 0 && pixels() === before, "the arrow goes back");
+
+    const toggles = [...document.querySelectorAll("#view-methods input")];
+    check(toggles.length === 3, "every method has a toggle");
+    for (const toggle of toggles) toggle.click();
+    const bare = pixels();
+    check(bare !== before, "lanes can be turned off");
+    key("3");
+    check(pixels() !== bare && toggles[2].checked, "a digit turns one on");
+    for (const toggle of toggles.slice(0, 2)) toggle.click();
+    check(pixels() === before, "and all are back");
+
+    const rate = document.getElementById("view-rate");
+    rate.selectedIndex = 0;
+    rate.dispatchEvent(new Event("change"));
+    const clean = box.dataset.scene;
+    key("ArrowUp");
+    check(box.dataset.scene !== clean && /fp_0.30/.test(box.dataset.scene), "up takes the next rate");
+    check(document.querySelector("#view-methods td").textContent !== "", "the answers are listed");
+
+    document.getElementById("view-speed").value = "25";
+    key(" ");
+    await wait(400);
+    check(pose() > 0, "space plays");
+    await wait(60 * (last() + 5));
+    check(pose() === last() && document.getElementById("view-play").textContent === "▶", "the lap ends");
+
+    const map = document.getElementById("view-map");
+    const place = map.getBoundingClientRect();
+    map.dispatchEvent(new MouseEvent("click", { clientX: place.x + 5, clientY: place.y + place.height / 2 }));
+    scene.dispatchEvent(new PointerEvent("pointermove", { clientX: 5, clientY: 5 }));
+
+    const link = document.querySelector("[data-open]");
+    link.click();
+    check(box.dataset.scene === link.dataset.open, "a scene of the gallery opens");
+
+    const table = document.querySelector("#quality table");
+    const column = [...table.tHead.rows[0].cells].findIndex((cell) => cell.textContent === "success %");
+    const values = () => [...table.tBodies[0].rows].map((row) => Number(row.cells[column].dataset.value));
+    table.tHead.rows[0].cells[column].click();
+    check(String(values()) === String(values().sort((a, b) => b - a)), "the first click sorts downward");
+    table.tHead.rows[0].cells[column].click();
+    check(String(values()) === String(values().sort((a, b) => a - b)), "the second one upward");
+
+    const filter = document.querySelector('[data-filter="method"]');
+    filter.value = "clc";
+    filter.dispatchEvent(new Event("change"));
+    const visible = [...table.tBodies[0].rows].filter((row) => !row.hidden);
+    check(visible.length === 2 && visible.every((row) => row.dataset.method === "clc"), "the filter leaves CLC");
+
+    const ground = () => getComputedStyle(document.body).backgroundColor;
+    const light = ground(), drawn = pixels();
+    document.getElementById("theme").click();
+    check(ground() !== light && pixels() !== drawn, "the theme changes, the drawing with it");
+    check(document.documentElement.scrollWidth <= innerWidth, "nothing is wider than the screen");
+  } catch (error) {
+    problems.push(String(error.stack || error));
+  }
+  const result = document.createElement("pre");
+  result.id = "outcome";
+  result.textContent = JSON.stringify(problems);
+  document.body.append(result);
+});
+</script>"""
+
+
+def problems_at(chromium, page, width, folder):
+    done = subprocess.run(
+        [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync",
+         f"--user-data-dir={os.path.join(folder, str(width))}", f"--window-size={width},900",
+         "--virtual-time-budget=20000", "--dump-dom", "file://" + page],
+        capture_output=True, text=True, check=False, timeout=120)
+    outcome = re.search(r'<pre id="outcome">(.*?)</pre>', done.stdout, flags=re.S)
+    if not outcome:
+        return [f"the browser gave no outcome, exit code {done.returncode}: {done.stderr[-2000:]}"]
+    return json.loads(html.unescape(outcome[1]))
+
+
+def main():
+    if len(sys.argv) < 3 or not os.access(sys.argv[2], os.X_OK):
+        print("skipped: there is no Chromium (Debian: apt-get install chromium)")
+        return 77
+    page, chromium = sys.argv[1:3]
+    with open(page, encoding="utf-8") as stream:
+        text = stream.read()
+    with tempfile.TemporaryDirectory() as folder:
+        copy = os.path.join(folder, "page.html")
+        with open(copy, "w", encoding="utf-8") as stream:
+            stream.write(text.replace("<head>", "<head>" + WATCH, 1).replace("</body>", USE + "</body>", 1))
+        failed = False
+        for width in (1280, 500):
+            for problem in problems_at(chromium, copy, width, folder):
+                print(f"{width} px wide: {problem}")
+                failed = True
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,201 @@
+"""page_test.py PROGRAM RESULTS: the page that PROGRAM made of RESULTS is well-formed, stands alone and shows the
+numbers of results.jsonl; made again it is the same; wrong input is told in one line."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from html.parser import HTMLParser
+
+PROGRAM, RESULTS = sys.argv[1:3]
+VOID = {"meta", "link", "input", "br"}
+
+
+class Page(HTMLParser):
+    """Keeps what the tests ask for, and what is wrong."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.wrong, self.ids, self.outside = [], [], [], []
+        self.rows, self.words = {}, {}
+        self.table, self.row = None, None
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, pairs):
+        attributes = dict(pairs)
+        if "id" in attributes:
+            self.ids.append(attributes["id"])
+        for key in ("src", "href"):
+            if key in attributes and not attributes[key].startswith(("#", "data:")):
+                self.outside.append(attributes[key])
+        if tag == "div" and attributes.get("class") == "table":
+            self.table = attributes["id"]
+        if tag == "tr" and "data-rate" in attributes:
+            self.row = (self.table, attributes["data-method"], float(attributes["data-rate"]),
+                        float(attributes["data-range"]))
+        if tag == "td" and self.row and "data-measure" in attributes:
+            self.rows.setdefault(self.row, {})[attributes["data-measure"]] = [attributes.get("data-value"), ""]
+            self.measure = attributes["data-measure"]
+        elif tag == "small":
+            self.measure = None
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, pairs):
+        self.handle_starttag(tag, pairs)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append((tag, self.getpos()))
+        if tag == "td":
+            self.measure = None
+        if tag == "tr":
+            self.row = None
+
+    def handle_data(self, text):
+        if self.row and getattr(self, "measure", None):
+            self.rows[self.row][self.measure][1] += text.strip()
+        if self.open and self.open[-1] not in ("script", "style"):
+            self.words[self.open[-1]] = self.words.get(self.open[-1], "") + text
+
+
+def report(results, page, *options):
+    return subprocess.run([PROGRAM, "report", "--results", results, "--out", page, *options], capture_output=True,
+                          text=True, check=False)
+
+
+def lines(name):
+    with open(os.path.join(RESULTS, name), encoding="utf-8") as stream:
+        return [json.loads(line) for line in stream]
+
+
+class ReportPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with open(os.path.join(RESULTS, "page.html"), encoding="utf-8") as stream:
+            cls.text = stream.read()
+        cls.page = Page(cls.text)
+
+    def test_is_well_formed_and_stands_alone(self):
+        self.assertEqual(self.page.wrong, [])
+        self.assertEqual(self.page.open, [])
+        self.assertEqual(self.page.outside, [])
+        self.assertEqual(sorted(self.page.ids), sorted(set(self.page.ids)))
+        styles = "".join(re.findall(r"<style>(.*?)</style>", self.text, flags=re.S))
+        self.assertNotIn("url(", styles)
+        self.assertNotIn("@import", styles)
+
+    def test_figures_refer_to_what_is_there(self):
+        used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', self.text))
+        self.assertEqual(used - set(self.page.ids), set())
+
+    def test_has_every_figure_or_says_why_not(self):
+        for name in ("winners", "by-size", "accurate-by-size", "success-by-rate", "latency", "rld-fig-5", "rld-fig-6",
+                     "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12", "clc-fig-15",
+                     "clc-fig-16a", "clc-fig-16b"):
+            self.assertIn(name, self.page.ids)
+        self.assertTrue({"rld-fig-7-straight", "rld-fig-7-circle"} <= set(self.page.ids))
+        self.assertNotIn("the results hold no sweep", self.text)
+
+    def test_numbers_are_those_of_the_results(self):
+        checked = 0
+        for row in lines("results.jsonl"):
+            label = row["method"] + (f" n={row['nearest']}" if "nearest" in row else "")
+            key = (label, row["false_positive_rate"], row["range"])
+            stored = {"quality": {k: row.get(k) for k in ("success_share", "mean_iou", "accurate_share",
+                                                          "solved_share", "complete_share")},
+                      "latencies": {**row["latency_ms"], "within_budget_share": row["within_budget_share"]},
+                      "categories": row["share"]}
+            for table, values in stored.items():
+                for measure, (value, shown) in self.page.rows[(table, *key)].items():
+                    if values[measure] is None:
+                        self.assertEqual((value, shown), (None, "–"))
+                        continue
+                    self.assertEqual(float(value), values[measure], (table, key, measure))
+                    scale = 1.0 if table == "latencies" and measure != "within_budget_share" else 100.0
+                    digits = len(shown.partition(".")[2])
+                    self.assertAlmostEqual(float(shown), scale * values[measure], delta=0.5001 * 10.0 ** -digits)
+                    checked += 1
+        self.assertGreater(checked, 6 * 12)
+
+    def test_scenes_are_those_of_the_lanes(self):
+        found = re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', self.text, flags=re.S)
+        data = json.loads(found[1])
+        scored = {line["scene"] for line in lines("scores.jsonl")}
+        self.assertEqual(set(data["frames"]), scored)
+        self.assertEqual({scene for lap in data["laps"] for scene in lap["scenes"]}, scored)
+        scene = next(line for line in lines("scenes.scenes.jsonl") if line["id"] == data["start"])
+        frame = data["frames"][scene["id"]]
+        cones = {cone["id"]: (cone["x"], cone["y"]) for cone in scene["cones"]}
+        self.assertEqual(len(frame["c"]), 2 * len(cones))
+        first = frame["g"][0][0]
+        pose, (x, y) = scene["pose"], cones[scene["ground_truth"]["left"][0]]
+        away = ((x - pose["x"]) ** 2 + (y - pose["y"]) ** 2) ** 0.5
+        self.assertAlmostEqual((frame["c"][2 * first] ** 2 + frame["c"][2 * first + 1] ** 2) ** 0.5, 100 * away,
+                               delta=1.0)
+        self.assertGreater(frame["c"][2 * first + 1], 0)  # on the car's left
+        self.assertEqual(round(frame["f"] / len(cones), 1), 0.3)  # the rate of the gallery
+
+    def test_names_no_place_of_this_machine(self):
+        self.assertNotIn(os.path.dirname(RESULTS), self.text)
+
+    def test_made_again_it_is_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            again = os.path.join(folder, "again.html")
+            done = report(RESULTS, again)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            with open(again, encoding="utf-8") as stream:
+                self.assertEqual(stream.read(), self.text)
+            self.assertEqual(os.listdir(folder), ["again.html"])
+
+    def refused(self, results, page, *options):
+        done = report(results, page, *options)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertFalse(os.path.exists(page))
+        return done.stderr
+
+    def test_wrong_input_is_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = os.path.join(folder, "page.html")
+            self.assertIn("is no directory", self.refused(os.path.join(folder, "nothing"), page))
+            self.assertIn("nowhere", self.refused(RESULTS, os.path.join(folder, "nowhere", "page.html")))
+            self.assertIn("matplotlib", self.refused(RESULTS, page, "--python", os.path.join(folder, "no-python")))
+            copy = os.path.join(folder, "copy")
+            shutil.copytree(RESULTS, copy)
+            scores = os.path.join(copy, "scores.jsonl")
+            with open(scores, encoding="utf-8") as stream:
+                whole = stream.read().splitlines(keepends=True)
+            for change, complaint in ((lambda rows: rows[:-1], "scores of"),
+                                      (lambda rows: [rows[0].replace('"iou"', '"ion"')] + rows[1:], ":1: iou: is missing"),
+                                      (lambda rows: rows[:2] + ["{\n"] + rows[3:], "scores.jsonl:3: ")):
+                with open(scores, "w", encoding="utf-8") as stream:
+                    stream.writelines(change(whole))
+                self.assertIn(complaint, self.refused(copy, page))
+            os.unlink(os.path.join(copy, "run.json"))
+            self.assertIn("run.json", self.refused(copy, page))
+
+    def test_without_scenes_it_says_so(self):
+        with tempfile.TemporaryDirectory() as folder:
+            copy = os.path.join(folder, "copy")
+            shutil.copytree(RESULTS, copy)
+            os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
+            shutil.rmtree(os.path.join(copy, "sweep"))
+            page = os.path.join(folder, "page.html")
+            self.assertEqual(report(copy, page).returncode, 0)
+            with open(page, encoding="utf-8") as stream:
+                text = stream.read()
+            self.assertIn("the results hold no scenes.scenes.jsonl", text)
+            self.assertIn("the results hold no sweep", text)
+            self.assertEqual(Page(text).wrong, [])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
