@@ -4,7 +4,6 @@
 #include "model/bound_certificate.hpp"
 #include "model/check.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "tests/random_scenes.hpp"
 #include "solvers/cbc_solver.hpp"
 #include "solvers/milp_rld_solver.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
@@ -13,6 +12,7 @@
 #include "solvers/path_pair/leg_search.hpp"
 #include "solvers/path_pair/prices.hpp"
 #include "solvers/path_pair_solver.hpp"
+#include "tests/random_scenes.hpp"
 
 #include <algorithm>
 #include <functional>

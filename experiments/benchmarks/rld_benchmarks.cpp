@@ -3,9 +3,9 @@
 // among five points, or those of the file that the environment variable CONELANE_SCENES names. An iteration
 // is one scene; the scenes take turns.
 
-#include "experiments/generated_tracks.hpp"
-#include "experiments/scene_file.hpp"
-#include "experiments/scene_generation.hpp"
+#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 

@@ -1,6 +1,6 @@
-#include "experiments/files/atomic_file.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
+#include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"

@@ -1,7 +1,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
-#include "experiments/formulation_table.hpp"
 #include "experiments/files/scene_file.hpp"
+#include "experiments/formulation_table.hpp"
 
 #include <memory>
 #include <string>
