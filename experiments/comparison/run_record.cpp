@@ -43,7 +43,11 @@ std::string run_record(const ComparisonOptions& options) {
     for (const RldParameterField& field : rld_parameter_fields()) {
         parameters[std::string(field.key)] = options.run.method.rld_parameters.*field.value;
     }
-    parameters["pairing"] = to_string(options.run.method.rld_parameters.pairing);
+    const RldParameters& rld = options.run.method.rld_parameters;
+    parameters["pairing"] = to_string(rld.pairing);
+    parameters["w_color"] = rld.w_color;
+    parameters["use_confidence"] = rld.use_confidence;
+    parameters["forbid_crossing"] = rld.forbid_crossing;
     const SceneOptions& scenes = options.scenes;
     nlohmann::ordered_json record{{"commit", origin.commit},
                                   {"compiler", origin.compiler},
