@@ -135,10 +135,10 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
         if (value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         count_usage(here.graph);
-        if (options_.complete_walks || depth > 0) {
+        if (options_.complete_walks) {
             if (step == next_try) {
                 const double before = incumbent_.cutoff();
-                const std::array<std::vector<int>, 2> walks = relaxation_.walks(here.graph);
+                const std::array<std::vector<int>, 2>& walks = relaxation_.walks(here.graph);
                 for (int leg = 0; leg < 2; ++leg) {
                     pair_search_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
                                           tolerance_, 60);

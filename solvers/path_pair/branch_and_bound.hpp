@@ -54,7 +54,6 @@ class BranchAndBound {
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
-    bool try_walks(const ResidualGraph& graph, int step);
     bool fix(Node& node);
     bool remember_a_cone(Node& node);
     struct Branching {
