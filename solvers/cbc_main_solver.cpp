@@ -84,16 +84,19 @@ class CbcMainSession : public MilpSession {
         return {text.data(), end.ptr};
     }
 
+    /// Preprocessing that runs out of time calls the program infeasible, so that claim counts in the first
+    /// half of the time alone.
     void read(const CbcModel& model, const Deadline& deadline, MilpReport& report) const {
         report.nodes = model.getNodeCount();
         const bool has_point = model.bestSolution() != nullptr;
         if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
-        if (model.isProvenOptimal() && has_point) {
+        const bool stopped = deadline.passed() || model.isSecondsLimitReached();
+        if (model.isProvenOptimal() && has_point && !stopped) {
             report.status = SolveStatus::optimal;
             report.bound = model.getObjValue();
-        } else if (model.isProvenInfeasible()) {
+        } else if (model.isProvenInfeasible() && !deadline.half_passed()) {
             report.status = SolveStatus::infeasible;
-        } else if (deadline.passed() || model.isSecondsLimitReached()) {
+        } else if (stopped || model.isProvenInfeasible()) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
         } else {
             report.status = SolveStatus::error;
