@@ -21,6 +21,8 @@ constexpr std::int64_t kFirstBudget = 2000;
 constexpr int kRestSteps = 2;
 constexpr double kLeastRepeat = 0.02;
 constexpr int kMostArcs = 1500;
+constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
+constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
 constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
@@ -141,9 +143,9 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
                 const std::array<std::vector<int>, 2>& walks = relaxation_.walks(here.graph);
                 for (int leg = 0; leg < 2; ++leg) {
                     pair_search_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
-                                          tolerance_, 60);
+                                          tolerance_, incumbent_.found() ? kTries : kFirstTries);
                 }
-                next_try = step + (incumbent_.cutoff() < before ? 2 : 4 + step / 2);
+                next_try = step + (!incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + step / 2);
             }
         }
         if (value >= cutoff()) return Verdict::closed;
