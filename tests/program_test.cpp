@@ -231,7 +231,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     // Scoring the stored lanes again gives the same table.
     const Outcome again =
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
-            "results/clc.lanes.jsonl");
+            "results/rld-pair.lanes.jsonl results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
 }
 
