@@ -1,11 +1,14 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/report/report.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
 #include <charconv>
+#include <exception>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +64,17 @@ void add_shared_options(CLI::App& command, Options& options) {
         ->required();
 }
 
+/// The results are whole without the page, which takes Python and matplotlib.
+void write_page(const std::filesystem::path& directory) {
+    const std::filesystem::path page = directory / "report.html";
+    try {
+        write_report(directory, page);
+        fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
+    } catch (const std::exception& failure) {
+        fmt::print("all of it in {}; no page: {}\n", directory.string(), failure.what());
+    }
+}
+
 void compare_and_print(Options& options) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
@@ -69,8 +83,8 @@ void compare_and_print(Options& options) {
     }
     comparison.run.method.rld_parameters = options.parameters.load();
     comparison.scenes.threads = comparison.run.threads;
-    fmt::print("{}\nall of it in {}\n", score_table(compare(comparison, options.directory)),
-               options.directory);
+    fmt::print("{}\n", score_table(compare(comparison, options.directory)));
+    write_page(options.directory);
 }
 
 }  // namespace
@@ -128,7 +142,8 @@ void add_merge_command(CLI::App& program) {
     command.add_option("shards", *shards, "directories of all shards, in any order")->required();
     command.add_option("--out", *directory, "directory of the whole")->required();
     command.callback([shards, directory] {
-        fmt::print("{}\nall of it in {}\n", score_table(merge(*shards, *directory)), *directory);
+        fmt::print("{}\n", score_table(merge(*shards, *directory)));
+        write_page(*directory);
     });
 }
 

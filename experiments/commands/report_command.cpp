@@ -1,23 +1,8 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/report/archive.hpp"
-#include "experiments/scoring/published_figures.hpp"
+#include "experiments/report/report.hpp"
 
-#include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <system_error>
-#include <vector>
-
-#include <fcntl.h>
-#include <nlohmann/json.hpp>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
@@ -28,114 +13,12 @@ struct Options {
     std::string python;
 };
 
-/// A folder of its own below the system's temporary one, gone with the object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = std::filesystem::temp_directory_path() / "conelane-XXXXXX";
-        if (mkdtemp(name.data()) == nullptr) throw InputError(name, 0, "", "cannot be made");
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  private:
-    std::filesystem::path path_;
-};
-
-/// Runs a program found on PATH; its exit code, or -1 where there is no such program or it was killed.
-int run(std::vector<std::string> command, bool quiet) {
-    std::vector<char*> arguments;
-    for (std::string& word : command) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    if (quiet) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    const int failure = posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failure != 0) return -1;
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0) {
-        if (errno != EINTR) return -1;
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// The first Python that has what the report draws with. The second place is where Debian's own packages go,
-/// should another Python come first on PATH.
-std::string find_python(const std::string& wished) {
-    const std::vector<std::string> candidates =
-        wished.empty() ? std::vector<std::string>{"python3", "/usr/bin/python3"} : std::vector{wished};
-    for (const std::string& python : candidates) {
-        const std::string probe =
-            "import sys; from importlib.util import find_spec; "
-            "sys.exit(not (sys.version_info >= (3, 10) and find_spec('numpy') and find_spec('matplotlib')))";
-        if (run({python, "-c", probe}, true) == 0) return python;
-    }
-    throw std::runtime_error("the report takes Python 3.10 or newer with matplotlib, which " +
-                             (wished.empty() ? "python3" : wished) +
-                             " has not (Debian: apt-get install python3-matplotlib)");
-}
-
-/// What the papers print, for the report to show beside.
-std::string published() {
-    nlohmann::ordered_json clc = nlohmann::ordered_json::array();
-    for (const PublishedClcRow& row : kPublishedClc) {
-        clc.push_back({{"rate", row.false_positive_rate},
-                       {"ground_truth", row.ground_truth},
-                       {"near_ground_truth", row.near_ground_truth},
-                       {"too_short", row.too_short},
-                       {"diverging_from_20", row.diverging_from_20},
-                       {"diverging_below_20", row.diverging_below_20},
-                       {"success", row.success},
-                       {"mean_iou", row.mean_iou},
-                       {"complete", row.complete}});
-    }
-    nlohmann::ordered_json rld = nlohmann::ordered_json::array();
-    for (const PublishedRldRow& row : kPublishedRld) {
-        rld.push_back({{"rate", row.false_positive_rate},
-                       {"ratio", row.printed_ratio},
-                       {"inaccurate", row.inaccurate},
-                       {"upper_bound", row.upper_bound}});
-    }
-    return nlohmann::ordered_json{{"clc", clc},
-                                  {"clc_median_below_ms", kPublishedClcMedianBelow_ms},
-                                  {"clc_max_ms", kPublishedClcMax_ms},
-                                  {"rld", rld},
-                                  {"rld_cone_set", kPublishedRldConeSet},
-                                  {"rld_solved", kPublishedRldSolved},
-                                  {"rld_mean_ms", kPublishedRldMean_ms},
-                                  {"rld_p95_ms", kPublishedRldP95_ms},
-                                  {"rld_standard_deviation_ms", kPublishedRldStandardDeviation_ms}}
-        .dump();
-}
-
-void write_archive(const std::filesystem::path& file) {
-    const auto bytes = report_archive();
-    std::ofstream stream(file, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    stream.close();
-    if (!stream) throw InputError(file, 0, "", "cannot be written");
-}
-
 void make_report(const Options& options) {
-    const std::string python = find_python(options.python);
-    const TemporaryFolder folder;
-    const std::filesystem::path archive = folder.path() / "report.zip";
-    write_archive(archive);
-    const std::string start =
-        "import sys, runpy; sys.path.insert(0, sys.argv.pop(1)); "
-        "runpy.run_module('report', run_name='__main__', alter_sys=True)";
-    const int code = run({python, "-c", start, archive, options.results, options.page, published()}, false);
-    if (code == 2) throw CLI::RuntimeError(2);  // it has said why
-    if (code != 0) throw std::runtime_error("the report failed, see above");
+    try {
+        write_report(options.results, options.page, options.python);
+    } catch (const ReportRefused&) {
+        throw CLI::RuntimeError(2);  // it has said why
+    }
 }
 
 }  // namespace

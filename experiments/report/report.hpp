@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace conelane::experiments {
+
+/// The results cannot be reported; the reason is on stderr already.
+class ReportRefused : public std::runtime_error {
+  public:
+    ReportRefused() : std::runtime_error("the results cannot be reported") {}
+};
+
+/// Makes one self-contained HTML page of a directory that `compare` wrote, by the Python package that the
+/// program carries. `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws
+/// ReportRefused where a file of the results is wrong, std::runtime_error where Python or matplotlib is
+/// missing.
+void write_report(const std::filesystem::path& results, const std::filesystem::path& page,
+                  const std::string& wished_python = "");
+
+}  // namespace conelane::experiments
