@@ -1,5 +1,6 @@
 #include "experiments/methods.hpp"
 
+#include "experiments/parameters/shipped_parameters.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
@@ -17,8 +18,9 @@ constexpr std::size_t kRldConeSet = 12;
 
 std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
                                        std::optional<std::size_t> nearest, const MethodOptions& options) {
+    if (options.nearest) nearest = options.nearest;
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {options.rld_parameters, options.nearest ? options.nearest : nearest, 1e-9});
+                             {rld_parameters(nearest, options), nearest, 1e-9});
 }
 
 /// Shows its detector the nearest cones only.
@@ -43,17 +45,18 @@ std::unique_ptr<LaneDetector> cut_to(std::unique_ptr<LaneDetector> detector,
 }
 
 constexpr std::array<MethodEntry, 4> kMethods{{
-    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
+    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, true,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
+     true,
      [](const MethodOptions& options) {
          return make_rld("cbc-main", Formulation::paper, kRldConeSet, options);
      }},
-    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt,
+    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt, true,
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
-    {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt,
+    {"clc", "CLC, the longest of the enumerated lanes, on all cones", std::nullopt, false,
      [](const MethodOptions& options) { return cut_to(make_clc_detector({}), options.nearest); }},
 }};
 
@@ -74,6 +77,13 @@ const MethodEntry& find_method(std::string_view name) {
 
 std::optional<std::size_t> cone_set_size(const MethodEntry& method, const MethodOptions& options) {
     return options.nearest ? options.nearest : method.nearest;
+}
+
+RldParameters rld_parameters(std::optional<std::size_t> cone_set_size, const MethodOptions& options) {
+    RldParameters parameters =
+        options.rld_parameters ? *options.rld_parameters : shipped_rld_parameters(cone_set_size);
+    if (options.pairing) parameters.pairing = *options.pairing;
+    return parameters;
 }
 
 }  // namespace conelane::experiments

@@ -16,5 +16,6 @@ void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
+void add_tune_command(CLI::App& program);
 
 }  // namespace conelane::experiments

@@ -11,17 +11,27 @@ namespace {
 
 constexpr std::array kPairings{Pairing::near_far, Pairing::paper};
 
+RldParameters rld_parameters_of(const JsonNode& json) {
+    RldParameters parameters;
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        parameters.*field.value = json.member(field.key).number();
+    }
+    if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
+    json.require_valid([&] { validate(parameters); });
+    return parameters;
+}
+
 }  // namespace
 
 RldParameters read_rld_parameters(const std::filesystem::path& file) {
     RldParameters parameters;
-    with_json_file(file, [&](const JsonNode& json) {
-        for (const RldParameterField& field : rld_parameter_fields()) {
-            parameters.*field.value = json.member(field.key).number();
-        }
-        if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
-        json.require_valid([&] { validate(parameters); });
-    });
+    with_json_file(file, [&](const JsonNode& json) { parameters = rld_parameters_of(json); });
+    return parameters;
+}
+
+RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file) {
+    RldParameters parameters;
+    with_json_text(text, file, [&](const JsonNode& json) { parameters = rld_parameters_of(json); });
     return parameters;
 }
 
