@@ -135,7 +135,8 @@ void run(Options& options) {
     const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
     Tuned tuned;
     {
-        Progress progress("tune", fits * (options.tuner.evaluations + 1));
+        // The start, and for each fit the start again and the winner on what was held out.
+        Progress progress("tune", 1 + fits * (options.tuner.evaluations + 2));
         tuned = tune(
             [&](const RldParameters& parameters) {
                 std::vector<LapFigure> laps = log(parameters);
