@@ -1,5 +1,6 @@
 #include "experiments/methods.hpp"
 
+#include "experiments/parameters/shipped_parameters.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
@@ -17,8 +18,9 @@ constexpr std::size_t kRldConeSet = 12;
 
 std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
                                        std::optional<std::size_t> nearest, const MethodOptions& options) {
+    if (options.nearest) nearest = options.nearest;
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {options.rld_parameters, options.nearest ? options.nearest : nearest, 1e-9});
+                             {rld_parameters(nearest, options), nearest, 1e-9});
 }
 
 /// Shows its detector the nearest cones only.
@@ -47,33 +49,34 @@ std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOption
 }
 
 constexpr std::array<MethodEntry, 8> kMethods{{
-    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet,
+    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, true,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
+     true,
      [](const MethodOptions& options) {
          return make_rld("cbc-main", Formulation::paper, kRldConeSet, options);
      }},
-    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt,
+    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt, true,
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
-    {"clc", "CLC; NVD weighs distances, the network ranks by all features", std::nullopt,
+    {"clc", "CLC; NVD weighs distances, the network ranks by all features", std::nullopt, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
-    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt,
+    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.warm_start = true;
          return make_clc(clc, options);
      }},
-    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt,
+    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, false,
      [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
-    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt,
+    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt, false,
      [](const MethodOptions& options) {
          ClcOptions clc = paper_clc_options();
          clc.graph = SearchGraphKind::delaunay;
          return make_clc(clc, options);
      }},
-    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt,
+    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt, false,
      [](const MethodOptions& options) { return make_clc({}, options); }},
 }};
 
@@ -94,6 +97,13 @@ const MethodEntry& find_method(std::string_view name) {
 
 std::optional<std::size_t> cone_set_size(const MethodEntry& method, const MethodOptions& options) {
     return options.nearest ? options.nearest : method.nearest;
+}
+
+RldParameters rld_parameters(std::optional<std::size_t> cone_set_size, const MethodOptions& options) {
+    RldParameters parameters =
+        options.rld_parameters ? *options.rld_parameters : shipped_rld_parameters(cone_set_size);
+    if (options.pairing) parameters.pairing = *options.pairing;
+    return parameters;
 }
 
 }  // namespace conelane::experiments

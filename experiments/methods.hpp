@@ -12,8 +12,9 @@
 namespace conelane::experiments {
 
 struct MethodOptions {
-    RldParameters rld_parameters;
-    std::optional<std::size_t> nearest;  ///< cone-set size instead of the method's own
+    std::optional<RldParameters> rld_parameters;  ///< instead of those shipped for the cone-set size
+    std::optional<Pairing> pairing;               ///< instead of the parameters'
+    std::optional<std::size_t> nearest;           ///< cone-set size instead of the method's own
 };
 
 /// A lane detector by its name.
@@ -22,6 +23,7 @@ struct MethodEntry {
     std::string_view meaning;
     std::optional<std::size_t>
         nearest;  ///< cone-set size of its own: the nearest ahead; all cones where absent
+    bool is_rld;  ///< uses RLD parameters
     std::unique_ptr<LaneDetector> (*make)(const MethodOptions& options);
 };
 
@@ -34,5 +36,9 @@ struct MethodEntry {
 /// The cone-set size that the method gets under these options.
 [[nodiscard]] std::optional<std::size_t> cone_set_size(const MethodEntry& method,
                                                        const MethodOptions& options);
+
+/// The parameters that an RLD method with that cone-set size gets under these options.
+[[nodiscard]] RldParameters rld_parameters(std::optional<std::size_t> cone_set_size,
+                                           const MethodOptions& options);
 
 }  // namespace conelane::experiments

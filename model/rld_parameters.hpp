@@ -13,8 +13,8 @@ enum class Pairing {
 };
 [[nodiscard]] std::string_view to_string(Pairing pairing);
 
-/// The symbols of the RLD paper. The paper prints no values; the defaults were found by hand on recorded tracks.
-/// d_max is the widest lane: a larger one lets one boundary go on alone.
+/// The symbols of the RLD paper. The paper prints no values; the defaults were found by hand on recorded
+/// tracks. d_max is the widest lane: a larger one lets one boundary go on alone.
 struct RldParameters {
     double d_e = 3.2;                   ///< expected spacing of a boundary's cones [m]
     double d_t = 1.7;                   ///< spacing threshold [m]

@@ -5,6 +5,8 @@
 #include "solvers/clp_bb_solver.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/glpk_solver.hpp"
+#include "solvers/ipopt_relaxation.hpp"
+#include "solvers/lp_rounding_solver.hpp"
 #include "solvers/milp_rld_solver.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/symphony_solver.hpp"
@@ -21,19 +23,25 @@ std::unique_ptr<RldSolver> make_milp(Formulation formulation) {
 }
 
 constexpr RldSolverEntry kSolvers[]{
-    {"cbc", "CBC in process, CbcModel's branch and bound", true, make_milp<make_cbc_solver>},
-    {"cbc-main", "CBC's full machinery, one at a time", true, make_milp<make_cbc_main_solver>},
-    {"clp-bb", "depth-first branch and bound on a warm Clp", true, make_milp<make_clp_bb_solver>},
+    {"cbc", "CBC in process, CbcModel's branch and bound", true, true, make_milp<make_cbc_solver>},
+    {"cbc-main", "CBC's full machinery, one at a time", true, true, make_milp<make_cbc_main_solver>},
+    {"clp-bb", "depth-first branch and bound on a warm Clp", true, true, make_milp<make_clp_bb_solver>},
 #ifdef CONELANE_HAS_GLPK
-    {"glpk", "GLPK's branch and bound", true, make_milp<make_glpk_solver>},
+    {"glpk", "GLPK's branch and bound", true, true, make_milp<make_glpk_solver>},
 #endif
 #ifdef CONELANE_HAS_SYMPHONY
-    {"symphony", "SYMPHONY's branch and cut, one at a time", true, make_milp<make_symphony_solver>},
+    {"symphony", "SYMPHONY's branch and cut, one at a time", true, true, make_milp<make_symphony_solver>},
 #endif
-    {"exhaustive", "every pair of paths, at most 9 cones", false,
+    {"exhaustive", "every pair of paths, at most 9 cones", false, true,
      [](Formulation) { return make_exhaustive_solver(); }},
-    {"path-pair", "exact branch and bound over pairs of paths", false,
+    {"path-pair", "exact branch and bound over pairs of paths", false, true,
      [](Formulation) { return make_path_pair_solver(); }},
+    {"lp-rounding", "Clp's relaxation, rounded; no proof", false, false,
+     [](Formulation) { return make_lp_rounding_solver(); }},
+#ifdef CONELANE_HAS_IPOPT
+    {"ipopt", "Ipopt on the relaxation with products, rounded; no proof", false, false,
+     [](Formulation) { return make_ipopt_relaxation_solver(); }},
+#endif
 };
 
 }  // namespace

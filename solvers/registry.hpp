@@ -14,6 +14,7 @@ struct RldSolverEntry {
     std::string_view name;
     std::string_view meaning;
     bool uses_formulation;  ///< else the formulation is ignored
+    bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
     std::unique_ptr<RldSolver> (*make)(Formulation formulation);
 };
 

@@ -24,7 +24,7 @@ struct Options {
 
 void detect(Options& options) {
     const MethodEntry& method = find_method(options.method);
-    options.run.method.rld_parameters = options.parameters.load();
+    options.parameters.apply_to(options.run.method);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     write_lanes(options.out, run(method, scenes, options.run));
 }
@@ -50,7 +50,7 @@ void add_detect_command(CLI::App& program) {
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
-    add_parameter_options(command, options->parameters);
+    add_parameter_options(command, options->parameters, "those shipped for the cone-set size");
     command.callback([options] { detect(*options); });
 }
 

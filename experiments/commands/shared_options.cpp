@@ -1,6 +1,10 @@
 #include "experiments/commands/shared_options.hpp"
 
 #include "experiments/files/parameter_file.hpp"
+#include "experiments/parameters/shipped_parameters.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -34,13 +38,25 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 RldParameters ParameterSource::load() const {
-    RldParameters parameters = file.empty() ? RldParameters{} : read_rld_parameters(file);
-    if (!pairing.empty()) parameters.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
+    MethodOptions options;
+    apply_to(options);
+    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
+    if (options.pairing) parameters.pairing = *options.pairing;
     return parameters;
 }
 
-void add_parameter_options(CLI::App& command, ParameterSource& source) {
-    command.add_option("--params", source.file, "RLD parameters (JSON); the shipped default without it");
+void ParameterSource::apply_to(MethodOptions& options) const {
+    if (!name.empty()) {
+        const auto shipped = shipped_rld_parameters(name);
+        options.rld_parameters = shipped ? *shipped : read_rld_parameters(name);
+    }
+    if (!pairing.empty()) options.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
+}
+
+void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without) {
+    command.add_option("--params", source.name,
+                       fmt::format("RLD parameters: {} or a file (JSON); without it {}",
+                                   fmt::join(shipped_rld_parameter_names(), ", "), without));
     command.add_option("--pairing", source.pairing, "overrides the pairing of the parameters")
         ->check(CLI::IsMember({"paper", "near_far"}));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/methods.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "model/rld_parameters.hpp"
@@ -19,11 +20,15 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 
 /// --params and --pairing.
 struct ParameterSource {
-    std::string file;     ///< empty: the shipped default
-    std::string pairing;  ///< empty: as in the file
+    std::string name;     ///< of a shipped set, else a file; empty: the command's default
+    std::string pairing;  ///< empty: as in the parameters
+    /// What was asked for, RldParameters{} where nothing was.
     [[nodiscard]] RldParameters load() const;
+    /// Tells methods what was asked for; they have parameters of their own.
+    void apply_to(MethodOptions& options) const;
 };
-void add_parameter_options(CLI::App& command, ParameterSource& source);
+/// `without` says what holds where --params is not given.
+void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);
 
 /// --nearest N
 void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning);

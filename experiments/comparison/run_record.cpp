@@ -25,6 +25,18 @@ bool is_of_a_run(const fs::path& file) {
            name == "scores.jsonl" || name == "table.txt" || name == kRunFile;
 }
 
+nlohmann::ordered_json to_json(const RldParameters& parameters) {
+    nlohmann::ordered_json json;
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
+    json["pairing"] = to_string(parameters.pairing);
+    json["w_color"] = parameters.w_color;
+    json["use_confidence"] = parameters.use_confidence;
+    json["forbid_crossing"] = parameters.forbid_crossing;
+    return json;
+}
+
 }  // namespace
 
 std::string Entrant::lanes_file() const {
@@ -37,17 +49,14 @@ std::string run_record(const ComparisonOptions& options) {
     for (const Entrant& entrant : options.entrants) {
         nlohmann::ordered_json json{{"name", entrant.method}};
         if (entrant.nearest) json["nearest"] = *entrant.nearest;
+        if (const MethodEntry& method = find_method(entrant.method); method.is_rld) {
+            MethodOptions method_options = options.run.method;
+            method_options.nearest = entrant.nearest;
+            json["rld_parameters"] =
+                to_json(rld_parameters(cone_set_size(method, method_options), method_options));
+        }
         methods.push_back(json);
     }
-    nlohmann::ordered_json parameters;
-    for (const RldParameterField& field : rld_parameter_fields()) {
-        parameters[std::string(field.key)] = options.run.method.rld_parameters.*field.value;
-    }
-    const RldParameters& rld = options.run.method.rld_parameters;
-    parameters["pairing"] = to_string(rld.pairing);
-    parameters["w_color"] = rld.w_color;
-    parameters["use_confidence"] = rld.use_confidence;
-    parameters["forbid_crossing"] = rld.forbid_crossing;
     const SceneOptions& scenes = options.scenes;
     nlohmann::ordered_json record{{"commit", origin.commit},
                                   {"compiler", origin.compiler},
@@ -63,8 +72,7 @@ std::string run_record(const ComparisonOptions& options) {
                                   {"color", scenes.with_color},
                                   {"seed", scenes.seed},
                                   {"threads", options.run.threads},
-                                  {"candidates", options.run.limits.keep_candidates},
-                                  {"rld_parameters", parameters}};
+                                  {"candidates", options.run.limits.keep_candidates}};
     if (scenes.nearest) record["nearest"] = *scenes.nearest;
     if (std::isfinite(options.run.limits.time_limit_ms))
         record["time_limit_ms"] = options.run.limits.time_limit_ms;

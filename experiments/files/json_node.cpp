@@ -229,6 +229,11 @@ void with_json_file(const std::filesystem::path& file, const std::function<void(
     std::ifstream stream = open(file);
     const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     require_read_to_end(stream, file);
+    with_json_text(text, file, read);
+}
+
+void with_json_text(std::string_view text, const std::filesystem::path& file,
+                    const std::function<void(const JsonNode&)>& read) {
     const json value = parse(text, file, 1);
     const JsonOrigin origin{file, 0};
     const JsonNode node(value, origin);

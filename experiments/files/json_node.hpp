@@ -79,6 +79,10 @@ void for_each_json_line(const std::filesystem::path& file, const std::function<v
 /// Calls `read` with the object that a whole file holds. Throws like for_each_json_line.
 void with_json_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
+/// The same for a text that stands for the file.
+void with_json_text(std::string_view text, const std::filesystem::path& file,
+                    const std::function<void(const JsonNode&)>& read);
+
 /// JSON on one line, keys in their order, bytes that are no UTF-8 replaced.
 [[nodiscard]] std::string to_line(const nlohmann::ordered_json& json);
 

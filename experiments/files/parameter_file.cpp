@@ -19,20 +19,30 @@ bool is_on(const JsonNode& flag) {
     return value == 1;
 }
 
+RldParameters rld_parameters_of(const JsonNode& json) {
+    RldParameters parameters;
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        parameters.*field.value = json.member(field.key).number();
+    }
+    if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
+    if (const auto weight = json.find("w_color")) parameters.w_color = weight->number();
+    if (const auto flag = json.find("use_confidence")) parameters.use_confidence = is_on(*flag);
+    if (const auto flag = json.find("forbid_crossing")) parameters.forbid_crossing = is_on(*flag);
+    json.require_valid([&] { validate(parameters); });
+    return parameters;
+}
+
 }  // namespace
 
 RldParameters read_rld_parameters(const std::filesystem::path& file) {
     RldParameters parameters;
-    with_json_file(file, [&](const JsonNode& json) {
-        for (const RldParameterField& field : rld_parameter_fields()) {
-            parameters.*field.value = json.member(field.key).number();
-        }
-        if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
-        if (const auto weight = json.find("w_color")) parameters.w_color = weight->number();
-        if (const auto flag = json.find("use_confidence")) parameters.use_confidence = is_on(*flag);
-        if (const auto flag = json.find("forbid_crossing")) parameters.forbid_crossing = is_on(*flag);
-        json.require_valid([&] { validate(parameters); });
-    });
+    with_json_file(file, [&](const JsonNode& json) { parameters = rld_parameters_of(json); });
+    return parameters;
+}
+
+RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file) {
+    RldParameters parameters;
+    with_json_text(text, file, [&](const JsonNode& json) { parameters = rld_parameters_of(json); });
     return parameters;
 }
 

@@ -3,6 +3,7 @@
 #include "model/rld_parameters.hpp"
 
 #include <filesystem>
+#include <string_view>
 
 namespace conelane::experiments {
 
@@ -10,6 +11,9 @@ namespace conelane::experiments {
 /// where absent, the extras `w_color`, `use_confidence` and `forbid_crossing` (0 or 1) are off.
 /// Throws InputError naming file and key, and the line of what is no JSON.
 [[nodiscard]] RldParameters read_rld_parameters(const std::filesystem::path& file);
+
+/// The same from a text; errors name `file`.
+[[nodiscard]] RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file);
 
 /// Throws InvalidInput where a parameter is not valid, InputError where the file cannot be written; then an
 /// old file stays as it was.

@@ -1,0 +1,205 @@
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/json_node.hpp"
+#include "experiments/files/parameter_file.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_set.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "experiments/tuning/evaluation_log.hpp"
+#include "experiments/tuning/losses.hpp"
+#include "experiments/tuning/tuner.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+    std::vector<std::string> tracks;
+    SceneOptions scenes;
+    EvaluationOptions evaluation;
+    TunerOptions tuner;
+    std::string start;
+    std::filesystem::path out;
+    std::filesystem::path log;
+};
+
+/// All that the figures of parameters depend on.
+ordered_json conditions(const Options& options) {
+    const SceneOptions& scenes = options.scenes;
+    ordered_json json{{"commit", provenance().commit},
+                      {"tracks", options.tracks},
+                      {"objective", to_string(options.evaluation.objective)},
+                      {"fp", scenes.false_positive_rates},
+                      {"range", scenes.ranges_m},
+                      {"every", scenes.every_m},
+                      {"noise", scenes.noise_sigma_m},
+                      {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
+                      {"miss", scenes.miss_rate},
+                      {"seed", scenes.seed},
+                      {"time_limit_ms", options.evaluation.time_limit_ms},
+                      {"most_nodes", options.evaluation.most_nodes}};
+    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
+    return json;
+}
+
+ordered_json to_json(const RldParameters& parameters) {
+    ordered_json json = ordered_json::object();
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
+    return json;
+}
+
+/// The mean over all scenes, and by rate and by track.
+ordered_json to_json(const std::vector<LapFigure>& laps) {
+    ordered_json json{{"mean", mean_over_scenes(laps)}};
+    const auto add_means = [&](const char* key, const auto& key_of) {
+        ordered_json means = ordered_json::object();
+        for (const LapFigure& lap : laps) {
+            if (means.contains(key_of(lap))) continue;
+            std::vector<LapFigure> same;
+            for (const LapFigure& other : laps) {
+                if (key_of(other) == key_of(lap)) same.push_back(other);
+            }
+            means[key_of(lap)] = mean_over_scenes(same);
+        }
+        json[key] = means;
+    };
+    add_means("by_rate", [](const LapFigure& lap) { return fmt::format("{}", lap.rate); });
+    add_means("by_track", [](const LapFigure& lap) { return lap.track; });
+    return json;
+}
+
+/// Scenes by why they are inaccurate, for each rate.
+ordered_json losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
+                    const EvaluationOptions& options) {
+    ordered_json json = ordered_json::object();
+    for (const AnnotatedScene& scene : scenes) {
+        const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
+        const Loss loss = loss_on(scene, parameters, options.nearest, options.time_limit_ms);
+        ordered_json& count = json[rate][std::string(to_string(loss))];
+        count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
+    }
+    return json;
+}
+
+ordered_json record_of(const Options& options, const Tuned& tuned, const Evaluation& evaluation) {
+    ordered_json record = conditions(options);
+    record["folds"] = options.tuner.folds;
+    record["evaluations"] = options.tuner.evaluations;
+    record["compiler"] = provenance().compiler;
+    record["machine"] = provenance().machine;
+    ordered_json folds = ordered_json::array();
+    std::vector<LapFigure> held_out;
+    for (const Fold& fold : tuned.folds) {
+        held_out.insert(held_out.end(), fold.held_out_laps.begin(), fold.held_out_laps.end());
+        folds.push_back({{"held_out", fold.held_out},
+                         {"training", fold.training},
+                         {"held_out_figures", to_json(fold.held_out_laps)},
+                         {"held_out_figures_of_start", to_json(fold.held_out_laps_of_start)},
+                         {"parameters", to_json(fold.parameters)}});
+    }
+    if (!tuned.folds.empty()) record["held_out_figures"] = to_json(held_out);
+    record["figures_of_start"] = to_json(tuned.laps_of_start);
+    record["figures"] = to_json(tuned.laps);
+    record["fold_results"] = folds;
+    record["losses"] = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
+    return record;
+}
+
+std::filesystem::path record_path(std::filesystem::path parameters) {
+    return parameters.replace_extension(".record.json");
+}
+
+void run(Options& options) {
+    options.scenes.threads = options.evaluation.threads;
+    options.tuner.seed = options.scenes.seed;
+    const RldParameters start = ParameterSource{options.start, {}}.load();
+    const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
+    EvaluationLog log(options.log, to_line(conditions(options)),
+                      [&](const RldParameters& parameters) { return evaluation(parameters); });
+    const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
+    Tuned tuned;
+    {
+        // The start, and for each fit the start again and the winner on what was held out.
+        Progress progress("tune", 1 + fits * (options.tuner.evaluations + 2));
+        tuned = tune(
+            [&](const RldParameters& parameters) {
+                std::vector<LapFigure> laps = log(parameters);
+                progress.advance();
+                return laps;
+            },
+            start, options.tuner);
+    }
+    write_rld_parameters(options.out, tuned.parameters);
+    AtomicFile record(record_path(options.out));
+    record.stream() << record_of(options, tuned, evaluation).dump(2) << '\n';
+    record.commit();
+
+    fmt::print("{} on {} scenes: {:.2f} % before, {:.2f} % after\n", to_string(options.evaluation.objective),
+               evaluation.scenes().size(), 100.0 * mean_over_scenes(tuned.laps_of_start),
+               100.0 * mean_over_scenes(tuned.laps));
+    for (const Fold& fold : tuned.folds) {
+        fmt::print("held out {}: {:.2f} % before, {:.2f} % after\n", fmt::join(fold.held_out, " "),
+                   100.0 * mean_over_scenes(fold.held_out_laps_of_start),
+                   100.0 * mean_over_scenes(fold.held_out_laps));
+    }
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("tune", "RLD parameters that are best on given tracks");
+    auto options = std::make_shared<Options>();
+    options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    options->scenes.ranges_m = {30.0};
+    options->scenes.every_m = 6.6;
+    command
+        .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        ->required();
+    command
+        .add_option_function<std::string>(
+            "--objective",
+            [options](const std::string& name) {
+                for (const TuningObjective objective :
+                     {TuningObjective::accuracy, TuningObjective::iou, TuningObjective::success}) {
+                    if (to_string(objective) == name) options->evaluation.objective = objective;
+                }
+            },
+            "mean over scenes that is made as large as possible [accuracy]")
+        ->check(CLI::IsMember({"accuracy", "iou", "success"}));
+    add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
+    add_scene_options(command, options->scenes);
+    add_time_limit_option(command, options->evaluation.time_limit_ms);
+    command
+        .add_option("--most-nodes", options->evaluation.most_nodes, "a scene that takes more counts as wrong")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command.add_option("--folds", options->tuner.folds, "of tracks; 1 holds none out")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command.add_option("--evaluations", options->tuner.evaluations, "in each fit")
+        ->check(CLI::Range(0, 1'000'000))
+        ->capture_default_str();
+    command.add_option("--start", options->start, "parameters to start from");
+    add_threads_option(command, options->evaluation.threads, "scenes at a time");
+    command.add_option("--out", options->out, "P.json; its record goes to P.record.json")->required();
+    command.add_option("--log", options->log, "*.jsonl of all evaluations; a tuning stopped there goes on");
+    command.callback([options] { run(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,108 @@
+#include "experiments/tuning/evaluation.hpp"
+
+#include "experiments/comparison/runner.hpp"
+#include "experiments/scenes/ground_truth.hpp"
+#include "experiments/scoring/score.hpp"
+#include "model/invalid_input.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "solvers/deadline.hpp"
+#include "solvers/path_pair_solver.hpp"
+
+#include <atomic>
+#include <memory>
+#include <utility>
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct SceneWorth {
+    double value = 0.0;
+    bool timed_out = false;
+};
+
+SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
+                 const RldParameters& parameters, const EvaluationOptions& options) {
+    const Deadline deadline(options.time_limit_ms);
+    const Scene scene = options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+    const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
+    const RldReport report = solver.solve(problem, {deadline.remaining_ms()});
+    if (report.status == SolveStatus::feasible || report.status == SolveStatus::time_limit)
+        return {0.0, true};
+    if (!report.lane_graph || report.nodes > options.most_nodes) return {};
+    const std::optional<Lane> lane = to_lane(*report.lane_graph, scene);
+    if (!lane) return {};
+    LaneAnswer answer;
+    answer.status = LaneStatus::found;
+    answer.lane = *lane;
+    const SceneScore result = score(annotated, answer, 0.0, options.nearest, &boundaries);
+    switch (options.objective) {
+        case TuningObjective::accuracy:
+            return {result.accurate() ? 1.0 : 0.0};
+        case TuningObjective::iou:
+            return {result.iou};
+        case TuningObjective::success:
+            break;
+    }
+    return {result.success() ? 1.0 : 0.0};
+}
+
+}  // namespace
+
+std::string_view to_string(TuningObjective objective) {
+    switch (objective) {
+        case TuningObjective::accuracy:
+            return "accuracy";
+        case TuningObjective::iou:
+            return "iou";
+        case TuningObjective::success:
+            break;
+    }
+    return "success";
+}
+
+Evaluation::Evaluation(SceneSet set, const EvaluationOptions& options)
+    : set_(std::move(set)), options_(options) {
+    std::erase_if(set_.scenes, [&](const AnnotatedScene& scene) {
+        return !counts(scene) || (options_.objective == TuningObjective::accuracy && options_.nearest &&
+                                  !ground_truth_of_nearest(scene, *options_.nearest));
+    });
+    if (set_.scenes.empty()) throw InvalidInput("--tracks", "no scene has a ground truth in its cone set");
+}
+
+std::vector<LapFigure> Evaluation::operator()(const RldParameters& parameters) const {
+    const std::vector<AnnotatedScene>& scenes = set_.scenes;
+    std::vector<double> values(scenes.size(), 0.0);
+    std::atomic<std::size_t> timed_out{0};
+    const double timed_out_limit = options_.most_timed_out * static_cast<double>(scenes.size());
+    const auto abandoned = [&] { return static_cast<double>(timed_out.load()) > timed_out_limit; };
+    oneapi::tbb::enumerable_thread_specific<std::unique_ptr<RldSolver>> solvers(
+        [] { return make_path_pair_solver(); });
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
+            if (abandoned()) return;
+            const SceneWorth result =
+                worth(*solvers.local(), scenes[i], set_.tracks.at(scenes[i].track), parameters, options_);
+            values[i] = result.value;
+            if (result.timed_out) ++timed_out;
+        });
+    });
+    std::vector<LapFigure> laps;
+    const std::vector<std::size_t> starts = lap_starts(scenes);
+    for (std::size_t lap = 0; lap + 1 < starts.size(); ++lap) {
+        const AnnotatedScene& first = scenes[starts[lap]];
+        LapFigure figure{first.track, first.false_positive_rate.value_or(0.0), first.range_m.value_or(0.0),
+                         starts[lap + 1] - starts[lap], 0.0};
+        for (std::size_t i = starts[lap]; i < starts[lap + 1] && !abandoned(); ++i) figure.sum += values[i];
+        laps.push_back(std::move(figure));
+    }
+    return laps;
+}
+
+}  // namespace conelane::experiments

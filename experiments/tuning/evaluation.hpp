@@ -1,0 +1,62 @@
+#pragma once
+
+#include "experiments/scenes/scene_set.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// What tuning makes as large as it can, as a mean over scenes.
+enum class TuningObjective {
+    accuracy,  ///< share accurate (RLD paper, IV-B)
+    iou,       ///< mean intersection over union (CLC paper)
+    success,   ///< share successful (CLC paper, Table I)
+};
+[[nodiscard]] std::string_view to_string(TuningObjective objective);
+
+struct EvaluationOptions {
+    TuningObjective objective = TuningObjective::accuracy;
+    std::optional<std::size_t> nearest;  ///< cone-set size; all cones where absent
+    /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, is worth nothing.
+    double time_limit_ms = 20.0;
+    std::int64_t most_nodes = 1000;
+    /// Once more of the scenes than this have run into the time limit, all scenes are worth nothing.
+    double most_timed_out = 0.02;
+    unsigned threads = 1;
+};
+
+/// What parameters are worth on the scenes of one track, rate and range.
+struct LapFigure {
+    std::string track;
+    double rate = 0.0;
+    double range_m = 0.0;
+    std::size_t scenes = 0;
+    double sum = 0.0;  ///< over the scenes, each in [0, 1]
+
+    bool operator==(const LapFigure&) const = default;
+};
+
+/// Scenes that parameters are tried on. Each is solved to optimality by path-pair.
+class Evaluation {
+  public:
+    /// Keeps the scenes that the objective is defined on. Throws InvalidInput where there is none.
+    Evaluation(SceneSet set, const EvaluationOptions& options);
+
+    /// A figure for each lap, in the order of the scenes. The same for any number of threads as long as no
+    /// scene runs into the time limit.
+    [[nodiscard]] std::vector<LapFigure> operator()(const RldParameters& parameters) const;
+
+    [[nodiscard]] const std::vector<AnnotatedScene>& scenes() const { return set_.scenes; }
+
+  private:
+    SceneSet set_;
+    EvaluationOptions options_;
+};
+
+}  // namespace conelane::experiments

@@ -1,0 +1,100 @@
+#include "experiments/tuning/evaluation_log.hpp"
+
+#include "experiments/files/input_error.hpp"
+#include "experiments/files/json_node.hpp"
+
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<double> key_of(const RldParameters& parameters) {
+    std::vector<double> key;
+    for (const RldParameterField& field : rld_parameter_fields()) key.push_back(parameters.*field.value);
+    return key;
+}
+
+LapFigure read_lap(const JsonNode& json) {
+    return {json.member("track").string(), json.member("rate").number(), json.member("range").number(),
+            json.member("scenes").unsigned_integer(), json.member("sum").non_negative_number()};
+}
+
+std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>& laps) {
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
+    std::size_t i = 0;
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        parameters[std::string(field.key)] = key[i++];
+    }
+    nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+    for (const LapFigure& lap : laps) {
+        figures.push_back({{"track", lap.track},
+                           {"rate", lap.rate},
+                           {"range", lap.range_m},
+                           {"scenes", lap.scenes},
+                           {"sum", lap.sum}});
+    }
+    return to_line({{"parameters", parameters}, {"laps", figures}});
+}
+
+/// Cuts what follows the last line feed: a line that was being written when the program was stopped.
+void drop_unfinished_line(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    std::error_code failure;
+    fs::resize_file(file, text.rfind('\n') + 1, failure);  // npos + 1 is 0
+    if (failure) throw InputError(file, 0, "", "cannot be written: " + failure.message());
+}
+
+}  // namespace
+
+EvaluationLog::EvaluationLog(const fs::path& file, const std::string& header, Evaluate evaluate)
+    : file_(file), evaluate_(std::move(evaluate)) {
+    if (file_.empty()) return;
+    const bool is_new = !fs::exists(file_);
+    if (!is_new) {
+        drop_unfinished_line(file_);
+        read(header);
+    }
+    const bool has_header = !is_new && fs::file_size(file_) > 0;
+    stream_.open(file_, std::ios::binary | std::ios::app);
+    if (!has_header) stream_ << header << std::endl;
+    if (!stream_) throw InputError(file_, 0, "", "cannot be written");
+}
+
+void EvaluationLog::read(const std::string& header) {
+    std::string first_line;
+    std::getline(std::ifstream(file_), first_line);
+    if (!first_line.empty() && first_line != header) {
+        throw InputError(file_, 1, "", "is the log of another tuning: other sources or options");
+    }
+    for_each_json_line(file_, [&](const JsonNode& json) {
+        if (json.line() == 1) return;
+        const JsonNode parameters = json.member("parameters");
+        std::vector<double> key;
+        for (const RldParameterField& field : rld_parameter_fields()) {
+            key.push_back(parameters.member(field.key).number());
+        }
+        std::vector<LapFigure> laps;
+        const JsonNode figures = json.member("laps");
+        for (std::size_t i = 0; i < figures.array_size(); ++i) laps.push_back(read_lap(figures.element(i)));
+        figures_.insert_or_assign(std::move(key), std::move(laps));
+    });
+}
+
+std::vector<LapFigure> EvaluationLog::operator()(const RldParameters& parameters) {
+    std::vector<double> key = key_of(parameters);
+    if (const auto known = figures_.find(key); known != figures_.end()) return known->second;
+    std::vector<LapFigure> laps = evaluate_(parameters);
+    if (!file_.empty()) {
+        stream_ << line_of(key, laps) << std::endl;
+        if (!stream_) throw InputError(file_, 0, "", "cannot be written to its end");
+    }
+    figures_.emplace(std::move(key), laps);
+    return laps;
+}
+
+}  // namespace conelane::experiments

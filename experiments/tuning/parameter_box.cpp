@@ -1,0 +1,63 @@
+#include "experiments/tuning/parameter_box.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace conelane::experiments {
+namespace {
+
+using P = RldParameters;
+
+/// d_min ends above what a lane is at least wide, d_max and d_near where a lane's ends and the first cones
+/// ahead of a car lie, d_e at the largest spacing that the competition's rules allow.
+constexpr std::array<TunedParameter, 11> kTuned{{
+    {"d_e", &P::d_e, 1.5, 5.0, false},
+    {"w_s", &P::w_s, 0.01, 3.0, true},
+    {"w_t", &P::w_t, 0.02, 5.0, true},
+    {"w_p", &P::w_p, 0.005, 10.0, true},
+    {"d_min", &P::d_min, 1.5, 3.5, false},
+    {"d_h", &P::d_h, 3.0, 12.0, false},
+    {"theta_heading", &P::theta_heading, 0.4, 1.55, false},
+    {"d_near", &P::d_near, 4.0, 12.0, false},
+    {"d_max", &P::d_max, 4.5, 12.0, false},
+    {"s_crit", &P::s_crit, 0.5, 12.0, true},
+    {"t_crit", &P::t_crit, 0.2, 10.0, true},
+}};
+
+/// Short numbers in files, and the same ones on every machine, whose logarithms differ in the last bits.
+double rounded(double value) {
+    constexpr double kStepsPerUnit = 1e4;
+    return std::round(value * kStepsPerUnit) / kStepsPerUnit;
+}
+
+}  // namespace
+
+std::span<const TunedParameter> tuned_parameters() {
+    return kTuned;
+}
+
+std::vector<double> to_unit_cube(const RldParameters& parameters) {
+    std::vector<double> point;
+    for (const TunedParameter& tuned : kTuned) {
+        const double value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
+        point.push_back(tuned.logarithmic
+                            ? std::log(value / tuned.lowest) / std::log(tuned.highest / tuned.lowest)
+                            : (value - tuned.lowest) / (tuned.highest - tuned.lowest));
+    }
+    return point;
+}
+
+RldParameters from_unit_cube(std::span<const double> point, const RldParameters& rest) {
+    RldParameters parameters = rest;
+    for (std::size_t i = 0; i < kTuned.size(); ++i) {
+        const TunedParameter& tuned = kTuned[i];
+        const double value = tuned.logarithmic
+                                 ? tuned.lowest * std::pow(tuned.highest / tuned.lowest, point[i])
+                                 : tuned.lowest + point[i] * (tuned.highest - tuned.lowest);
+        parameters.*tuned.value = std::clamp(rounded(value), tuned.lowest, tuned.highest);
+    }
+    return parameters;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "experiments/tuning/evaluation.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+struct TunerOptions {
+    std::size_t folds = 4;          ///< of tracks; fewer than two: none is held out
+    std::size_t evaluations = 400;  ///< at most, in each fit
+    std::uint64_t seed = 0;
+};
+
+/// A fit to the tracks of all folds but one.
+struct Fold {
+    std::vector<std::string> held_out;  ///< tracks that the fit has not seen
+    RldParameters parameters;
+    double training = 0.0;  ///< mean over the scenes of the other tracks
+    std::vector<LapFigure> held_out_laps;
+    std::vector<LapFigure> held_out_laps_of_start;
+};
+
+struct Tuned {
+    RldParameters parameters;  ///< fitted to all tracks
+    std::vector<LapFigure> laps;
+    std::vector<LapFigure> laps_of_start;
+    std::vector<Fold> folds;
+};
+
+/// The figures of parameters on every lap; the same laps in each call.
+using Evaluate = std::function<std::vector<LapFigure>(const RldParameters&)>;
+
+/// Mean over the scenes of the laps; 0 without laps.
+[[nodiscard]] double mean_over_scenes(std::span<const LapFigure> laps);
+
+/// Parameters that make the mean over scenes as large as the search finds, in the box of tuned_parameters().
+/// Each fit is NLopt's controlled random search (GN_CRS2_LM) from `start` on 60 % of the evaluations, then
+/// Subplex (LN_SBPLX) from the best point; what counts is the best point evaluated. Track i, in the order of
+/// the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that memory in
+/// `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
+/// InvalidInput where there are fewer tracks than folds, and what `evaluate` throws.
+[[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "model/lane_graph_problem.hpp"
+#include "solvers/deadline.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace conelane {
+
+/// The linear relaxation of the tight formulation without its lazy rows.
+struct LpRelaxation {
+    bool infeasible = false;          ///< proven: the problem has no lane graph either
+    std::optional<double> bound;      ///< its optimum, a lower bound of the problem; absent where stopped
+    std::vector<double> edge_values;  ///< a_ij by problem edge, with the bound
+};
+/// Solved by Clp. Precondition: the problem lists the candidates only.
+[[nodiscard]] LpRelaxation solve_lp_relaxation(const LaneGraphProblem& problem, const Deadline& deadline);
+
+}  // namespace conelane

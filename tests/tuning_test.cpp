@@ -1,0 +1,189 @@
+// What tuning promises: a box around sensible parameters, fits that forget no better point, folds that see
+// nothing of their held-out tracks, and a log from which a stopped run goes on.
+
+#include "experiments/files/input_error.hpp"
+#include "experiments/parameters/shipped_parameters.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "experiments/tuning/evaluation_log.hpp"
+#include "experiments/tuning/losses.hpp"
+#include "experiments/tuning/parameter_box.hpp"
+#include "experiments/tuning/tuner.hpp"
+#include "tests/file_test.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::ElementsAre;
+
+/// Stands for scenes: each track is best at a d_e of its own, and worth less the farther d_e is from it.
+std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::vector<double>& best_d_e) {
+    std::vector<LapFigure> laps;
+    for (std::size_t i = 0; i < best_d_e.size(); ++i) {
+        const double off = std::abs(parameters.d_e - best_d_e[i]);
+        laps.push_back({"track" + std::to_string(i), 0.0, 30.0, 10, 10.0 / (1.0 + off)});
+    }
+    return laps;
+}
+
+TEST(ParameterBox, LeadsToThePointAndBack) {
+    const RldParameters start;
+    const RldParameters back = from_unit_cube(to_unit_cube(start), start);
+    for (const TunedParameter& tuned : tuned_parameters()) {
+        EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
+    }
+    EXPECT_EQ(back.w_b, start.w_b);
+}
+
+TEST(ParameterBox, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
+    RldParameters rest;
+    rest.d_t = 1.25;
+    rest.pairing = Pairing::paper;
+    for (const double corner : {0.0, 1.0}) {
+        const std::vector<double> point(tuned_parameters().size(), corner);
+        const RldParameters parameters = from_unit_cube(point, rest);
+        EXPECT_NO_THROW(validate(parameters));
+        EXPECT_EQ(parameters.d_t, 1.25);
+        EXPECT_EQ(parameters.pairing, Pairing::paper);
+    }
+}
+
+TEST(Tune, FindsTheBestOfATrackAndSaysWhatItWasBefore) {
+    const auto evaluate = [](const RldParameters& parameters) { return worth_by_d_e(parameters, {2.3}); };
+    const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 1, .evaluations = 300, .seed = 7});
+    EXPECT_NEAR(tuned.parameters.d_e, 2.3, 0.05);
+    EXPECT_NEAR(mean_over_scenes(tuned.laps_of_start), 1.0 / 1.9, 1e-12);  // 3.2 is 0.9 off
+    EXPECT_TRUE(tuned.folds.empty());
+}
+
+TEST(Tune, KeepsTheStartWhereNothingIsBetter) {
+    const auto evaluate = [](const RldParameters&) {
+        return std::vector<LapFigure>{{"track", 0.0, 30.0, 4, 2.0}};
+    };
+    const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 1, .evaluations = 40});
+    EXPECT_EQ(tuned.parameters.d_e, RldParameters{}.d_e);
+}
+
+TEST(Tune, FitsAFoldToTheOtherTracksAlone) {
+    // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to what it does not hold out.
+    const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.0, 4.0, 2.0, 4.0}); };
+    const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 2, .evaluations = 300, .seed = 3});
+    ASSERT_EQ(tuned.folds.size(), 2U);
+    EXPECT_THAT(tuned.folds[0].held_out, ElementsAre("track0", "track2"));
+    EXPECT_NEAR(tuned.folds[0].parameters.d_e, 4.0, 0.05);
+    EXPECT_NEAR(tuned.folds[1].parameters.d_e, 2.0, 0.05);
+    EXPECT_NEAR(mean_over_scenes(tuned.folds[0].held_out_laps), 1.0 / 3.0, 0.02);  // 4 is 2 off
+}
+
+TEST(Tune, GivesTheSameForTheSameSeed) {
+    const auto tuned_with = [](std::uint64_t seed) {
+        const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.3, 3.9}); };
+        return tune(evaluate, RldParameters{}, {.folds = 1, .evaluations = 60, .seed = seed}).parameters;
+    };
+    EXPECT_EQ(to_unit_cube(tuned_with(5)), to_unit_cube(tuned_with(5)));
+    EXPECT_NE(to_unit_cube(tuned_with(5)), to_unit_cube(tuned_with(6)));
+}
+
+TEST(Tune, PassesOnWhatAnEvaluationThrowsAndRefusesMoreFoldsThanTracks) {
+    int calls = 0;
+    const auto fails_later = [&](const RldParameters& p) {
+        if (++calls > 5) throw InputError("", 0, "disk", "full");
+        return worth_by_d_e(p, {2.0});
+    };
+    EXPECT_THROW(static_cast<void>(tune(fails_later, {}, {.folds = 1, .evaluations = 30})), InputError);
+    const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.0}); };
+    EXPECT_ANY_THROW(static_cast<void>(tune(evaluate, {}, {.folds = 2, .evaluations = 1})));
+}
+
+class TuningLog : public FileTest {};
+
+TEST_F(TuningLog, RemembersAcrossRunsAndDropsALineCutShort) {
+    int calls = 0;
+    const auto evaluate = [&](const RldParameters& p) {
+        ++calls;
+        return worth_by_d_e(p, {1.0 / 3.0});
+    };
+    RldParameters other;
+    other.d_e = 2.0 / 3.0;
+    std::vector<LapFigure> first;
+    {
+        EvaluationLog log(path("log"), R"({"seed":1})", evaluate);
+        first = log(RldParameters{});
+        EXPECT_EQ(log(RldParameters{}), first);
+        EXPECT_EQ(calls, 1);
+    }
+    std::ofstream(path("log"), std::ios::app) << R"({"parameters":{"d_e":)";
+    EvaluationLog log(path("log"), R"({"seed":1})", evaluate);
+    EXPECT_EQ(log(RldParameters{}), first);
+    EXPECT_EQ(calls, 1);
+    static_cast<void>(log(other));
+    EXPECT_EQ(calls, 2);
+    EXPECT_EQ(log.evaluations(), 2U);
+    EXPECT_THROW(EvaluationLog(path("log"), R"({"seed":2})", evaluate), InputError);
+}
+
+SceneSet straight_track(double rate) {
+    SceneOptions options;
+    options.false_positive_rates = {rate};
+    options.ranges_m = {30.0};
+    options.every_m = 8.0;
+    return make_scene_set({"generated:straight"}, options);
+}
+
+TEST(Evaluation, IsTheSameForAnyNumberOfThreads) {
+    EvaluationOptions options;
+    options.nearest = 12;
+    options.time_limit_ms = 1e5;
+    const Evaluation one(straight_track(0.3), options);
+    options.threads = 2;
+    const Evaluation two(straight_track(0.3), options);
+    EXPECT_EQ(one(RldParameters{}), two(RldParameters{}));
+}
+
+TEST(Evaluation, CountsSlowScenesAsWorthless) {
+    EvaluationOptions options;
+    options.nearest = 12;
+    options.time_limit_ms = 1e5;
+    EXPECT_GT(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.9);
+    options.most_nodes = -1;
+    EXPECT_EQ(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.0);
+}
+
+TEST(Losses, NameTheConstraintThatTheGroundTruthBreaks) {
+    const SceneSet set = straight_track(0.0);
+    const AnnotatedScene& scene = set.scenes.front();
+    const auto loss = [&](auto change) {
+        RldParameters parameters;
+        change(parameters);
+        return loss_on(scene, parameters, 12, 1e5);
+    };
+    EXPECT_EQ(loss([](RldParameters&) {}), Loss::accurate);
+    EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::spacing);
+    EXPECT_EQ(loss([](RldParameters& p) { p.t_crit = 0.0; }), Loss::angle);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_min = 30.0; }), Loss::width);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_h = 0.0; }), Loss::heading);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_max = 0.0; }), Loss::endpoints);
+    EXPECT_EQ(loss([](RldParameters& p) { p.w_b = 0.0; }), Loss::cheaper_one);
+}
+
+TEST(ShippedParameters, AreValidAndChosenByTheConeSet) {
+    for (const std::string_view name : shipped_rld_parameter_names()) {
+        EXPECT_NO_THROW(validate(shipped_rld_parameters(name).value())) << name;
+    }
+    EXPECT_FALSE(shipped_rld_parameters(std::string_view("n13")));
+    const auto point = [](const RldParameters& parameters) { return to_unit_cube(parameters); };
+    EXPECT_EQ(point(shipped_rld_parameters(std::optional<std::size_t>(12))),
+              point(shipped_rld_parameters(std::string_view("n12")).value()));
+    EXPECT_EQ(point(shipped_rld_parameters(std::optional<std::size_t>())),
+              point(shipped_rld_parameters(std::string_view("full")).value()));
+}
+
+}  // namespace
+}  // namespace conelane::experiments
