@@ -13,8 +13,8 @@ namespace conelane::experiments {
 inline constexpr std::size_t kLargestSmallConeSet = 20;
 
 /// Tuned parameters that are part of the program: `n12` for the accuracy of lanes among the 12 nearest cones,
-/// `full` for lanes among all that is visible at 30 m. NAME.record.json beside NAME.json says how they were
-/// found.
+/// `full` for the IoU of lanes among all that is visible at 30 m. NAME.record.json beside NAME.json says on
+/// which scenes they were found, and what the same search gave on tracks held out from it.
 [[nodiscard]] std::vector<std::string_view> shipped_rld_parameter_names();
 
 /// The set of that name; nothing where there is none.
