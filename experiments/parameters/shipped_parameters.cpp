@@ -22,7 +22,7 @@ std::optional<RldParameters> shipped_rld_parameters(std::string_view name) {
 
 RldParameters shipped_rld_parameters(std::optional<std::size_t> cone_set_size) {
     const bool is_small = cone_set_size && *cone_set_size <= kLargestSmallConeSet;
-    return shipped_rld_parameters(std::string_view(is_small ? "n12" : "full")).value();
+    return is_small ? shipped_rld_parameters(std::string_view("n12")).value() : RldParameters{};
 }
 
 }  // namespace conelane::experiments
