@@ -1,6 +1,5 @@
 #include "experiments/methods.hpp"
 
-#include "experiments/parameters/shipped_parameters.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
@@ -20,7 +19,7 @@ std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation form
                                        std::optional<std::size_t> nearest, const MethodOptions& options) {
     if (options.nearest) nearest = options.nearest;
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {rld_parameters(nearest, options), nearest, 1e-9});
+                             {rld_parameters(options), nearest, 1e-9});
 }
 
 /// Shows its detector the nearest cones only.
@@ -99,9 +98,8 @@ std::optional<std::size_t> cone_set_size(const MethodEntry& method, const Method
     return options.nearest ? options.nearest : method.nearest;
 }
 
-RldParameters rld_parameters(std::optional<std::size_t> cone_set_size, const MethodOptions& options) {
-    RldParameters parameters =
-        options.rld_parameters ? *options.rld_parameters : shipped_rld_parameters(cone_set_size);
+RldParameters rld_parameters(const MethodOptions& options) {
+    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
     if (options.pairing) parameters.pairing = *options.pairing;
     return parameters;
 }

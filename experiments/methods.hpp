@@ -12,7 +12,7 @@
 namespace conelane::experiments {
 
 struct MethodOptions {
-    std::optional<RldParameters> rld_parameters;  ///< instead of those shipped for the cone-set size
+    std::optional<RldParameters> rld_parameters;  ///< instead of the defaults
     std::optional<Pairing> pairing;               ///< instead of the parameters'
     std::optional<std::size_t> nearest;           ///< cone-set size instead of the method's own
 };
@@ -37,8 +37,7 @@ struct MethodEntry {
 [[nodiscard]] std::optional<std::size_t> cone_set_size(const MethodEntry& method,
                                                        const MethodOptions& options);
 
-/// The parameters that an RLD method with that cone-set size gets under these options.
-[[nodiscard]] RldParameters rld_parameters(std::optional<std::size_t> cone_set_size,
-                                           const MethodOptions& options);
+/// The parameters that an RLD method gets under these options.
+[[nodiscard]] RldParameters rld_parameters(const MethodOptions& options);
 
 }  // namespace conelane::experiments

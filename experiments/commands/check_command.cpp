@@ -70,7 +70,7 @@ void add_check_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
-    add_parameter_options(command, options->parameters, "those the solvers are compared with");
+    add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { check_all(*options); });
 }
 

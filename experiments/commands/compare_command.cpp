@@ -54,7 +54,7 @@ void add_shared_options(CLI::App& command, Options& options) {
     add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", comparison.run.limits.keep_candidates,
                      "score every enumerated lane too");
-    add_parameter_options(command, options.parameters, "those shipped for the cone-set size");
+    add_parameter_options(command, options.parameters, "the defaults");
     command.add_option_function<std::string>(
         "--shard", [&comparison](const std::string& text) { comparison.shard = parse_shard(text); },
         "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane merge`");

@@ -50,7 +50,7 @@ void add_detect_command(CLI::App& program) {
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
-    add_parameter_options(command, options->parameters, "those shipped for the cone-set size");
+    add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { detect(*options); });
 }
 

@@ -41,7 +41,7 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
-    add_parameter_options(command, source.parameters, "those the solvers are compared with");
+    add_parameter_options(command, source.parameters, "the defaults");
 }
 
 Scene load_scene(const ProgramSource& source) {

@@ -121,7 +121,7 @@ void add_solve_command(CLI::App& program) {
     add_time_limit_option(command, options->limits.time_limit_ms);
     command.add_flag("--warm-start", options->warm_start,
                      "start from the lane graph of the scene before, its cones found again by id");
-    add_parameter_options(command, options->parameters, "those the solvers are compared with");
+    add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { solve_all(*options); });
 }
 

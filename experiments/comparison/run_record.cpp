@@ -49,12 +49,8 @@ std::string run_record(const ComparisonOptions& options) {
     for (const Entrant& entrant : options.entrants) {
         nlohmann::ordered_json json{{"name", entrant.method}};
         if (entrant.nearest) json["nearest"] = *entrant.nearest;
-        if (const MethodEntry& method = find_method(entrant.method); method.is_rld) {
-            MethodOptions method_options = options.run.method;
-            method_options.nearest = entrant.nearest;
-            json["rld_parameters"] =
-                to_json(rld_parameters(cone_set_size(method, method_options), method_options));
-        }
+        if (find_method(entrant.method).is_rld)
+            json["rld_parameters"] = to_json(rld_parameters(options.run.method));
         methods.push_back(json);
     }
     const SceneOptions& scenes = options.scenes;

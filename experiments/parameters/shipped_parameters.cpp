@@ -20,9 +20,4 @@ std::optional<RldParameters> shipped_rld_parameters(std::string_view name) {
     return parse_rld_parameters(text->json, std::string(name) + ".json");
 }
 
-RldParameters shipped_rld_parameters(std::optional<std::size_t> cone_set_size) {
-    const bool is_small = cone_set_size && *cone_set_size <= kLargestSmallConeSet;
-    return is_small ? shipped_rld_parameters(std::string_view("n12")).value() : RldParameters{};
-}
-
 }  // namespace conelane::experiments
