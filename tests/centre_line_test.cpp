@@ -5,6 +5,7 @@
 #include "model/invalid_input.hpp"
 #include "tests/recorded_tracks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -139,7 +140,7 @@ TEST(CentreLine, DoesNotDependOnWhereAClosedBoundaryStarts) {
     const Track track = generate_track("serpentine", 0);
     TrackBoundaries both = boundaries(track);
     const std::vector<Pose> poses = centre_line_poses(both, kEvery_m);
-    std::ranges::rotate(both.right, both.right.begin() + 31);
+    std::rotate(both.right.begin(), both.right.begin() + 31, both.right.end());
     const std::vector<Pose> rotated = centre_line_poses(both, kEvery_m);
     ASSERT_EQ(rotated.size(), poses.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "model/lane_graph.hpp"
 #include "tests/random_scenes.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -93,8 +94,7 @@ TEST(IsFeasible, AgreesWithTheChecker) {
             }
             if (below(4) == 0) graph.edges.push_back(make_edge(below(4), 4 + below(4)));
             std::ranges::sort(graph.edges);
-            const auto [first, last] = std::ranges::unique(graph.edges);
-            graph.edges.erase(first, last);
+            graph.edges.erase(std::unique(graph.edges.begin(), graph.edges.end()), graph.edges.end());
             const bool valid = check(scene, parameters, graph).violations.empty();
             ASSERT_EQ(is_feasible(problem, graph), valid) << "seed " << seed << ", trial " << trial;
             if (valid) ++feasible;

@@ -42,7 +42,7 @@ inline std::vector<Track> recorded_tracks() {
 /// Skips the test where there are no recorded tracks.
 #define CONELANE_RECORDED_TRACKS_OR_SKIP(tracks)                                    \
     const std::vector<Track> tracks = recorded_tracks();                            \
-    if (tracks.empty()) {                                                           \
+    if ((tracks).empty()) {                                                         \
         GTEST_SKIP() << "no recorded tracks in CONELANE_DATA or in ../shared/data"; \
     }                                                                               \
     static_assert(true, "a semicolon follows")

@@ -7,6 +7,7 @@
 #include "tests/boundary_checks.hpp"
 #include "tests/recorded_tracks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -277,7 +278,7 @@ TEST_F(TrackFiles, EufsOrderIsThatOfTheCircuitWritten) {
             ASSERT_EQ(actual.size(), expected.size());
             std::vector<std::size_t> found;
             for (const std::size_t index : actual) found.push_back(scrambled[index]);
-            std::ranges::rotate(found, std::ranges::find(found, expected.front()));
+            std::rotate(found.begin(), std::ranges::find(found, expected.front()), found.end());
             EXPECT_EQ(found, expected);
         };
         expect_order(circuit.left, read.left);

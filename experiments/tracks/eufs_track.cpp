@@ -176,7 +176,7 @@ void start_nearest_ahead(Boundary& boundary, const std::vector<Cone>& cones, con
         return car.ahead_m(position) < 0.0 ? std::numeric_limits<double>::infinity()
                                            : (position - car.position).norm();
     };
-    std::ranges::rotate(boundary, std::ranges::min_element(boundary, {}, distance_m));
+    std::rotate(boundary.begin(), std::ranges::min_element(boundary, {}, distance_m), boundary.end());
 }
 
 }  // namespace
