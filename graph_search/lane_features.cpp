@@ -69,7 +69,8 @@ PaperFeatures paper_features(std::span<const Point> left, std::span<const Point>
 
         const std::span<const Point> boundary = boundaries[side];
         std::vector<Point> segments;
-        for (std::size_t i = 1; i < boundary.size(); ++i) segments.push_back(boundary[i] - boundary[i - 1]);
+        for (std::size_t i = 1; i < boundary.size(); ++i)
+            segments.emplace_back(boundary[i] - boundary[i - 1]);
         if (closed) segments.emplace_back(boundary.front() - boundary.back());
         Moments length;
         Moments turn;
@@ -102,7 +103,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
     Boundary& own = boundaries_[side];
     const Boundary& facing = boundaries_[opposite(side)];
     const Point& facing_tip = tip_[opposite(side)];
-    const Point point = graph.position(vertex);
+    const Point& point = graph.position(vertex);
     const Point segment = point - tip_[side];
     const double length_m = segment.norm();
     const Point direction = segment / length_m;

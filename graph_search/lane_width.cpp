@@ -194,7 +194,7 @@ void OnlineLaneWidth::push_unmeasured(Side side, const Point& point) {
     rows_[other].make_room(new_row + n);
     rows_[other].begins.push_back(new_row);
     rows_[side].make_room(rows_[side].begins.back() + boundaries_[side].size);
-    states_.push_back(State{states_.back()});
+    states_.emplace_back(states_.back());
 }
 
 void OnlineLaneWidth::pop(Side side) {

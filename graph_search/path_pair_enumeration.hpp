@@ -126,7 +126,7 @@ class PathPairEnumeration {
     bool drop_visited(Call& call, Side side) const;
     /// Where the guide goes on, for the sides where it does; both sides' options keep kNoOption otherwise.
     [[nodiscard]] NextOptions guided_options(const Call& call);
-    [[nodiscard]] Side choose_side(const Call& call, const NextOptions& next) const;
+    [[nodiscard]] Side choose_side(const Call& call, const NextOptions& options) const;
     void record(const Call& call, std::int64_t iteration, PathPairs& pairs);
 
     const SearchGraph* graph_ = nullptr;

@@ -18,7 +18,7 @@ constexpr std::array<std::size_t, 6> kPairs{1, 4, 6, 21, 23, 25};
 
 class RankNet final : public LaneRanking {
   public:
-    explicit RankNet(const RankNetWeights& weights) : weights_(weights) {}
+    explicit RankNet(RankNetWeights weights) : weights_(std::move(weights)) {}
 
     void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const override {
         assert(lanes.size() == scores.size());

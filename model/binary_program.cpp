@@ -41,7 +41,7 @@ void RowWriter::add(int column, double coefficient) {
 }
 
 void RowWriter::end() {
-    for (std::size_t entry = static_cast<std::size_t>(program_.row_starts.back());
+    for (auto entry = static_cast<std::size_t>(program_.row_starts.back());
          entry < program_.entry_columns.size(); ++entry) {
         position_[static_cast<std::size_t>(program_.entry_columns[entry])] = -1;
     }

@@ -139,8 +139,9 @@ int main(int argument_count, char** arguments) {
     benchmark::Initialize(&argument_count, arguments);
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
-        using namespace conelane::experiments;
-        register_all(std::make_shared<const std::vector<AnnotatedScene>>(make_scenes()));
+        namespace experiments = conelane::experiments;
+        experiments::register_all(
+            std::make_shared<const std::vector<experiments::AnnotatedScene>>(experiments::make_scenes()));
     } catch (const std::exception& failure) {
         std::cerr << "conelane_benchmarks: " << failure.what() << '\n';
         return 2;
