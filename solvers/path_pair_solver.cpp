@@ -11,7 +11,7 @@
 namespace conelane {
 namespace {
 
-using namespace path_pair;
+using namespace path_pair;  // NOLINT(google-build-using-namespace): this is its face
 
 // Labels are exact to less than this, so smaller gaps cannot be told from none.
 constexpr double kLeastGap = 1e-10;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <coin/symphony.h>
@@ -25,7 +26,7 @@ using Environment = std::unique_ptr<sym_environment, CloseEnvironment>;
 /// over reliably after rows were added.
 class SymphonySession : public MilpSession {
   public:
-    explicit SymphonySession(const BinaryProgram& program) : program_(program) {}
+    explicit SymphonySession(BinaryProgram program) : program_(std::move(program)) {}
 
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);

@@ -39,7 +39,7 @@ void ArcGraph::build(const LaneGraphProblem& problem) {
             const int edge_i = edge_of_problem_[turn.edge_i];
             const int edge_k = edge_of_problem_[turn.edge_k];
             if (turn.high_cost || edge_i < 0 || edge_k < 0) continue;
-            const int middle = static_cast<int>(turn.middle);
+            const auto middle = static_cast<int>(turn.middle);
             const int from_i = tail(2 * edge_i) == middle ? 2 * edge_i : 2 * edge_i + 1;
             const int from_k = tail(2 * edge_k) == middle ? 2 * edge_k : 2 * edge_k + 1;
             visit(from_i ^ 1, from_k, turn.cost);

@@ -54,8 +54,8 @@ class BranchAndBound {
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
-    bool fix(Node& node);
-    bool remember_a_cone(Node& node);
+    bool fix(Node& here);
+    bool remember_a_cone(Node& here);
     struct Branching {
         enum class On { nothing, end, edge } on;
         int what;  ///< the cone or the edge

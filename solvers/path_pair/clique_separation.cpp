@@ -49,7 +49,7 @@ int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> ed
         }
         for (std::size_t w = 0; w < common_.size(); ++w) {
             for (std::uint64_t bits = common_[w]; bits != 0; bits &= bits - 1) {
-                const int e = static_cast<int>(w * 64) + std::countr_zero(bits);
+                const auto e = static_cast<int>(w * 64) + std::countr_zero(bits);
                 if (edge_alive[static_cast<std::size_t>(e)] != 0 && in_common(e)) join(e);
             }
         }

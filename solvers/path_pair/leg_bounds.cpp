@@ -37,8 +37,8 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
                 }
                 const double value = label[a];
                 for (int position = graph.out_start[a]; position < graph.out_start[a + 1]; ++position) {
-                    const std::size_t p = static_cast<std::size_t>(position);
-                    const std::size_t b = static_cast<std::size_t>(graph.out_arc[p]);
+                    const auto p = static_cast<std::size_t>(position);
+                    const auto b = static_cast<std::size_t>(graph.out_arc[p]);
                     const double candidate = value + graph.out_cost[p] + reduced[b];
                     if (candidate < label[b] - kGain) {
                         label[b] = candidate;
@@ -72,8 +72,8 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
                 open_[word] &= ~(std::uint64_t{1} << bit);
                 const double value = label[b] + reduced[b];
                 for (int position = graph.in_start[b]; position < graph.in_start[b + 1]; ++position) {
-                    const std::size_t p = static_cast<std::size_t>(position);
-                    const std::size_t a = static_cast<std::size_t>(graph.in_arc[p]);
+                    const auto p = static_cast<std::size_t>(position);
+                    const auto a = static_cast<std::size_t>(graph.in_arc[p]);
                     const double candidate = value + graph.in_cost[p];
                     if (candidate < label[a] - kGain && usable[a] != 0) {
                         label[a] = candidate;
@@ -89,7 +89,7 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
 bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle) {
     colour_.assign(before.size(), -1);
     for (std::size_t first = 0; first < before.size(); ++first) {
-        int a = static_cast<int>(first);
+        auto a = static_cast<int>(first);
         while (a >= 0 && colour_[static_cast<std::size_t>(a)] < 0) {
             colour_[static_cast<std::size_t>(a)] = static_cast<int>(first);
             a = before[static_cast<std::size_t>(a)];
@@ -111,7 +111,7 @@ void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::sp
                  std::vector<double>& cone_price) {
     double cost = 0.0;
     for (std::size_t k = 0; k < cycle.size(); ++k) {
-        const std::size_t a = static_cast<std::size_t>(cycle[k]);
+        const auto a = static_cast<std::size_t>(cycle[k]);
         const int next = cycle[(k + 1) % cycle.size()];
         const auto* const first = graph.out_arc.data() + graph.out_start[a];
         const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];

@@ -29,7 +29,7 @@ class Decisions {
     void reset(const ArcGraph& graph);
 
     /// Demands an edge, or takes the demand back.
-    void require_edge(const ArcGraph& graph, int edge, bool required);
+    void require_edge(const ArcGraph& graph, int which, bool required);
     [[nodiscard]] bool edge_required(int edge) const { return edge_[static_cast<std::size_t>(edge)] != 0; }
 
     /// Whether a far cone ends a leg.

@@ -16,6 +16,7 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
     for (int a = 0; a < graph.arc_count(); ++a) {
         if (starting_cone[static_cast<std::size_t>(graph.tail(a))] != 0) reach(a);
     }
+    // NOLINTNEXTLINE(modernize-loop-convert): `reach` appends to `arc`
     for (std::size_t done = 0; done < arc.size(); ++done) {
         for (const ArcGraph::Succession& next : graph.successions(arc[done])) reach(next.arc);
     }
@@ -46,7 +47,7 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     head.clear();
     first.clear();
     for (const int old : order) {
-        const std::size_t a = static_cast<std::size_t>(old);
+        const auto a = static_cast<std::size_t>(old);
         index[a] = size();
         arc.push_back(source.arc[a]);
         tail.push_back(source.tail[a]);
@@ -57,9 +58,9 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     out_arc.clear();
     out_cost.clear();
     for (const int old : order) {
-        const std::size_t a = static_cast<std::size_t>(old);
+        const auto a = static_cast<std::size_t>(old);
         for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
-            const std::size_t p = static_cast<std::size_t>(position);
+            const auto p = static_cast<std::size_t>(position);
             const int next = index[static_cast<std::size_t>(source.out_arc[p])];
             if (keep_out[p] == 0 || next < 0) continue;
             out_arc.push_back(next);
@@ -96,8 +97,8 @@ void ResidualGraph::split(const ResidualGraph& source, int cone, std::vector<int
         for (std::size_t visited = 0; visited < 2; ++visited) {
             if (index[2 * a + visited] < 0) continue;
             for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
-                const std::size_t p = static_cast<std::size_t>(position);
-                const std::size_t b = static_cast<std::size_t>(source.out_arc[p]);
+                const auto p = static_cast<std::size_t>(position);
+                const auto b = static_cast<std::size_t>(source.out_arc[p]);
                 const bool arrives = source.head[b] == cone;
                 if (arrives && visited == 1) continue;
                 const int next = index[2 * b + (arrives ? 1 : visited)];
@@ -118,9 +119,9 @@ void ResidualGraph::index_predecessors() {
     in_arc.resize(out_arc.size());
     in_cost.resize(out_arc.size());
     for (int a = 0; a < size(); ++a) {
-        const std::size_t from = static_cast<std::size_t>(a);
+        const auto from = static_cast<std::size_t>(a);
         for (int position = out_start[from]; position < out_start[from + 1]; ++position) {
-            const std::size_t p = static_cast<std::size_t>(position);
+            const auto p = static_cast<std::size_t>(position);
             const std::size_t slot =
                 static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
             in_arc[slot] = a;
