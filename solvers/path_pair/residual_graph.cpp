@@ -122,8 +122,7 @@ void ResidualGraph::index_predecessors() {
         const auto from = static_cast<std::size_t>(a);
         for (int position = out_start[from]; position < out_start[from + 1]; ++position) {
             const auto p = static_cast<std::size_t>(position);
-            const std::size_t slot =
-                static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
+            const auto slot = static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
             in_arc[slot] = a;
             in_cost[slot] = out_cost[p];
         }
