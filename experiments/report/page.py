@@ -4,7 +4,8 @@ import json
 import pkgutil
 from html import escape
 
-from . import clc_figures, comparison, gallery, provenance, rld_figures, sweep, verdict
+from . import experiments, filters, gallery, provenance, verdict
+from .experiment import blocks
 from .load import CATEGORIES
 from .scenes import read_scenes
 from .theme import METHOD_COLOURS
@@ -60,10 +61,11 @@ def render(results, published):
     """The whole page as text; the same results give the same bytes."""
     data = read_scenes(results)
     sections = (
-        ("verdict", "Verdict", verdict.html(results) + sweep.html(results)),
-        ("comparison", "Comparison", comparison.html(results) + sweep.figures(results)),
-        ("rld", "Beside the RLD paper", rld_figures.html(results, published)),
-        ("clc", "Beside the CLC paper", clc_figures.html(results, published)),
+        ("verdict", "Verdict", verdict.html(results)),
+        ("comparison", "Comparison", filters.html(results) + blocks(experiments.COMPARISON, results, published)),
+        ("exactness", "What exactness buys", blocks(experiments.EXACTNESS, results, published)),
+        ("rld", "Beside the RLD paper", blocks(experiments.RLD_PAPER, results, published)),
+        ("clc", "Beside the CLC paper", blocks(experiments.CLC_PAPER, results, published)),
         ("gallery", "Scenes", gallery.html(results, data)),
         ("play", "Scene viewer", _viewer(results, data)),
         ("protocol", "Protocol and provenance", provenance.html(results, data)))

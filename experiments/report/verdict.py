@@ -5,53 +5,12 @@ from html import escape
 import numpy as np
 
 from . import measures
-from .figures import percent_label
+from .experiments import optimality
+from .figures import name_of_set, percent_label
+from .leaders import MEASURES, REAL_TIME_BUDGET_MS, leaders_of
 from .tables import Column, Cell, table, text
 
-REAL_TIME_BUDGET_MS = 50.0
-
-
-def accurate_values(part):
-    part = part.known("accurate")
-    return dict(zip(part.scene, part.accurate)), dict(zip(part.scene, part.track))
-
-
-def success_values(part):
-    return dict(zip(part.scene, part.success)), dict(zip(part.scene, part.track))
-
-
-def difference_interval(first, second, values_of):
-    """Interval of the mean of first - second over the scenes that both have; None for a single track."""
-    (a, tracks), (b, _) = values_of(first), values_of(second)
-    scenes = [scene for scene in a if scene in b]
-    if not scenes:
-        return None
-    differences = np.array([a[scene] - b[scene] for scene in scenes])
-    return measures.mean_interval(differences, np.array([tracks[scene] for scene in scenes], dtype=object))
-
-
-MEASURES = (("accurate", "accurate", accurate_values), ("success", "successful", success_values))
 _NBSP = "\u00a0"
-
-
-def leaders_of(parts, values_of):
-    """(mean, samples): the highest mean, and all that the tracks do not tell from it. None without values."""
-    means = [(float(np.mean(list(values_of(part)[0].values()))), part) for part in parts if values_of(part)[0]]
-    if not means:
-        return None
-    best_mean, best = max(means, key=lambda pair: pair[0])
-    level = [best]
-    for mean, part in means:
-        if part is best:
-            continue
-        interval = difference_interval(best, part, values_of)
-        if mean == best_mean or (interval and interval[0] <= 0.0 <= interval[1]):
-            level.append(part)
-    return best_mean, level
-
-
-def _name_of_set(nearest):
-    return "all that is visible" if nearest is None else f"the {nearest} nearest cones"
 
 
 def _grid(results):
@@ -109,7 +68,7 @@ def _pieces(rates, leaders):
 
 def _sentence(results, nearest, grid):
     """The leaders on one cone set by both measures."""
-    lead = "Of all methods" if nearest == "any" else f"On {_name_of_set(nearest)}"
+    lead = "Of all methods" if nearest == "any" else f"On {name_of_set(nearest)}"
     samples = [sample for sample in results.samples if nearest in ("any", sample.nearest)]
     parts = []
     for name, words, _ in MEASURES:
@@ -163,6 +122,33 @@ def _agreement_sentence(results):
     return "".join(pieces)
 
 
+def _checker_sentence(results):
+    """What the independent checker said of what the RLD methods answered."""
+    accepted = int(sum(np.nansum(sample.checked) for sample in results.samples))
+    errors = int(sum(np.sum(sample.status == "error") for sample in results.samples))
+    if not accepted:
+        return ""
+    failed = "no answer was an error" if not errors else f"{errors} answers were errors and count as failures"
+    return (f"<li>The independent checker accepts all {accepted} lane graphs that RLD methods answered and that are "
+            f"scored as such; {failed}.</li>")
+
+
+def _optimality_sentence(results):
+    """How far the graph search is from RLD's optimum, and which of the two drives better."""
+    rows = optimality.compared(optimality.read(results))
+    if not rows:
+        return ""
+    equal = np.mean([float(row["equal"]) for row in rows])
+    best, candidate = (optimality.success(rows, name) for name in ("optimum", "candidate"))
+    interval = measures.mean_interval(best - candidate, optimality.tracks_of(rows))
+    told = interval and not interval[0] <= 0.0 <= interval[1]
+    drives = ("drives no better or worse" if not told else
+              "drives better" if best.mean() > candidate.mean() else "drives worse")
+    return (f"<li>Under RLD's objective, the best of CLC's candidates is the proven optimum in {100 * equal:.1f}{_NBSP}% of "
+            f"{len(rows)} scenes. The optimum {drives}: success {100 * best.mean():.1f}{_NBSP}% against "
+            f"{100 * candidate.mean():.1f}{_NBSP}%.</li>")
+
+
 def _tiles(results):
     scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
     tracks = len({track for sample in results.samples for track in sample.track})
@@ -197,4 +183,4 @@ def html(results):
     grid = _grid(results)
     sentences = "".join(_sentence(results, nearest, grid) for nearest in dict.fromkeys(key[0] for key in grid))
     return (_tiles(results) + f'<ul class="verdict">{sentences}{_speed_sentence(results)}'
-            f"{_agreement_sentence(results)}</ul>" + _grid_table(results, grid))
+            f"{_agreement_sentence(results)}{_optimality_sentence(results)}{_checker_sentence(results)}</ul>" + _grid_table(results, grid))
