@@ -3,6 +3,7 @@
 #include "experiments/comparison/backends.hpp"
 #include "experiments/files/scene_file.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct Options {
     std::string scenes;
     std::string out;
     BackendOptions backends;
+    std::vector<std::string> solvers;
     bool warm_start = false;
     ParameterSource parameters;
 };
@@ -23,6 +25,7 @@ struct Options {
 void measure(Options& options) {
     options.backends.parameters = options.parameters.load();
     for (const Backend& backend : exact_backends()) {
+        if (std::ranges::find(options.solvers, backend.solver) == options.solvers.end()) continue;
         options.backends.backends.push_back(backend);
         if (!options.warm_start) continue;
         options.backends.backends.push_back(backend);
@@ -41,6 +44,14 @@ void add_backends_command(CLI::App& program) {
         *program.add_subcommand("backends", "every exact solver on the same cone sets: optimum, time, nodes");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    std::vector<std::string> known;
+    for (const Backend& backend : exact_backends()) known.push_back(backend.solver);
+    options->solvers = known;
+    command
+        .add_option("--solvers", options->solvers, "exact ones; the formulation is the one each is best on")
+        ->delimiter(',')
+        ->check(CLI::IsMember(known))
+        ->capture_default_str();
     command.add_option("--sizes", options->backends.sizes, "cones of a scene, the nearest ahead")
         ->delimiter(',')
         ->check(CLI::Range(1, 1000))

@@ -1,5 +1,6 @@
 """report RESULTS PAGE PUBLISHED PICTURES: RESULTS is the directory of a comparison, PUBLISHED a JSON object with the
-papers' figures, PICTURES a folder for the main figures as PNG or empty. Anything wrong with the input is one line on stderr and exit code 2."""
+papers' figures, PICTURES a folder for the main figures as PNG or empty. Anything wrong with the input is one line on
+stderr and exit code 2."""
 
 import json
 import os

@@ -56,6 +56,11 @@ class Sample:
         return label_of(self.method, self.nearest)
 
     @property
+    def carries_state(self):
+        """From scene to scene of a lap, as the names of such methods say."""
+        return self.method.endswith("-warm")
+
+    @property
     def success(self):
         return np.isin(self.category, SUCCESSES).astype(float)
 

@@ -63,7 +63,8 @@ def _cell_html(cell, column, tag):
 
 
 def table(name, caption, columns, rows, published_rows=(), row_attributes=None, note=""):
-    """`caption` is empty where the table stands below an experiment's title. `published_rows`: numbers of the rows that a paper prints, or how many of the first ones."""
+    """`caption` is empty where the table stands below an experiment's title. `published_rows`: numbers of the rows
+    that a paper prints, or how many of the first ones."""
     if isinstance(published_rows, int):
         published_rows = range(published_rows)
     published_rows = set(published_rows)

@@ -64,6 +64,13 @@ def logarithmic(axis):
     axis.set_minor_formatter(lambda value, _: "")
 
 
+def percent_axis(axes):
+    """Room for a marker at 100 %, and no tick above."""
+    axes.set_ylim(top=102)
+    bottom = axes.get_ylim()[0]
+    axes.set_yticks([tick for tick in axes.get_yticks() if bottom <= tick <= 100])
+
+
 def new_figure(height=2.9, width=4.7):
     return pyplot.subplots(figsize=(width, height), layout="constrained")
 
@@ -74,7 +81,7 @@ def legend(axes):
     if handles:
         height_in = axes.figure.get_size_inches()[1]
         axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.5 / (height_in - 0.7)),
-                    ncol=2 if max(map(len, labels)) < 30 else 1, handlelength=2.4, columnspacing=1.4)
+                    ncol=max(1, min(3, 54 // (6 + max(map(len, labels))))), handlelength=2.4, columnspacing=1.4)
 
 
 @contextlib.contextmanager

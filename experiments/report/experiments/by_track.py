@@ -1,6 +1,6 @@
 """Success by track
 
-Claim: whether a method's success hangs on the track.
+Claim: Does a method's success hang on the track?
 Protocol: all rates and ranges of a track together.
 Source: this project.
 Command: conelane compare --out RESULTS

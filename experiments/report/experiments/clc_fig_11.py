@@ -1,8 +1,8 @@
 """CLC Fig. 11: iterations to the first good candidate
 
-Claim: a candidate of IoU ≥ 98 % is enumerated early, in nearly every scene.
-Protocol: share of scenes, rates up to 30 %, in which such a candidate was enumerated by then. A plateau below 100 % is \
-what the search does not find within its limit.
+Claim: A candidate of IoU ≥ 98 % is enumerated early, in nearly every scene.
+Protocol: share of scenes, rates up to 30 %, in which such a candidate was enumerated by then. A plateau below 100 % \
+is what the search does not find within its limit.
 Source: CLC paper, VIII-E, Fig. 11.
 Published: most within 500 iterations; 5 % of scenes without one after 2500; a plateau up to 20000.
 Command: conelane compare --methods clc --candidates --out RESULTS

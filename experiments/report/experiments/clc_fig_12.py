@@ -1,8 +1,8 @@
 """CLC Fig. 12: lane lengths
 
-Claim: lanes are as long as the ground truth.
-Protocol: filled: the ground truth (12a). Lines: lanes that do not diverge (12b). Rates up to 30 %, bins of 5 m, in per \
-cent of all scenes.
+Claim: Lanes are as long as the ground truth.
+Protocol: filled: the ground truth (12a). Lines: lanes that do not diverge (12b). Rates up to 30 %, bins of 5 m, in \
+per cent of all scenes.
 Source: CLC paper, VIII-D, Fig. 12.
 Published: a picture; lanes of up to 100 m, some of 150 m.
 Command: conelane compare --out RESULTS

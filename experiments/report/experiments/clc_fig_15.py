@@ -1,8 +1,8 @@
 """CLC Fig. 15: latency of the graph search
 
-Claim: the graph search is fast enough for a car, at its worst too.
-Protocol: methods that enumerate, all rates and ranges. Quartiles and median; whiskers to the 1st and 99th percentile; \
-the tick is the maximum.
+Claim: The graph search is fast enough for a car, at its worst too.
+Protocol: methods that enumerate, all rates and ranges. Quartiles and median; whiskers to the 1st and 99th \
+percentile; the tick is the maximum.
 Source: CLC paper, VIII-G, Fig. 15: Intel i7-12700K.
 Published: median below 5 ms, maximum 12 ms.
 Command: conelane compare --methods clc --out RESULTS

@@ -1,6 +1,6 @@
 """CLC Fig. 16: latency by effort
 
-Claim: latency grows in proportion to the iterations, and little with the points of the map.
+Claim: Latency grows in proportion to the iterations, and little with the points of the map.
 Protocol: mean and one standard deviation in ten bins of equal width; bins of a single scene are left out.
 Source: CLC paper, VIII-G, Fig. 16.
 Published: a picture; linear in the iterations, less than proportional to map points, up to 2500 iterations.

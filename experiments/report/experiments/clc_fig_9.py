@@ -1,8 +1,8 @@
 """CLC Fig. 9: where lanes diverge
 
-Claim: lanes that go wrong do so far from the car.
-Protocol: distance along the boundary up to which a diverging lane is right, rates up to 30 %, bins of 5 m, in per cent \
-of all scenes. Left of the line a divergence is critical.
+Claim: Lanes that go wrong do so far from the car.
+Protocol: distance along the boundary up to which a diverging lane is right, rates up to 30 %, bins of 5 m, in per \
+cent of all scenes. Left of the line a divergence is critical.
 Source: CLC paper, VIII-D, Fig. 9.
 Published: a picture only; its sums are in Table I: 2.2 to 4.1 % diverge from 20 m on, 0.6 to 0.8 % before.
 Command: conelane compare --out RESULTS

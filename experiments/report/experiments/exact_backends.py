@@ -1,9 +1,9 @@
 """Exact backends
 
-Claim: all exact solvers have the same optimum; they differ in time.
+Claim: All exact solvers have the same optimum; they differ in time.
 Protocol: every backend on the same cone sets of the same scenes, one thread, pinned; the time is from the scene in \
-memory to the lane graph in memory, the program's building included. Every lane graph passes the independent checker or \
-counts as an error. Time-outs stay in every figure with the time they took.
+memory to the lane graph in memory, the program's building included. Every lane graph passes the independent checker \
+or counts as an error. Time-outs stay in every figure with the time they took.
 Source: this project; the RLD paper runs Mosek on the printed formulation.
 Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
 Command: conelane backends --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl

@@ -1,9 +1,9 @@
 """Latency
 
-Claim: which method answers in time, at the median and in the tail.
-Protocol: from the scene in memory to the lane in memory, the building of any model included; one thread, pinned to one \
-processor; one untimed call a lap before. A run at its time limit counts with the time it took. The real-time budget is \
-50 ms, the period of a 20 Hz LiDAR.
+Claim: Which method answers in time, at the median and in the tail?
+Protocol: from the scene in memory to the lane in memory, the building of any model included; one thread, pinned to \
+one processor; one untimed call a lap before. A run at its time limit counts with the time it took. The real-time \
+budget is 50 ms, the period of a 20 Hz LiDAR.
 Source: this project.
 Command: conelane compare --out RESULTS
 """
@@ -60,7 +60,6 @@ def by_rate_figure(results):
         style = method_style(results.methods, sample.method, variant)
         axes.plot(rates, medians, label=sample.label, **style)
         axes.plot(rates, tails, **style | {"linewidth": 0.8, "markersize": 2.5, "alpha": 0.75})
-        axes.fill_between(rates, medians, tails, color=style["color"], alpha=0.07, linewidth=0)
     _budget(axes, axes.axhline, (100 * results.rates[0], REAL_TIME_BUDGET_MS), xytext=(0, 3), ha="left")
     axes.set_yscale("log")
     logarithmic(axes.yaxis)

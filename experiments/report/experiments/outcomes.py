@@ -1,6 +1,6 @@
 """What became of the scenes
 
-Claim: how methods fail, not only how often.
+Claim: How do methods fail, not only how often?
 Protocol: the first that fits of: no lane, ground truth, diverging, too short, near. All but none and diverging below \
 20 m are successes. Errors, a part of none: the method failed, or the independent checker rejected what an RLD method \
 answered; the checker recomputes every constraint, objective and bound from the scene.

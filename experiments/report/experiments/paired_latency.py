@@ -1,8 +1,8 @@
 """Paired latencies
 
-Claim: by what factor methods of the same cone set differ in time on the same scene.
-Protocol: geometric mean over scenes of a method's time divided by that of the method with the least shifted geometric \
-mean on the same cone set; 2.00 is twice the time. 95 % bootstrap interval, tracks resampled.
+Claim: By what factor do methods of the same cone set differ in time on the same scene?
+Protocol: geometric mean over scenes of a method's time divided by that of the method with the least shifted \
+geometric mean on the same cone set; 2.00 is twice the time. 95 % bootstrap interval, tracks resampled.
 Source: this project.
 Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS
 """

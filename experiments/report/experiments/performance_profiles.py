@@ -1,6 +1,6 @@
 """Performance profiles
 
-Claim: which exact method is fastest on most scenes, and how far behind the others are.
+Claim: Which exact method is fastest on most scenes, and how far behind are the others?
 Protocol: Dolan and Moré: the share of scenes that a method solves to proven optimality within a multiple of the \
 fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set only; \
 what is unproven after 0.4 s counts as unsolved.
@@ -50,7 +50,8 @@ def html(results, published):
         figure = profile_figure([sample.label for sample in samples],
                                 [method_style(results.methods, sample.method) for sample in samples],
                                 np.array(columns).T)
-        figures.append(drawn(f"profile-{nearest or 'all'}", f"On {name_of_set(nearest)}, {len(scenes)} scenes.", figure))
+        figures.append(drawn(f"profile-{nearest or 'all'}", f"On {name_of_set(nearest)}, {len(scenes)} scenes.",
+                             figure))
     if not figures:
         raise Missing("no two methods that prove optimality saw the same cone sets.")
     return group(figures) if len(figures) > 1 else figures[0]

@@ -1,10 +1,11 @@
 """RLD Fig. 6: distribution of latency at n = 12
 
-Claim: nearly every scene of 12 cones is solved within 0.4 s, most of them far sooner.
+Claim: Nearly every scene of 12 cones is solved within 0.4 s, most of them far sooner.
 Protocol: every method that saw the 12 nearest cones, all rates and ranges together. Solved: within 0.4 s with an \
 absolute gap of at most 1e-5.
 Source: RLD paper, IV-A, Fig. 6: Mosek, its own machine and a car's own laps.
-Published: 97.19 % solved within 0.4 s, mean of these 71.79 ms, 95 % of all within 155.88 ms, standard deviation 51.96 ms.
+Published: 97.19 % solved within 0.4 s, mean of these 71.79 ms, 95 % of all within 155.88 ms, standard deviation \
+51.96 ms.
 Command: conelane compare --methods rld-cbc,rld-paper --nearest 12 --out RESULTS
 """
 

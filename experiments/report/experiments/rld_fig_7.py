@@ -1,11 +1,13 @@
 """RLD Fig. 7: inaccurate lanes by topology
 
-Claim: few lanes are inaccurate, whatever the topology, up to as many false positives as cones.
-Protocol: methods that saw the 12 nearest cones, on tracks called straight, circle and curvy; the share of scenes where \
-one of the paper's four checks fails. Its ratio 1:5 is 16.7 % of all points, 1:1 is 50 %. One scale for all topologies.
+Claim: Few lanes are inaccurate, whatever the topology, up to as many false positives as cones.
+Protocol: methods that saw the 12 nearest cones, on tracks called straight, circle and curvy; the share of scenes \
+where one of the paper's four checks fails. Its ratio 1:5 is 16.7 % of all points, 1:1 is 50 %. One scale for all \
+topologies.
 Source: RLD paper, IV-B, Fig. 7: its own tracks; the parameters of its model are not printed.
 Published: 3.62 % inaccurate at 1:5, less than 10 % at 1:1, all three topologies together.
-Command: conelane compare --tracks generated:straight generated:circle generated:curvy --fp 0,0.1667,0.2857,0.375,0.4444,0.5 --out RESULTS
+Command: conelane compare --tracks generated:straight generated:circle generated:curvy --fp \
+0,0.1667,0.2857,0.375,0.4444,0.5 --out RESULTS
 """
 
 import numpy as np

@@ -1,8 +1,8 @@
 """The same cone set for all
 
-Claim: which method is ahead at which cone-set size, and how its time grows.
-Protocol: every method on the n nearest cones ahead, the same scenes at every size. Several names: the paired difference \
-to the best has a 95 % interval, tracks resampled, that holds zero.
+Claim: Which method is ahead at which cone-set size, and how does its time grow?
+Protocol: every method on the n nearest cones ahead, the same scenes at every size. Several names: the paired \
+difference to the best has a 95 % interval, tracks resampled, that holds zero.
 Source: this project; the sizes are those of the RLD paper's Fig. 5 and beyond.
 Command: conelane sweep --out RESULTS/sweep
 """
@@ -13,7 +13,7 @@ from .. import measures
 from ..experiment import Missing
 from ..figures import drawn, group, percent_label
 from ..tables import Cell, Column, method_cell, milliseconds, table
-from ..theme import ACCENT, legend, logarithmic, method_style, new_figure
+from ..theme import ACCENT, legend, logarithmic, method_style, new_figure, percent_axis
 from ..leaders import MEASURES, REAL_TIME_BUDGET_MS, leaders_of
 
 
@@ -49,7 +49,6 @@ def growth_figure(results):
         style = method_style(results.methods, method)
         axes.plot(sizes, medians, label=method, **style)
         axes.plot(sizes, tails, **style | {"linewidth": 0.8, "markersize": 2.5, "alpha": 0.75})
-        axes.fill_between(sizes, medians, tails, color=style["color"], alpha=0.07, linewidth=0)
     axes.axhline(REAL_TIME_BUDGET_MS, color=ACCENT, linewidth=1)
     axes.annotate("50 ms", (min(s.nearest for s in results.sweep), REAL_TIME_BUDGET_MS), xytext=(0, 3),
                   textcoords="offset points", color=ACCENT, fontsize=8)
@@ -79,7 +78,7 @@ def quality_figure(results, words, values_of):
                           **method_style(results.methods, method))
     axes.set_xlabel("cones in the set, n")
     axes.set_ylabel(f"{words} [%]")
-    axes.set_ylim(top=102)
+    percent_axis(axes)
     legend(axes)
     return figure
 
