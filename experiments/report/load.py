@@ -105,6 +105,11 @@ class Results:
     def path(self, name):
         return os.path.join(self.directory, name)
 
+    def origin(self, row):
+        """A sentence where a stored row comes from another commit than the comparison; else nothing."""
+        commit = row.get("commit", "unknown")
+        return "" if commit == self.run.get("commit", "unknown") else f" Measured at commit {commit}."
+
 
 _SCENE_AT_START = re.compile(r'\{"(?:id|scene)":"([^"\\]*)"')
 

@@ -12,10 +12,11 @@ _WARM = " warm"
 
 
 class Solves:
-    """The solves of one backend at one cone-set size, columns as arrays of one length."""
+    """The solves of one backend at one cone-set size, columns as arrays of one length. `origin` is a sentence where
+    they come from another commit than the comparison."""
 
-    def __init__(self, nearest, backend, rows):
-        self.nearest, self.backend = nearest, backend
+    def __init__(self, nearest, backend, rows, origin):
+        self.nearest, self.backend, self.origin = nearest, backend, origin
         self.scene = np.array([row["scene"] for row in rows], dtype=object)
         self.track = np.array([row["track"] for row in rows], dtype=object)
         self.status = np.array([row["status"] for row in rows], dtype=object)
@@ -53,7 +54,8 @@ def read(results):
         if row["status"] == "optimal":
             require(path, number, row, "objective", (int, float))
         rows.setdefault((row["nearest"], row["backend"]), []).append(row)
-    return [Solves(nearest, backend, of_backend) for (nearest, backend), of_backend in rows.items()]
+    return [Solves(nearest, backend, of_backend, results.origin(of_backend[0]))
+            for (nearest, backend), of_backend in rows.items()]
 
 
 def disagreements(solves):

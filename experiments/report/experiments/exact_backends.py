@@ -61,4 +61,4 @@ def html(results, published):
                Column("p95 ms"), Column("p99 ms"), Column("max ms"), Column("nodes")]
     return group(figures) + table("backends", "", columns, rows,
                                   note=f"Backends prove different optima at {'; '.join(agreement)}. Small: 95 % "
-                                  "interval, tracks resampled. Geometric mean: shifted by 1 ms.")
+                                  f"interval, tracks resampled. Geometric mean: shifted by 1 ms.{cold[0].origin}")

@@ -21,13 +21,14 @@ def html(results, published):
     path = results.path(FILE)
     if not os.path.exists(path):
         raise Missing(f"there is no {FILE}.")
-    rows = []
+    rows, origin = [], ""
     for number, row in read_lines(path):
         for key, kinds in (("cones", (int,)), ("formulation", (str,)), ("solver", (str,)), ("scenes", (int,)),
                            ("optimal", (int,)), ("infeasible", (int,)), ("columns", (int, float)),
                            ("rows", (int, float)), ("mean_nodes", (int, float)), ("median_build_ms", (int, float)),
                            ("median_ms", (int, float)), ("p95_ms", (int, float))):
             require(path, number, row, key, kinds)
+        origin = results.origin(row)
         counts = [Cell(f"{row[key]:.0f}", row[key]) for key in ("columns", "rows")]
         rows.append([Cell(str(row["cones"]), row["cones"]), text(row["formulation"]), text(row["solver"]),
                      Cell(str(row["scenes"]), row["scenes"]),
@@ -38,4 +39,4 @@ def html(results, published):
     columns = [Column("n"), Column("formulation", "text"), Column("solver", "text"), Column("scenes"),
                Column("proven %"), Column("columns"), Column("rows"), Column("LP gap, median %"),
                Column("LP gap, mean %"), Column("nodes"), Column("build ms"), Column("median ms"), Column("p95 ms")]
-    return table("formulations", "", columns, rows)
+    return table("formulations", "", columns, rows, note=origin.strip())

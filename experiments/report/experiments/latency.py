@@ -65,7 +65,7 @@ def by_rate_figure(results):
     logarithmic(axes.yaxis)
     axes.set_xticks([100 * rate for rate in results.rates], [percent_label(rate) for rate in results.rates])
     axes.set_xlabel("false positives [% of all points]")
-    axes.set_ylabel("latency [ms]")
+    axes.set_ylabel("latency [ms], thin: p99")
     legend(axes)
     return figure
 

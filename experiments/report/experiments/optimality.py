@@ -75,7 +75,7 @@ def _rates(rows):
     return sorted({row["false_positive_rate"] for row in rows})
 
 
-def _table(rows):
+def _table(rows, origin):
     lines = []
     for rate in _rates(rows):
         scenes = [row for row in rows if row["false_positive_rate"] == rate]
@@ -103,7 +103,7 @@ def _table(rows):
                Column("IoU optimum %"), Column("IoU candidate %")]
     return table("optimality", "", columns, lines,
                  note="Compared: scenes with a proven optimum and a feasible candidate. Small: 95 % interval, tracks "
-                 "resampled.")
+                 f"resampled.{origin}")
 
 
 def _gaps(rows):
@@ -155,4 +155,4 @@ def html(results, published):
                drawn("optimality-success", "All scenes; one without such a lane is no success. Where the exact "
                      "search met its time limit, its best lane.", _driving(rows),
                      "Does the optimum drive better?")]
-    return group(figures) + _table(rows)
+    return group(figures) + _table(rows, results.origin(rows[0]))

@@ -55,7 +55,7 @@ def growth_figure(results):
     axes.set_yscale("log")
     logarithmic(axes.yaxis)
     axes.set_xlabel("cones in the set, n")
-    axes.set_ylabel("latency [ms]")
+    axes.set_ylabel("latency [ms], thin: p99")
     legend(axes)
     return figure
 

@@ -31,4 +31,4 @@ def html(results, published):
         raise Missing("no backend was run with and without a start.")
     columns = [Column("n"), Column("backend", "text"), Column("time ratio"), Column("nodes without"),
                Column("nodes with"), Column("scenes")]
-    return table("warm-start", "", columns, rows, note="Small: 95 % interval, tracks resampled.")
+    return table("warm-start", "", columns, rows, note=f"Small: 95 % interval, tracks resampled.{stored[0].origin}")
