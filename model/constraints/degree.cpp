@@ -3,6 +3,10 @@
 namespace conelane::constraints {
 
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient) {
+    if (!context.columns.end.empty()) {
+        for_each_end(context, cone, [&](std::size_t, int end) { context.rows.add(end, coefficient); });
+        return;
+    }
     context.rows.add(context.columns.inlier[cone], 2.0 * coefficient);
     for (const std::size_t edge : context.problem.incident[cone]) {
         context.rows.add(context.columns.edge[edge], -coefficient);

@@ -1,3 +1,4 @@
+#include "model/constraints/conflict_graph.hpp"
 #include "model/constraints/families.hpp"
 
 namespace conelane::constraints {
@@ -27,22 +28,39 @@ void far_distance(const FamilyContext& context) {
     }
 }
 
-// Exactly two endpoints are far, by (3) and (11), so a far endpoint i has the other one within d_max of it:
-//   m_i <= sum of m_j over the far cones j != i with D_ij <= d_max.
-// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart, and a row a cone.
+// Exactly two endpoints are far, by (3) and (11), so where a path ends at a far cone i by the edge {k, i},
+// the other one ends at a far cone j within d_max of it, by an edge that can be chosen beside {k, i}:
+//   e_ki <= sum of e_lj over those.
+// With pairing near_far the two paths are different ones, so their last edges have no cone in common.
+// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart.
 void far_partners(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t n = problem.cone_count;
     std::vector<bool> apart(n * n, false);
     for (const auto& [i, j] : problem.far_apart) apart[i * n + j] = apart[j * n + i] = true;
+    const bool disjoint = problem.parameters.pairing == Pairing::near_far;
+    const ConflictGraph conflicts(problem);
+    const auto fits = [&](std::size_t a, std::size_t b) {
+        if (conflicts.joined(a, b)) return false;
+        const ProblemEdge& first = problem.edges[a];
+        const ProblemEdge& second = problem.edges[b];
+        return !disjoint ||
+               (first.i != second.i && first.i != second.j && first.j != second.i && first.j != second.j);
+    };
     for (std::size_t i = 0; i < n; ++i) {
         if (problem.near[i]) continue;
-        rows.begin({"far_partner", {static_cast<std::int32_t>(i)}}, -kInfinity, 0.0);
-        add_endpoint_mark(context, i, 1.0);
-        for (std::size_t j = 0; j < n; ++j) {
-            if (j != i && !problem.near[j] && !apart[i * n + j]) add_endpoint_mark(context, j, -1.0);
-        }
-        rows.end();
+        for_each_end(context, i, [&](std::size_t edge, int end) {
+            rows.begin({"far_partner", {static_cast<std::int32_t>(edge), static_cast<std::int32_t>(i)}},
+                       -kInfinity, 0.0);
+            rows.add(end, 1.0);
+            for (std::size_t j = 0; j < n; ++j) {
+                if (j == i || problem.near[j] || apart[i * n + j]) continue;
+                for_each_end(context, j, [&](std::size_t other, int other_end) {
+                    if (fits(edge, other)) rows.add(other_end, -1.0);
+                });
+            }
+            rows.end();
+        });
     }
 }
 
