@@ -42,14 +42,14 @@ void turn_flow(const FamilyContext& context) {
             turns_of_edge[problem.turns[t].edge_k].push_back(columns.turn[t]);
         }
         const auto at_cone = static_cast<std::int32_t>(cone);
-        for_each_end(context, cone, [&](std::size_t edge, int end) {
+        for (const std::size_t edge : problem.incident[cone]) {
             rows.begin({"edge_goes_on", {static_cast<std::int32_t>(edge), at_cone}}, 0.0, 0.0);
             for (const int turn : turns_of_edge[edge]) rows.add(turn, 1.0);
-            rows.add(end, 1.0);
+            rows.add(end_column(context, edge, cone), 1.0);
             rows.add(columns.edge[edge], -1.0);
             rows.end();
             turns_of_edge[edge].clear();
-        });
+        }
         rows.begin({"cone_once", {at_cone}}, -kInfinity, 1.0);
         for (const std::size_t t : turns_at_cone[cone]) rows.add(columns.turn[t], 1.0);
         add_endpoint_mark(context, cone, 1.0);

@@ -8,13 +8,8 @@
 /// formulation.
 namespace conelane::constraints {
 
-/// Calls visit(edge, column) for the e columns of the paths that end at a cone, by its edges, ascending.
-template <typename Visit>
-void for_each_end(const FamilyContext& context, std::size_t cone, const Visit& visit) {
-    for (const std::size_t edge : context.problem.incident[cone]) {
-        visit(edge, context.columns.end[edge][context.problem.edges[edge].i == cone ? 0 : 1]);
-    }
-}
+/// The e column of the paths that end at one of the edge's cones by it.
+[[nodiscard]] int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone);
 
 /// Adds coefficient * m_i to the open row, 1 where the cone is an endpoint, else 0: m_i = 2 g_i - A_i (10),
 /// or the sum of its e columns where the formulation has those.

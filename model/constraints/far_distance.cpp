@@ -28,6 +28,14 @@ void far_distance(const FamilyContext& context) {
     }
 }
 
+namespace {
+
+bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
+    return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
+}
+
+}  // namespace
+
 // Exactly two endpoints are far, by (3) and (11), so where a path ends at a far cone i by the edge {k, i},
 // the other one ends at a far cone j within d_max of it, by an edge that can be chosen beside {k, i}:
 //   e_ki <= sum of e_lj over those.
@@ -40,27 +48,22 @@ void far_partners(const FamilyContext& context) {
     for (const auto& [i, j] : problem.far_apart) apart[i * n + j] = apart[j * n + i] = true;
     const bool disjoint = problem.parameters.pairing == Pairing::near_far;
     const ConflictGraph conflicts(problem);
-    const auto fits = [&](std::size_t a, std::size_t b) {
-        if (conflicts.joined(a, b)) return false;
-        const ProblemEdge& first = problem.edges[a];
-        const ProblemEdge& second = problem.edges[b];
-        return !disjoint ||
-               (first.i != second.i && first.i != second.j && first.j != second.i && first.j != second.j);
-    };
     for (std::size_t i = 0; i < n; ++i) {
         if (problem.near[i]) continue;
-        for_each_end(context, i, [&](std::size_t edge, int end) {
+        for (const std::size_t edge : problem.incident[i]) {
             rows.begin({"far_partner", {static_cast<std::int32_t>(edge), static_cast<std::int32_t>(i)}},
                        -kInfinity, 0.0);
-            rows.add(end, 1.0);
+            rows.add(end_column(context, edge, i), 1.0);
             for (std::size_t j = 0; j < n; ++j) {
                 if (j == i || problem.near[j] || apart[i * n + j]) continue;
-                for_each_end(context, j, [&](std::size_t other, int other_end) {
-                    if (fits(edge, other)) rows.add(other_end, -1.0);
-                });
+                for (const std::size_t other : problem.incident[j]) {
+                    if (conflicts.joined(edge, other)) continue;
+                    if (disjoint && have_cone_in_common(problem.edges[edge], problem.edges[other])) continue;
+                    rows.add(end_column(context, other, j), -1.0);
+                }
             }
             rows.end();
-        });
+        }
     }
 }
 
