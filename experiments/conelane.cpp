@@ -43,6 +43,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_check_command(program);
     experiments::add_exchange_commands(program);
     experiments::add_formulations_command(program);
+    experiments::add_relaxations_command(program);
     experiments::add_train_command(program);
     try {
         program.parse(argument_count, arguments);
