@@ -44,8 +44,10 @@ Json describe(const SceneOptions& scenes) {
 
 Json describe(const RankNetTrainingOptions& training) {
     return {{"units", training.units},
+            {"loss", training.loss == RankLoss::pairs ? "pairs" : "choice"},
             {"epochs", training.epochs},
             {"pairs_a_step", training.pairs_a_step},
+            {"scenes_a_step", training.scenes_a_step},
             {"learning_rate", training.learning_rate},
             {"iou_factor", training.iou_factor},
             {"divergence_penalty", training.divergence_penalty},
