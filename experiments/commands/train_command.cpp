@@ -66,6 +66,8 @@ void add_train_command(CLI::App& program) {
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
     add_scene_options(command, run.scenes);
+    command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
+        ->capture_default_str();
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
