@@ -99,8 +99,8 @@ class PathPairs {
 /// side all of whose neighbours are visited; line 22 would give up each of its further extensions one by one.
 class PathPairEnumeration {
   public:
-    /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side, in the order
-    /// met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
+    /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
+    /// rules.most_discrepancies, in the order met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
     /// which an iteration is one run of the loop in line 3. Returns whether the enumeration is complete.
     /// Keeps memory from call to call. Precondition: `heading` is a unit vector, start.left != start.right.
     ///
