@@ -100,9 +100,10 @@ class PathPairs {
 class PathPairEnumeration {
   public:
     /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
-    /// rules.most_discrepancies, in the order met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
-    /// which an iteration is one run of the loop in line 3. Returns whether the enumeration is complete.
-    /// Keeps memory from call to call. Precondition: `heading` is a unit vector, start.left != start.right.
+    /// rules.most_discrepancies, in the order met; each one that can be closed (section IV-E) is followed by
+    /// itself, closed. Draws on `budget`, in which an iteration is one run of the loop in line 3. Returns
+    /// whether the enumeration is complete. Keeps memory from call to call. Precondition: `heading` is a unit
+    /// vector, start.left != start.right.
     ///
     /// `guide`: a lane to follow first (warm start, section IV-F), its start included; empty for none. The
     /// search goes along it as far as it can, LRD deciding between the sides, and then on as ever: the same

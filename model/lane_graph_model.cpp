@@ -73,8 +73,8 @@ void LaneGraphModel::add_columns() {
     }
     if (formulation_parts.path_ends) {
         for (const ProblemEdge& edge : problem.edges) {
-            // Integral where the edges are. Which two ends face each other decides most of the rest: branching on
-            // them first takes a quarter of the nodes at n = 30.
+            // Integral where the edges are. Which two ends face each other decides most of the rest:
+            // branching on them first takes a quarter of the nodes at n = 30.
             const auto add_end = [&](std::size_t from, std::size_t end) {
                 const int column = program_.add_column({"e", {index(from), index(end)}}, 0.0, true);
                 program_.columns[static_cast<std::size_t>(column)].branch_first = true;

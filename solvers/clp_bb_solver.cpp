@@ -30,7 +30,8 @@ class ClpBranchAndBound : public MilpSession {
         interface_.messageHandler()->setLogLevel(0);
         lp_.setLogLevel(0);
         for (const int column : detail::load_into(interface_, program)) {
-            (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_).push_back(column);
+            (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_)
+                .push_back(column);
         }
     }
 

@@ -28,6 +28,7 @@ class SymphonySession : public MilpSession {
   public:
     explicit SymphonySession(BinaryProgram program) : program_(std::move(program)) {}
 
+    /// The cutoff is not passed on, see the abort below.
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
         MilpReport report;
@@ -39,13 +40,14 @@ class SymphonySession : public MilpSession {
         sym_set_int_param(env, "verbosity", -2);
         sym_set_dbl_param(env, "granularity", 1e-7);
         sym_set_dbl_param(env, "gap_limit", 0.0);
+        // With preprocessing, 5.6.17 was seen to abort on crossed bounds inside Clp.
+        sym_set_int_param(env, "prep_level", 0);
         load(env);
-        if (std::isfinite(limits.cutoff)) sym_set_primal_bound(env, limits.cutoff);
         if (std::isfinite(limits.time_limit_ms)) {
             sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
         }
         sym_solve(env);
-        read(env, limits, deadline, report);
+        read(env, deadline, report);
         return report;
     }
 
@@ -100,8 +102,7 @@ class SymphonySession : public MilpSession {
                                   ranges.data(), 1);
     }
 
-    void read(sym_environment* env, const MilpLimits& limits, const Deadline& deadline,
-              MilpReport& report) const {
+    void read(sym_environment* env, const Deadline& deadline, MilpReport& report) const {
         int nodes = 0;
         sym_get_iteration_count(env, &nodes);
         report.nodes = std::max(nodes, 0);
@@ -110,12 +111,11 @@ class SymphonySession : public MilpSession {
             return;
         }
         // Asked for a solution that it does not have, SYMPHONY complains on stdout: its primal bound tells.
-        double value = limits.cutoff;
+        double value = sym_get_infinity();
         sym_get_primal_bound(env, &value);
         std::vector<double> point(program_.columns.size());
-        const bool has_point =
-            (sym_is_proven_optimal(env) || value < std::min(limits.cutoff, sym_get_infinity())) &&
-            sym_get_col_solution(env, point.data()) == FUNCTION_TERMINATED_NORMALLY;
+        const bool has_point = (sym_is_proven_optimal(env) || value < sym_get_infinity()) &&
+                               sym_get_col_solution(env, point.data()) == FUNCTION_TERMINATED_NORMALLY;
         if (sym_is_proven_optimal(env) && has_point) {
             sym_get_obj_val(env, &value);
             report.status = SolveStatus::optimal;
