@@ -8,7 +8,7 @@ function(conelane)
 endfunction()
 conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --fp 0,0.3 --every 15
          --candidates --out ${RESULTS})
-conelane(sweep --tracks generated:straight generated:circle --methods rld-pair,clc --sizes 6,12 --every 40
+conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
 conelane(optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
