@@ -16,6 +16,7 @@ void add_exchange_commands(CLI::App& program);  ///< export, import-solution
 void add_formulations_command(CLI::App& program);
 void add_backends_command(CLI::App& program);
 void add_optimality_command(CLI::App& program);
+void add_relaxations_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_report_command(CLI::App& program);

@@ -15,6 +15,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include <boost/random/beta_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
@@ -31,6 +32,7 @@ struct Course {
     const Track& track;
     TrackBoundaries polylines;
     std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
+    std::unordered_set<ConeId> boundary_ids;
 };
 
 namespace {
@@ -91,13 +93,16 @@ ConeId draw_new_id(Generator& generator, std::int64_t space, std::unordered_set<
 }
 
 Course make_course(const Track& track, const SceneOptions& options) {
-    Course course{track, boundaries(track), track.cones};
+    Course course{track, boundaries(track), track.cones, {}};
     Generator generator = generator_for(fmt::format("{}/{}/ids", track.name, options.seed));
     std::unordered_set<ConeId> used;
     for (Cone& cone : course.cones) {
         cone.id = draw_new_id(generator, id_space(track), used);
         cone.confidence = 1.0;
         if (!options.with_color) cone.color = ConeColor::unknown;
+    }
+    for (const std::vector<std::size_t>* side : {&track.left, &track.right}) {
+        for (const std::size_t index : *side) course.boundary_ids.insert(course.cones[index].id);
     }
     if (options.with_color) {
         const auto paint = [&](const std::vector<std::size_t>& side, ConeColor color) {
@@ -171,10 +176,12 @@ class SceneMaker {
         const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m_};
         const std::vector<Sight> sights = look(view);
         scene.cones = seen_cones(sights);
+        mistake_colors(scene.cones);
         Lane lane = ground_truth(sights, scene);
         if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
         result.ground_truth = std::move(lane);
         add_false_positives(scene.cones, view);
+        draw_confidences(scene.cones);
         shuffle(scene.cones);
         if (options_.nearest) {
             result.ground_truth = ground_truth_of_nearest(result, *options_.nearest);
@@ -199,6 +206,8 @@ class SceneMaker {
                 fmt::format("/pose_noise_{}_{}", options_.pose_noise_lateral_m, options_.pose_noise_yaw_rad);
         }
         if (options_.miss_rate > 0.0) id += fmt::format("/miss_{}", options_.miss_rate);
+        if (options_.color_error_rate > 0.0) id += fmt::format("/color_error_{}", options_.color_error_rate);
+        if (options_.with_confidence) id += "/confidence";
         if (options_.nearest) id += fmt::format("/nearest_{}", *options_.nearest);
         return id;
     }
@@ -241,6 +250,31 @@ class SceneMaker {
             }
         }
         return cones;
+    }
+
+    void mistake_colors(std::vector<Cone>& cones) const {
+        if (options_.color_error_rate == 0.0) return;
+        Generator random = generator("color errors");
+        boost::random::uniform_01<double> uniform;
+        for (Cone& cone : cones) {
+            if (uniform(random) >= options_.color_error_rate) continue;
+            if (cone.color == ConeColor::blue) {
+                cone.color = ConeColor::yellow;
+            } else if (cone.color == ConeColor::yellow) {
+                cone.color = ConeColor::blue;
+            }
+        }
+    }
+
+    void draw_confidences(std::vector<Cone>& cones) const {
+        if (!options_.with_confidence) return;
+        Generator random = generator("confidences");
+        boost::random::beta_distribution<double> of_boundary(5.0, 2.0);
+        boost::random::beta_distribution<double> of_others(2.0, 4.0);
+        for (Cone& cone : cones) {
+            const bool real = course_.boundary_ids.contains(cone.id);
+            cone.confidence = rounded(real ? of_boundary(random) : of_others(random), 1e3);
+        }
     }
 
     [[nodiscard]] Lane ground_truth(const std::vector<Sight>& sights, const Scene& scene) const {
@@ -328,6 +362,10 @@ void validate(const SceneOptions& options) {
     require_between(options.pose_noise_yaw_rad, 0.0, kLargest, "pose-noise");
     if (!(options.miss_rate >= 0.0 && options.miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");
+    }
+    require_between(options.color_error_rate, 0.0, 1.0, "color-error");
+    if (options.color_error_rate > 0.0 && !options.with_color) {
+        throw InvalidInput("color-error", "needs scenes with colour");
     }
     if (options.threads < 1 || options.threads > 1024) {
         throw InvalidInput("threads", "must be in [1, 1024]");
