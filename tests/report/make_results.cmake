@@ -14,6 +14,7 @@ set(scenes ${RESULTS}/scenes.scenes.jsonl)
 conelane(optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
 conelane(backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
 conelane(formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
+conelane(relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
 if(BENCHMARKS)
     execute_process(COMMAND ${BENCHMARKS} "--benchmark_filter=^(problem|build|update)/(tight|paper)/6$"
                             --benchmark_min_time=0.01 --benchmark_out_format=json
