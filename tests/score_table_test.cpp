@@ -64,11 +64,11 @@ TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
     const auto lines = words_of_lines(table);
     ASSERT_EQ(lines.size(), 7u) << table;
     EXPECT_THAT(lines[1], testing::ElementsAre("clc", "30.0", "30", "2", "0.0", "50.0", "0.0", "0.0", "50.0",
-                                               "0.0", "50.0", "55.0", "-", "-", "-", "12.50", "12.50",
+                                               "0.0", "0.0", "50.0", "55.0", "-", "-", "-", "12.50", "12.50",
                                                "12.50", "12.50", "12.50"));
     EXPECT_THAT(lines[3],
                 testing::ElementsAre("CLC", "paper", "30.0", "30+50", "-", "9.3", "85.1", "0.8", "4.1", "0.7",
-                                     "-", "99.3", "93.2", "-", "13.4", "-", "<5", "-", "-", "-", "12"));
+                                     "-", "-", "99.3", "93.2", "-", "13.4", "-", "<5", "-", "-", "-", "12"));
     EXPECT_THAT(table, HasSubstr("96.38"));
     EXPECT_THAT(table, HasSubstr(">90"));
     EXPECT_THAT(lines[6], testing::IsSupersetOf({"n=12", "97.19", "71.79", "155.88"}));
@@ -87,10 +87,22 @@ TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
     const std::string table = score_table(summarise_by_key(std::vector<KeyedScore>{unknown}));
     const auto lines = words_of_lines(table);
     EXPECT_THAT(lines[1],
-                testing::ElementsAre("clc", "-", "-", "1", "0.0", "-", "-", "-", "-", "0.0", "-", "90.0", "-",
-                                     "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
+                testing::ElementsAre("clc", "-", "-", "1", "0.0", "-", "-", "-", "-", "0.0", "0.0", "-",
+                                     "90.0", "-", "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
     EXPECT_THAT(table, HasSubstr("scenes scored without the boundaries of their track: 1\n"));
     EXPECT_THAT(table, HasSubstr("34.5")) << "without a rate of its own, all published ones";
+}
+
+TEST(ScoreTable, TellsErrorsFromScenesWithoutALane) {
+    KeyedScore failed = keyed("clc", 0.5, 30, Category::none, 0.0);
+    failed.score.error = true;
+    const auto rows =
+        summarise_by_key(std::vector<KeyedScore>{failed, keyed("clc", 0.5, 30, Category::none, 0.0)});
+    EXPECT_EQ(rows.front().summary.errors, 1u);
+    EXPECT_EQ(nlohmann::json::parse(summary_json(rows.front())).at("errors"), 1);
+    const auto words = words_of_lines(score_table(rows))[1];
+    EXPECT_EQ(words[9], "100.0");
+    EXPECT_EQ(words[10], "50.0");
 }
 
 TEST(SummaryJson, IsOneLineWithoutUnknownMeasures) {

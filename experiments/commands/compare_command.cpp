@@ -84,7 +84,7 @@ void compare_and_print(Options& options) {
     options.parameters.apply_to(comparison.run.method);
     comparison.scenes.threads = comparison.run.threads;
     fmt::print("{}\n", score_table(compare(comparison, options.directory)));
-    write_page(options.directory);
+    if (comparison.shard.count == 1) write_page(options.directory);  // merge makes that of all shards
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ def rows_by_rate(results, published, samples, of_paper, of_ours):
     paper's rows."""
     rows, marks = [], []
     printed_at = {round(row["rate"], 6): row for row in published["clc"]}
-    for rate in sorted({round(rate, 6) for rate in results.rates} | set(printed_at)):
+    ours = {round(rate, 6) for sample in samples for rate in sample.rate}
+    for rate in sorted(ours | set(printed_at)):
         if rate in printed_at:
             rows.append([text("CLC paper"), percent(rate)] + of_paper(printed_at[rate]))
             marks.append(len(rows) - 1)

@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+# Folders of further comparisons in the results, for experiments that take other scenes or options: cone-set sizes, the
+# RLD paper's topologies, all candidates scored.
+BESIDE = ("sweep", "topologies", "candidates")
 SUCCESSES = ("ground_truth", "near_ground_truth", "too_short", "diverging_from_20")
 CATEGORIES = SUCCESSES + ("diverging_below_20", "none")
 
@@ -90,9 +93,14 @@ class Results:
     run: dict
     rows: list  # of results.jsonl
     samples: list  # of Sample, in the order of results.jsonl
-    sweep: list  # of Sample, by method and then size; empty where there was none
+    beside: dict  # of BESIDE: folder -> list of Sample, by method and then size; empty where there is none
     tracks: dict  # name -> {"left", "right", "closed"}
     methods: list = field(default_factory=list)  # names, in order
+
+    @property
+    def sweep(self):
+        """The samples of the sweep over cone-set sizes."""
+        return [sample for sample in self.beside["sweep"] if sample.nearest is not None]
 
     @property
     def rates(self):
@@ -215,9 +223,13 @@ def _check_same_run(path, rows, samples):
                 raise InputError(f"{path}: {key} of {name} is {mean}, results.jsonl has {row[key]}")
 
 
+def _read_beside(path):
+    return _read_samples(path) if os.path.exists(path) else []
+
+
 def load_results(directory):
-    """Reads run.json, results.jsonl, scores.jsonl, and, where they are, scenes.tracks.json and
-    sweep/scores.jsonl. Scenes and lanes are large; viewer and gallery read them themselves."""
+    """Reads run.json, results.jsonl, scores.jsonl, and, where they are, scenes.tracks.json and the scores of the
+    comparisons beside. Scenes and lanes are large; viewer and gallery read them themselves."""
     def path(name):
         return os.path.join(directory, name)
 
@@ -229,11 +241,11 @@ def load_results(directory):
     _check_same_run(path("scores.jsonl"), rows, samples)
     order = list(dict.fromkeys(label_of(row["method"], row.get("nearest")) for row in rows))
     samples = sorted((s for s in samples if s.label in order), key=lambda sample: order.index(sample.label))
-    sweep_file = path(os.path.join("sweep", "scores.jsonl"))
-    sweep = _read_samples(sweep_file) if os.path.exists(sweep_file) else []
-    sweep = [sample for sample in sweep if sample.nearest is not None]
-    methods = list(dict.fromkeys([row["method"] for row in rows] + [sample.method for sample in sweep]))
-    sweep.sort(key=lambda sample: (methods.index(sample.method), sample.nearest))
+    beside = {folder: _read_beside(path(os.path.join(folder, "scores.jsonl"))) for folder in BESIDE}
+    methods = list(dict.fromkeys([row["method"] for row in rows] +
+                                 [sample.method for samples in beside.values() for sample in samples]))
+    for stored in beside.values():
+        stored.sort(key=lambda sample: (methods.index(sample.method), sample.nearest or math.inf))
     tracks_file = path("scenes.tracks.json")
     tracks = read_object(tracks_file) if os.path.exists(tracks_file) else {}
-    return Results(directory, run, rows, samples, sweep, tracks, methods)
+    return Results(directory, run, rows, samples, beside, tracks, methods)

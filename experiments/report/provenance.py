@@ -31,8 +31,8 @@ def html(results, data):
     kept = ("" if not results.run.get("candidates") else
             "<li>This run kept all enumerated lanes to score them, which costs time: the latencies of enumerating "
             "methods hold it.</li>")
-    run = {key: value for key, value in results.run.items() if key != "rld_parameters"}
-    parameters = results.run.get("rld_parameters", {})
+    parameters = next((method["rld_parameters"] for method in results.run.get("methods", ())
+                       if isinstance(method, dict) and "rld_parameters" in method), {})
     if data.missing:
         shown = "There are no scenes on this page."
     else:
@@ -57,5 +57,5 @@ alike; with few tracks they are rough. There are none where there is one track o
 <li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
 <li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
 </ul>
-<h3>Run</h3>{listed(run)}
-<h3>Parameters of RLD</h3>{listed(parameters) if parameters else "<p>Not stored.</p>"}"""
+<h3>Run</h3>{listed(results.run)}
+<h3>Parameters of RLD</h3>{listed(parameters) if parameters else "<p>No method of this run has them.</p>"}"""

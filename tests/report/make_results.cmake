@@ -8,12 +8,13 @@ function(conelane)
 endfunction()
 conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --fp 0,0.3 --every 15
          --candidates --out ${RESULTS})
-conelane(sweep --tracks generated:straight generated:circle --methods rld-pair,clc --sizes 6,12 --every 40
+conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
 conelane(optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
 conelane(backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
 conelane(formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
+conelane(relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
 if(BENCHMARKS)
     execute_process(COMMAND ${BENCHMARKS} "--benchmark_filter=^(problem|build|update)/(tight|paper)/6$"
                             --benchmark_min_time=0.01 --benchmark_out_format=json

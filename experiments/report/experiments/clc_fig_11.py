@@ -5,7 +5,7 @@ Protocol: share of scenes, rates up to 30 %, in which such a candidate was enume
 is what the search does not find within its limit.
 Source: CLC paper, VIII-E, Fig. 11.
 Published: most within 500 iterations; 5 % of scenes without one after 2500; a plateau up to 20000.
-Command: conelane compare --methods clc --candidates --out RESULTS
+Command: conelane compare --methods clc --candidates --out RESULTS/candidates
 """
 
 import numpy as np
@@ -17,8 +17,10 @@ from ..theme import legend, method_style, new_figure
 
 
 def html(results, published):
-    samples = [moderate(sample) for sample in results.samples]
-    samples = [sample for sample in samples if sample.has("first_near_iteration")]
+    for stored in (results.beside["candidates"], results.samples):
+        samples = [sample for sample in map(moderate, stored) if sample.has("first_near_iteration")]
+        if samples:
+            break
     if not samples:
         raise Missing("no method kept its candidates.")
     figure, axes = new_figure()

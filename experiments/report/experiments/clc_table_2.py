@@ -5,7 +5,7 @@ the others too.
 Protocol: methods that enumerate, all ranges together. The best candidate's IoU is known where candidates were kept.
 Source: CLC paper, VIII-E, Table II.
 Published: 46.4 / 34.4 / 13.4 / 2.3 % complete at 0 / 10 / 30 / 50 % false positives.
-Command: conelane compare --methods clc --candidates --out RESULTS
+Command: conelane compare --methods clc --candidates --out RESULTS/candidates
 """
 
 import numpy as np
@@ -16,7 +16,8 @@ from ..tables import Column, percent, table
 
 
 def html(results, published):
-    samples = [sample for sample in results.samples if sample.has("complete")]
+    stored = results.beside["candidates"] or results.samples
+    samples = [sample for sample in stored if sample.has("complete")]
     if not samples:
         raise Missing("no method enumerates.")
 

@@ -2,7 +2,8 @@
 
 Claim: By what factor do methods of the same cone set differ in time on the same scene?
 Protocol: geometric mean over scenes of a method's time divided by that of the method with the least shifted \
-geometric mean on the same cone set; 2.00 is twice the time. 95 % bootstrap interval, tracks resampled.
+geometric mean on the same cone set, of the comparison and of the sweep; 2.00 is twice the time. 95 % bootstrap \
+interval, tracks resampled.
 Source: this project.
 Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS
 """
@@ -12,12 +13,20 @@ from ..experiment import Missing
 from ..tables import Cell, Column, method_cell, table, text
 
 
+def _of_one_set(results):
+    """Samples by cone-set size, two or more: of the comparison, then of the sweep where that has none."""
+    found = {}
+    for sample in results.samples:
+        found.setdefault(sample.nearest, []).append(sample)
+    found = {nearest: samples for nearest, samples in found.items() if len(samples) > 1}
+    for size in sorted({sample.nearest for sample in results.sweep} - set(found)):
+        found[size] = [sample for sample in results.sweep if sample.nearest == size]
+    return [samples for samples in found.values() if len(samples) > 1]
+
+
 def html(results, published):
     rows = []
-    for nearest in dict.fromkeys(sample.nearest for sample in results.samples):
-        samples = [sample for sample in results.samples if sample.nearest == nearest]
-        if len(samples) < 2:
-            continue
+    for samples in _of_one_set(results):
         fastest = min(samples, key=lambda sample: measures.shifted_geometric_mean(sample.latency))
         for sample in samples:
             ratio = None if sample is fastest else measures.latency_ratio(sample, fastest)

@@ -3,7 +3,8 @@
 Claim: Which exact method is fastest on most scenes, and how far behind are the others?
 Protocol: Dolan and Moré: the share of scenes that a method solves to proven optimality within a multiple of the \
 fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set only; \
-what is unproven after 0.4 s counts as unsolved.
+what is unproven after 0.4 s counts as unsolved. Where the methods of the comparison saw different cone sets, those \
+of the sweep stand in.
 Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
 Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS
 """
@@ -14,6 +15,8 @@ from .. import measures
 from ..experiment import Missing
 from ..figures import drawn, group, name_of_set
 from ..theme import legend, logarithmic, method_style, new_figure
+
+_SWEEP_SIZES = (12, 30)
 
 
 def profile_figure(labels, styles, times):
@@ -37,11 +40,21 @@ def profile_figure(labels, styles, times):
     return figure
 
 
+def _of_one_set(results):
+    """Samples that prove optimality by cone-set size: of the comparison, else of the sweep."""
+    found = {}
+    for sample in results.samples:
+        found.setdefault(sample.nearest, []).append(sample)
+    found = {nearest: samples for nearest, samples in found.items() if sum(s.has("solved") for s in samples) > 1}
+    for size in _SWEEP_SIZES:
+        found.setdefault(size, [sample for sample in results.sweep if sample.nearest == size])
+    return {nearest: [s for s in samples if s.has("solved")] for nearest, samples in found.items()}
+
+
 def html(results, published):
     figures = []
-    for nearest in dict.fromkeys(sample.nearest for sample in results.samples if sample.has("solved")):
-        samples = [s for s in results.samples if s.nearest == nearest and s.has("solved")]
-        scenes = sorted(set.intersection(*(set(sample.scene) for sample in samples)))
+    for nearest, samples in _of_one_set(results).items():
+        scenes = sorted(set.intersection(*(set(sample.scene) for sample in samples))) if samples else []
         if len(samples) < 2 or not scenes:
             continue
         columns = []
