@@ -213,6 +213,8 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.late_divergence_penalty = -1.0; }),
+              "late_divergence_penalty");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
     EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
 }

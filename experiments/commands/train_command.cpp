@@ -84,6 +84,10 @@ void add_train_command(CLI::App& program) {
                     "off the IoU of a lane that diverges below 20 m; 0, as in the paper, without it")
         ->capture_default_str();
     command
+        .add_option("--late-divergence-penalty", run.training.late_divergence_penalty,
+                    "the same for one that diverges later")
+        ->capture_default_str();
+    command
         .add_option("--leader-share", run.training.leader_share,
                     "share of the pairs with the candidate that the network ranks first")
         ->capture_default_str();

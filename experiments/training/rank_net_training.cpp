@@ -33,8 +33,9 @@ struct Candidates {
     std::vector<std::size_t> begins;  ///< one more than there are lists
 };
 
-double penalty(double divergence_m, double divergence_penalty) {
-    return divergence_m < kCriticalDivergence_m ? divergence_penalty : 0.0;
+double penalty(double divergence_m, const RankNetTrainingOptions& options) {
+    if (divergence_m < kCriticalDivergence_m) return options.divergence_penalty;
+    return std::isfinite(divergence_m) ? options.late_divergence_penalty : 0.0;
 }
 
 Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
@@ -45,7 +46,7 @@ Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOpt
         if (list.lanes.size() < 2) continue;
         all.begins.push_back(all.begins.back() + list.lanes.size());
         for (std::size_t i = 0; i < list.lanes.size(); ++i) {
-            all.quality.push_back(list.iou[i] - penalty(list.divergence_m[i], options.divergence_penalty));
+            all.quality.push_back(list.iou[i] - penalty(list.divergence_m[i], options));
         }
     }
     if (all.quality.empty()) throw InvalidInput("tracks", "no scene has two candidates to compare");
@@ -263,6 +264,8 @@ void validate(const RankNetTrainingOptions& options) {
     require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
     require(options.divergence_penalty >= 0.0 && std::isfinite(options.divergence_penalty),
             "divergence_penalty", "must not be negative");
+    require(options.late_divergence_penalty >= 0.0 && std::isfinite(options.late_divergence_penalty),
+            "late_divergence_penalty", "must not be negative");
     require(options.leader_share >= 0.0 && options.leader_share <= 1.0, "leader_share", "must be in [0, 1]");
 }
 

@@ -60,8 +60,10 @@ struct RankNetTrainingOptions {
     double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
     double iou_factor = 50.0;         ///< lambda_iou of equation (14); pairs only
     /// Subtracted from the IoU, which is else the quality of a candidate, where it diverges below
-    /// kCriticalDivergence_m; 0 is the paper. A short way off the lane costs little area.
+    /// kCriticalDivergence_m, ...
     double divergence_penalty = 0.0;
+    /// ... and where it diverges later. 0 is the paper. A short way off the lane costs little area.
+    double late_divergence_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
     /// the epoch; the others have any of the scene. What counts in the end is who is first. Pairs only.
     double leader_share = 0.5;

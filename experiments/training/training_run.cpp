@@ -51,6 +51,7 @@ Json describe(const RankNetTrainingOptions& training) {
             {"learning_rate", training.learning_rate},
             {"iou_factor", training.iou_factor},
             {"divergence_penalty", training.divergence_penalty},
+            {"late_divergence_penalty", training.late_divergence_penalty},
             {"leader_share", training.leader_share},
             {"seed", training.seed}};
 }
