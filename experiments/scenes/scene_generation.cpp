@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -25,6 +27,14 @@
 #include <oneapi/tbb/task_arena.h>
 
 namespace conelane::experiments {
+
+struct Course {
+    const Track& track;
+    TrackBoundaries polylines;
+    std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
+    std::unordered_set<ConeId> boundary_ids;
+};
+
 namespace {
 
 using Generator = boost::random::mt19937_64;
@@ -81,14 +91,6 @@ ConeId draw_new_id(Generator& generator, std::int64_t space, std::unordered_set<
     while (!used.insert(id).second) id = any(generator);
     return id;
 }
-
-/// What all scenes of a track share.
-struct Course {
-    const Track& track;
-    TrackBoundaries polylines;
-    std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
-    std::unordered_set<ConeId> boundary_ids;
-};
 
 Course make_course(const Track& track, const SceneOptions& options) {
     Course course{track, boundaries(track), track.cones, {}};
@@ -370,8 +372,8 @@ void validate(const SceneOptions& options) {
     }
 }
 
-std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
-                                            const SceneOptions& options) {
+TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options)
+    : poses_(poses), options_(options) {
     validate(options);
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
         require_near_origin(track.cones[i].position, fmt::format("{}: cones[{}]", track.name, i));
@@ -381,25 +383,52 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
         require_near_origin(poses[i].position, key);
         if (!std::isfinite(poses[i].yaw_rad)) throw InvalidInput(key, "yaw must be a finite number");
     }
-    if (track.left.size() < 2 || track.right.size() < 2) return {};
+    if (track.left.size() < 2 || track.right.size() < 2) return;
+    course_ = std::make_unique<const Course>(make_course(track, options));
+}
 
-    const Course course = make_course(track, options);
-    const std::size_t rates = options.false_positive_rates.size();
-    std::vector<std::optional<AnnotatedScene>> made(options.ranges_m.size() * rates * poses.size());
+TrackLaps::~TrackLaps() = default;
+
+std::size_t TrackLaps::size() const {
+    return options_.ranges_m.size() * options_.false_positive_rates.size();
+}
+
+std::optional<AnnotatedScene> TrackLaps::scene(std::size_t lap, std::size_t pose) const {
+    const std::size_t rates = options_.false_positive_rates.size();
+    const double rate = options_.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
+    return SceneMaker(*course_, options_, rate, options_.ranges_m[lap / rates], pose).make(poses_[pose]);
+}
+
+std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
+    if (!course_) return {};
+    std::vector<std::optional<AnnotatedScene>> made(poses_.size());
     oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
+        std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t job) {
-            const std::size_t pose = job % poses.size();
-            const std::size_t lap = job / poses.size();
-            const double rate = options.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
-            made[job] =
-                SceneMaker(course, options, rate, options.ranges_m[lap / rates], pose).make(poses[pose]);
-        });
+        oneapi::tbb::parallel_for(std::size_t{0}, made.size(),
+                                  [&](std::size_t pose) { made[pose] = scene(lap, pose); });
     });
     std::vector<AnnotatedScene> scenes;
-    for (std::optional<AnnotatedScene>& scene : made) {
-        if (scene) scenes.push_back(*std::move(scene));
+    for (std::optional<AnnotatedScene>& seen : made) {
+        if (seen) scenes.push_back(*std::move(seen));
+    }
+    return scenes;
+}
+
+bool TrackLaps::is_empty(std::size_t lap) const {
+    if (!course_) return true;
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
+        if (scene(lap, pose)) return false;
+    }
+    return true;
+}
+
+std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
+                                            const SceneOptions& options) {
+    const TrackLaps laps(track, poses, options);
+    std::vector<AnnotatedScene> scenes;
+    for (std::size_t lap = 0; lap < laps.size(); ++lap) {
+        std::ranges::move(laps.make(lap), std::back_inserter(scenes));
     }
     return scenes;
 }

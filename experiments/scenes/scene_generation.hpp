@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,6 +47,32 @@ void validate(const SceneOptions& options);
 /// m.
 [[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
                                                           const SceneOptions& options);
+
+struct Course;  ///< what all scenes of a track share
+
+/// The scenes of `generate_scenes` lap by lap, for who does not want all of them in memory. A lap is one
+/// range and rate; `poses`, `track` and `options` must outlive the object.
+class TrackLaps {
+  public:
+    /// Throws like generate_scenes.
+    TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options);
+    ~TrackLaps();
+    TrackLaps(const TrackLaps&) = delete;
+    TrackLaps& operator=(const TrackLaps&) = delete;
+
+    [[nodiscard]] std::size_t size() const;  ///< ranges times rates
+    /// The scenes of a lap in the order of its poses, maybe none. Precondition: lap < size().
+    [[nodiscard]] std::vector<AnnotatedScene> make(std::size_t lap) const;
+    /// Whether `make` would give nothing, found out without making more than its first scene.
+    [[nodiscard]] bool is_empty(std::size_t lap) const;
+
+  private:
+    [[nodiscard]] std::optional<AnnotatedScene> scene(std::size_t lap, std::size_t pose) const;
+
+    std::span<const Pose> poses_;
+    const SceneOptions& options_;
+    std::unique_ptr<const Course> course_;  ///< none where no pose of the track can have a ground truth
+};
 
 /// The same along the track's centre line, a pose every `every_m` of travel (see centre_line_poses, whose
 /// InvalidInput it passes on).
