@@ -35,8 +35,7 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
 }
 
 TEST(ParameterBox, LeadsToThePointAndBack) {
-    RldParameters start;
-    start.s_crit = 4.0;
+    const RldParameters start;
     const RldParameters back = from_unit_cube(to_unit_cube(start), start);
     for (const TunedParameter& tuned : tuned_parameters()) {
         EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
