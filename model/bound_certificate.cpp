@@ -120,8 +120,7 @@ class Verification {
                     std::max((0.5 * (position(i) + position(j)) - scene_.pose.position).norm(), 0.5);
                 const double confidence =
                     p_.use_confidence ? scene_.cones[i].confidence * scene_.cones[j].confidence : 1.0;
-                double cost =
-                    p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b * confidence;
+                double cost = p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b * confidence;
                 const bool along_heading =
                     foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
                     std::atan2(across, std::abs(v.dot(heading_))) <= p_.theta_heading + kTieTolerance;

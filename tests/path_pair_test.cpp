@@ -293,6 +293,57 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     }
 }
 
+/// The optimum as a start is kept, another lane graph is improved on, one that is none is dropped.
+TEST(PathPair, StartsFromALaneGraph) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 16), {});
+        const RldReport cold = solver->solve(problem, {});
+        if (!cold.lane_graph) continue;
+        ++started;
+        SolveLimits limits;
+        limits.start = &*cold.lane_graph;
+        EXPECT_EQ(solver->solve(problem, limits).lane_graph, cold.lane_graph);
+        limits.time_limit_ms = 0.0;  // nothing but the start
+        const RldReport stopped = solver->solve(problem, limits);
+        EXPECT_EQ(stopped.status, SolveStatus::feasible);
+        EXPECT_EQ(stopped.objective, cold.objective);
+        LaneGraph torn = *cold.lane_graph;
+        torn.edges.erase(torn.edges.begin() + static_cast<std::ptrdiff_t>(torn.edges.size() / 2));
+        limits = {};
+        limits.start = &torn;
+        EXPECT_NEAR(*solver->solve(problem, limits).objective, *cold.objective, 1e-9);
+    }
+    EXPECT_GT(started, 20);
+}
+
+/// Cones on a lattice, where walks of equal cost and cycles that are neutral abound: labels that improve by
+/// rounding alone must not go round for ever.
+TEST(PathPair, EndsWhereEverythingTies) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    for (const double spacing_m : {3.0, 3.2, 4.0}) {
+        for (const double theta_t : {0.9, 2.0}) {
+            SCOPED_TRACE(testing::Message() << spacing_m << " m, theta_t " << theta_t);
+            Scene scene;
+            for (ConeId id = 0; id < 15; ++id) {
+                const Point step(static_cast<double>(id / 3), static_cast<double>(id % 3) - 1.0);
+                scene.cones.push_back({id, Point(1.0, 0.0) + spacing_m * step});
+            }
+            RldParameters parameters;
+            parameters.theta_t = theta_t;
+            const RldReport report = solve(*path_pair, scene, parameters);
+            const RldReport expected = solve(*cbc, scene, parameters);
+            ASSERT_EQ(report.status, expected.status);
+            if (expected.objective) {
+                EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+            }
+        }
+    }
+}
+
 /// Whatever the deadline, the claim is true: the bound is below the optimum, the lane graph is one.
 TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();

@@ -125,8 +125,9 @@ void verify(const Options& options, const RldParameters& parameters) {
 
 void add_certify_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
-        "certify", "prices that prove a lower bound of each scene's optimum; --verify recomputes such bounds "
-                   "independently of the solver, exit code 1 on a failure");
+        "certify",
+        "prices that prove a lower bound of each scene's optimum; --verify recomputes such bounds "
+        "independently of the solver, exit code 1 on a failure");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");

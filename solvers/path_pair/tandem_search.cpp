@@ -12,6 +12,7 @@ constexpr std::size_t kFewSlots = std::size_t{1} << 8;
 constexpr std::size_t kManySlots = std::size_t{1} << 17;
 constexpr int kMostRivals = 30;          ///< looked at per label, newest first
 constexpr std::size_t kFewLabels = 500;  ///< up to here detours and many slots are not worth their making
+constexpr int kMostDetourArcs = 2000;    ///< their table grows with the square
 constexpr std::int64_t kLabelsPerClock = 128;
 constexpr int kSourcesPerClock = 32;
 // What rounding may make of a detour.
@@ -260,14 +261,16 @@ bool TandemSearch::exhaust(const ResidualGraph& residual, double tolerance, std:
     begin(tolerance);
     if (open_.empty()) return true;
     gap_ = limit(tolerance) - open_.back().bound;
+    bool is_small = true;
     while (!open_.empty()) {
         const Step step = open_.back();
         open_.pop_back();
         const double slack = limit(tolerance) - step.bound;
         if (!(slack > 0.0)) continue;
         if (--budget < 0 || (budget % kLabelsPerClock == 0 && stopped())) return false;
-        if (!has_detours_ && labels_.size() > kFewLabels) {
-            if (!find_detours(stopped)) return false;
+        if (is_small && labels_.size() > kFewLabels) {
+            is_small = false;
+            if (residual.size() <= kMostDetourArcs && !find_detours(stopped)) return false;
             use_slots(kManySlots);
         }
         take(step);
