@@ -44,6 +44,9 @@ int run(int argument_count, char** arguments) {
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
     experiments::add_formulations_command(program);
+    experiments::add_backends_command(program);
+    experiments::add_optimality_command(program);
+    experiments::add_relaxations_command(program);
     experiments::add_train_command(program);
     try {
         program.parse(argument_count, arguments);

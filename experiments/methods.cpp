@@ -59,8 +59,8 @@ constexpr std::array<MethodEntry, 8> kMethods{{
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
-    {"clc", "CLC; NVD weighs distances, the network ranks by all features", std::nullopt, false,
-     [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
+    {"clc", "CLC; NVD weighs distances, a second search, the network ranks by all features", std::nullopt,
+     false, [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();

@@ -122,7 +122,18 @@ void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, b
     const std::int64_t left = options_.iteration_limit - budget_.iterations;
     budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
     const std::size_t before = pairs_.found().size();
-    report.complete &= enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
+    const std::int64_t limit = budget_.iteration_limit;
+    const bool twice = options_.second_search_discrepancies > 0;
+    if (twice) budget_.iteration_limit -= (limit - budget_.iterations) / 2;
+    const bool complete =
+        enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
+    budget_.iteration_limit = limit;
+    if (twice && !complete) {
+        EnumerationRules narrow = rules_;
+        narrow.most_discrepancies = options_.second_search_discrepancies;
+        (void)enumeration_.run(graph_, start, scene.pose.heading(), narrow, budget_, pairs_, guide);
+    }
+    report.complete &= complete;
     if (!rules_.with_features) return;
     const StartPairMeasures measures = start_pair_measures(scene, start);
     for (LaneFeatures& lane : pairs_.features().subspan(before)) {

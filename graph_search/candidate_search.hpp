@@ -24,6 +24,11 @@ struct CandidateSearchOptions {
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
     /// Of the next-vertex decider, see there; 0: equation (3) as printed.
     double next_vertex_distance_weight = 0.0;
+    /// Where a search is not complete after half of its iterations, the other half goes to a second one with
+    /// at most so many discrepancies (see EnumerationRules). The first spends its iterations on the far end
+    /// of few lanes; the second sees fewer vertices of all of a lane, and finds some pairs again. 0: none, as
+    /// in the paper.
+    std::uint32_t second_search_discrepancies = 0;
 };
 
 /// Throws InvalidInput naming the option that is out of its range.

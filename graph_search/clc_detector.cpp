@@ -3,6 +3,7 @@
 #include "graph_search/rank_net_file.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace {
 /// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
 /// positives.
 constexpr double kNextVertexDistanceWeight = 0.8;
+/// The same.
+constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
 
 class ClcDetector final : public LaneDetector {
   public:
@@ -70,9 +73,16 @@ ClcOptions paper_clc_options() {
     return options;
 }
 
+CandidateSearchOptions extended_search_options() {
+    CandidateSearchOptions options;
+    options.next_vertex_distance_weight = kNextVertexDistanceWeight;
+    options.second_search_discrepancies = kSecondSearchDiscrepancies;
+    return options;
+}
+
 ClcOptions extended_clc_options() {
     ClcOptions options;
-    options.next_vertex_distance_weight = kNextVertexDistanceWeight;
+    static_cast<CandidateSearchOptions&>(options) = extended_search_options();
     options.ranking = extended_rank_net();
     return options;
 }

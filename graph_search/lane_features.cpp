@@ -36,15 +36,47 @@ constexpr std::array<std::string_view, kLaneFeatureCount> kNames{
     // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
     "cones_beside",
     // At the far ends: the sharper turn, the longer segment, the last change of a turn.
-    "end_turn_rad", "end_segment_m", "end_turn_change_rad"};
+    "end_turn_rad", "end_segment_m", "end_turn_change_rad",
+    // Vertices off where the two on each side of them would have one; skew as above.
+    "largest_offset_m", "rms_offset_m", "largest_skew",
+    // Of the widths at the vertices; a change is from a vertex to the next of its side.
+    "narrowest_m", "widest_m", "largest_width_change_m",
+    // Of the near part alone.
+    "near_sharpest_turn_rad", "near_sharpest_turn_change_rad", "near_rms_turn_change_rad",
+    "near_largest_offset_m", "near_rms_offset_m", "near_largest_segment_change_m",
+    "near_rms_segment_change_m", "near_longest_segment_m", "near_shortest_segment_m", "near_largest_skew",
+    "near_rms_skew", "near_curvature_difference_rad_per_m", "near_cones_inside", "near_cones_beside",
+    // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
+    "near_cones_close", "near_closeness", "near_vertices", "near_narrowest_m", "near_widest_m",
+    "near_mean_width_m", "near_width_deviation_m", "near_largest_width_change_m", "near_rms_width_change_m"};
+
+constexpr std::size_t kWholeOffset = 33;
+constexpr std::size_t kWholeWidths = 36;
+constexpr std::size_t kNearSteps = 39;
+constexpr std::size_t kNearWidths = 56;
 
 constexpr double kBeside_m = 1.2;
+constexpr double kClose_m = 0.6;
 
 bool is_inside(const Point& point, const Point& a, const Point& b, const Point& c) {
     const double at_ab = cross(b - a, point - a);
     const double at_bc = cross(c - b, point - b);
     const double at_ca = cross(a - c, point - c);
     return (at_ab > 0.0 && at_bc > 0.0 && at_ca > 0.0) || (at_ab < 0.0 && at_bc < 0.0 && at_ca < 0.0);
+}
+
+/// From `middle` to the cubic through two points before and two after it at even steps, across the chord of
+/// its neighbours [m].
+double offset_m(const Point& second_before, const Point& before, const Point& middle, const Point& after,
+                const Point& second_after) {
+    const Point expected = (4.0 * (before + after) - (second_before + second_after)) / 6.0;
+    const Point chord = after - before;
+    const double chord_m = chord.norm();
+    return chord_m == 0.0 ? 0.0 : std::abs(cross(chord, middle - expected)) / chord_m;
+}
+
+double curvature(double turned_rad, double length_m) {
+    return length_m == 0.0 ? 0.0 : turned_rad / length_m;
 }
 
 }  // namespace
@@ -88,6 +120,41 @@ PaperFeatures paper_features(std::span<const Point> left, std::span<const Point>
     return features;
 }
 
+struct LaneGrowth::Step {
+    double length_m = 0.0;
+    double turn_rad = 0.0;  ///< with sign
+    double turn_change_rad = -1.0;
+    double offset_m = -1.0;
+    double segment_change_m = -1.0;
+    double skew = -1.0;
+    double cones_inside = 0.0;
+    double cones_beside = 0.0;
+    double cones_close = 0.0;
+    double closeness = 0.0;
+};
+
+void LaneGrowth::add(const Step& step, Side side, Stretch& stretch) {
+    const auto add_figure = [](double value, Moments& moments, double& largest) {
+        if (value < 0.0) return;
+        moments.add(value);
+        largest = std::max(largest, value);
+    };
+    add_figure(step.skew, stretch.skew, stretch.largest_skew);
+    add_figure(step.turn_change_rad, stretch.turn_changes, stretch.sharpest_turn_change_rad);
+    add_figure(step.offset_m, stretch.offsets_m, stretch.largest_offset_m);
+    add_figure(step.segment_change_m, stretch.segment_changes_m, stretch.largest_segment_change_m);
+    stretch.sharpest_turn_rad = std::max(stretch.sharpest_turn_rad, std::abs(step.turn_rad));
+    stretch.longest_segment_m = std::max(stretch.longest_segment_m, step.length_m);
+    stretch.shortest_segment_m = std::min(stretch.shortest_segment_m, step.length_m);
+    stretch.turned_rad[side] += step.turn_rad;
+    stretch.length_m[side] += step.length_m;
+    ++stretch.steps[side];
+    stretch.cones_inside += step.cones_inside;
+    stretch.cones_beside += step.cones_beside;
+    stretch.cones_close += step.cones_close;
+    stretch.closeness += step.closeness;
+}
+
 void LaneGrowth::start(const SearchGraph& graph, Vertex left, Vertex right, const Point& heading) {
     *this = LaneGrowth();
     heading_ = heading;
@@ -105,44 +172,60 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
     const Point& facing_tip = tip_[opposite(side)];
     const Point& point = graph.position(vertex);
     const Point segment = point - tip_[side];
-    const double length_m = segment.norm();
-    const Point direction = segment / length_m;
-    const bool has_turn = own.segment_lengths.count > 0.0;
-    if (has_turn) {
-        const double turn_rad = turning_angle(own.direction, direction);
-        sharpest_turn_rad_ = std::max(sharpest_turn_rad_, std::abs(turn_rad));
-        if (own.turns.count > 0.0) {
-            const double change_rad = turn_rad - own.last_turn_rad;
+    Step step;
+    step.length_m = segment.norm();
+    const Point direction = segment / step.length_m;
+    if (own.vertices > 1) {
+        step.turn_rad = turning_angle(own.direction, direction);
+        step.segment_change_m = std::abs(step.length_m - own.last_segment_m);
+        if (own.vertices > 2) {
+            const double change_rad = step.turn_rad - own.last_turn_rad;
             own.turn_changes.add(change_rad);
-            last_turn_change_rad_ = std::abs(change_rad);
-            sharpest_turn_change_rad_ = std::max(sharpest_turn_change_rad_, last_turn_change_rad_);
+            step.turn_change_rad = std::abs(change_rad);
+            last_turn_change_rad_ = step.turn_change_rad;
         }
-        own.turns.add(turn_rad);
-        own.last_turn_rad = turn_rad;
+        if (own.vertices > 3) {
+            step.offset_m =
+                offset_m(own.before_tip[2], own.before_tip[1], own.before_tip[0], tip_[side], point);
+        }
+        own.turns.add(step.turn_rad);
+        own.last_turn_rad = step.turn_rad;
     } else {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
-    if (facing.segment_lengths.count > 0.0) skew_.add((direction - facing.direction).norm());
+    if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
     const std::span<const Vertex> neighbours = graph.neighbours(vertex);
     for (const Vertex neighbour : neighbours) {
         const Point& cone = graph.position(neighbour);
-        if (is_inside(cone, tip_[side], facing_tip, point)) cones_inside_ += 1.0;
+        if (is_inside(cone, tip_[side], facing_tip, point)) step.cones_inside += 1.0;
         const Point offset = cone - tip_[side];
         const double along_m = offset.dot(direction);
-        if (along_m > 0.0 && along_m < length_m && std::abs(cross(direction, offset)) < kBeside_m) {
-            cones_beside_ += 1.0;
-        }
+        if (along_m <= 0.0 || along_m >= step.length_m) continue;
+        const double across_m = std::abs(cross(direction, offset));
+        if (across_m >= kBeside_m) continue;
+        step.cones_beside += 1.0;
+        if (across_m < kClose_m) step.cones_close += 1.0;
+        const double share = across_m / kBeside_m;
+        step.closeness += (1.0 - share * share) * (1.0 - share * share);
     }
-    own.segment_lengths.add(length_m);
+    // Up to where the step begins.
+    const bool is_near = own.segment_lengths.sum <= kNearPart_m;
+    add(step, side, whole_);
+    if (is_near) add(step, side, near_);
+
+    own.segment_lengths.add(step.length_m);
     own.direction = direction;
-    own.last_segment_m = length_m;
+    own.before_tip = {tip_[side], own.before_tip[0], own.before_tip[1]};
+    own.last_segment_m = step.length_m;
     own.last = vertex;
-    own.vertices += 1.0;
+    ++own.vertices;
     tip_[side] = point;
-    longest_segment_m_ = std::max(longest_segment_m_, length_m);
-    shortest_segment_m_ = std::min(shortest_segment_m_, length_m);
     across_.add((point - facing_tip).norm());
     degree_.add(static_cast<double>(neighbours.size()));
+}
+
+std::array<std::size_t, 2> LaneGrowth::near_vertices() const {
+    return {near_.steps[kLeft] + 1, near_.steps[kRight] + 1};
 }
 
 LaneFeatures LaneGrowth::features() const {
@@ -152,7 +235,7 @@ LaneFeatures LaneGrowth::features() const {
     features[0] = (left.segment_lengths.sum + right.segment_lengths.sum) / 2.0;
     for (const Side side : {kLeft, kRight}) {
         const Boundary& boundary = boundaries_[side];
-        features[1 + side] = boundary.vertices;
+        features[1 + side] = static_cast<double>(boundary.vertices);
         features[4 + side] = boundary.segment_lengths.variance();
         features[6 + side] = boundary.turns.variance();
         features[21 + side] = boundary.segment_lengths.mean();
@@ -160,21 +243,85 @@ LaneFeatures LaneGrowth::features() const {
         features[25 + side] = boundary.turn_changes.mean_of_squares();
     }
     features[12] = advance_deviation(tip_[kLeft], left.direction, tip_[kRight], right.direction);
-    features[13] = cones_inside_;
+    features[13] = whole_.cones_inside;
     features[14] = degree_.mean();
-    features[15] = sharpest_turn_rad_;
-    features[16] = sharpest_turn_change_rad_;
-    features[17] = longest_segment_m_;
-    features[18] = skew_.mean_of_squares();
+    features[15] = whole_.sharpest_turn_rad;
+    features[16] = whole_.sharpest_turn_change_rad;
+    features[17] = whole_.longest_segment_m;
+    features[18] = whole_.skew.mean_of_squares();
     features[19] = across_.mean();
     features[20] = across_.variance();
-    features[27] = shortest_segment_m_;
+    features[27] = whole_.shortest_segment_m;
     features[28] = start_skew_;
-    features[29] = cones_beside_;
+    features[29] = whole_.cones_beside;
     features[30] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
     features[31] = std::max(left.last_segment_m, right.last_segment_m);
     features[32] = last_turn_change_rad_;
+    features[kWholeOffset] = whole_.largest_offset_m;
+    features[kWholeOffset + 1] = std::sqrt(whole_.offsets_m.mean_of_squares());
+    features[kWholeOffset + 2] = whole_.largest_skew;
+    const std::array<double, kNearWidths - kNearSteps> of_near_steps{
+        near_.sharpest_turn_rad,
+        near_.sharpest_turn_change_rad,
+        std::sqrt(near_.turn_changes.mean_of_squares()),
+        near_.largest_offset_m,
+        std::sqrt(near_.offsets_m.mean_of_squares()),
+        near_.largest_segment_change_m,
+        std::sqrt(near_.segment_changes_m.mean_of_squares()),
+        near_.longest_segment_m,
+        near_.shortest_segment_m,
+        near_.largest_skew,
+        std::sqrt(near_.skew.mean_of_squares()),
+        std::abs(curvature(near_.turned_rad[kLeft], near_.length_m[kLeft]) -
+                 curvature(near_.turned_rad[kRight], near_.length_m[kRight])),
+        near_.cones_inside,
+        near_.cones_beside,
+        near_.cones_close,
+        near_.closeness,
+        static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2)};
+    std::ranges::copy(of_near_steps, features.begin() + kNearSteps);
     return features;
+}
+
+void add_width_features(const OnlineLaneWidth& width, const std::array<std::size_t, 2>& near_vertices,
+                        LaneFeatures& lane) {
+    struct Figures {
+        double narrowest_m = std::numeric_limits<double>::infinity();
+        double widest_m = 0.0;
+        double largest_change_m = 0.0;
+    };
+    Figures whole;
+    Figures near;
+    Moments near_widths;
+    Moments near_changes;
+    for (const Side side : {kLeft, kRight}) {
+        double before_m = width.vertex_width_m(side, 0);
+        for (std::size_t i = 0; i < width.boundary(side).size; ++i) {
+            const double width_m = width.vertex_width_m(side, i);
+            const double change_m = std::abs(width_m - before_m);
+            before_m = width_m;
+            const auto add = [&](Figures& figures) {
+                figures.narrowest_m = std::min(figures.narrowest_m, width_m);
+                figures.widest_m = std::max(figures.widest_m, width_m);
+                figures.largest_change_m = std::max(figures.largest_change_m, change_m);
+            };
+            add(whole);
+            if (i >= near_vertices[side]) continue;
+            add(near);
+            near_widths.add(width_m);
+            if (i > 0) near_changes.add(change_m);
+        }
+    }
+    lane[kWidthVarianceFeature] = width.variance();
+    lane[kWholeWidths] = whole.narrowest_m;
+    lane[kWholeWidths + 1] = whole.widest_m;
+    lane[kWholeWidths + 2] = whole.largest_change_m;
+    lane[kNearWidths] = near.narrowest_m;
+    lane[kNearWidths + 1] = near.widest_m;
+    lane[kNearWidths + 2] = near_widths.mean();
+    lane[kNearWidths + 3] = std::sqrt(near_widths.variance());
+    lane[kNearWidths + 4] = near.largest_change_m;
+    lane[kNearWidths + 5] = std::sqrt(near_changes.mean_of_squares());
 }
 
 }  // namespace conelane

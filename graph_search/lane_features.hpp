@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graph_search/lane_width.hpp"
 #include "graph_search/search_graph.hpp"
 #include "model/geometry.hpp"
 
@@ -18,7 +19,7 @@ namespace conelane {
 /// consecutive segments left, right [rad^2]. Variances are those of the whole population, 0 where there is
 /// nothing to vary. The others are this project's, see lane_feature_names.
 inline constexpr std::size_t kPaperFeatureCount = 8;
-inline constexpr std::size_t kLaneFeatureCount = 33;
+inline constexpr std::size_t kLaneFeatureCount = 62;
 using PaperFeatures = std::array<double, kPaperFeatureCount>;
 using LaneFeatures = std::array<double, kLaneFeatureCount>;
 
@@ -47,6 +48,11 @@ struct Moments {
     [[nodiscard]] double variance() const;
 };
 
+/// A step of a boundary from one vertex to the next belongs to the near part of the lane where it begins
+/// within this distance along the boundary [m]. A lane that is wrong there is a critical failure, and what
+/// is wrong with one vertex is lost in a figure of the whole lane.
+inline constexpr double kNearPart_m = 20.0;
+
 /// What the features need to know of a lane, brought up to date while it grows vertex by vertex. A value: the
 /// search keeps one for each lane that it may come back to.
 class LaneGrowth {
@@ -57,37 +63,65 @@ class LaneGrowth {
     /// Extends a side.
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
-    /// All features but the variance of the width and what belongs to the scene (`longest_share`, `start_*`,
-    /// `cones`), which are left 0.
+    /// All features but those of the width, which add_width_features sets, and what belongs to the scene
+    /// (`longest_share`, `start_*`, `cones`); these are left 0.
     [[nodiscard]] LaneFeatures features() const;
+    /// By side, the vertices of the near part, its first one included.
+    [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;
 
   private:
     struct Boundary {
         Vertex last = 0;
         Point direction{0.0, 0.0};  ///< unit vector of the last segment; zero where there is none
-        double vertices = 1.0;
+        std::array<Point, 3> before_tip{Point(0.0, 0.0), Point(0.0, 0.0),
+                                        Point(0.0, 0.0)};  ///< nearest first
+        std::size_t vertices = 1;
         double last_turn_rad = 0.0;
         double last_segment_m = 0.0;
         Moments segment_lengths;
         Moments turns;
         Moments turn_changes;
     };
+    /// Figures of the steps of both sides, of the whole lane or of its near part.
+    struct Stretch {
+        Moments skew;  ///< chords between the directions of a new segment and the other side's last one
+        Moments turn_changes;
+        Moments offsets_m;  ///< across the boundary, from where the two vertices on each side put a vertex
+        Moments segment_changes_m;
+        double largest_skew = 0.0;
+        double sharpest_turn_rad = 0.0;
+        double sharpest_turn_change_rad = 0.0;
+        double largest_offset_m = 0.0;
+        double largest_segment_change_m = 0.0;
+        double longest_segment_m = 0.0;
+        double shortest_segment_m = std::numeric_limits<double>::infinity();
+        std::array<double, 2> turned_rad{0.0, 0.0};  ///< by side, with sign
+        std::array<double, 2> length_m{0.0, 0.0};
+        std::array<std::size_t, 2> steps{0, 0};
+        double cones_inside = 0.0;
+        double cones_beside = 0.0;
+        double cones_close = 0.0;
+        double closeness = 0.0;
+    };
+    /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
+    struct Step;
+    static void add(const Step& step, Side side, Stretch& stretch);
 
     std::array<Boundary, 2> boundaries_;
     std::array<Point, 2> tip_{Point(0.0, 0.0), Point(0.0, 0.0)};
-    Moments skew_;  ///< chords between the directions of a new segment and the other side's last one
+    Stretch whole_;
+    Stretch near_;
     Moments across_;
     Moments degree_;
-    double sharpest_turn_rad_ = 0.0;
-    double sharpest_turn_change_rad_ = 0.0;
-    double longest_segment_m_ = 0.0;
-    double shortest_segment_m_ = std::numeric_limits<double>::infinity();
     Point heading_{0.0, 0.0};
     double start_skew_ = 0.0;
-    double cones_beside_ = 0.0;
     double last_turn_change_rad_ = 0.0;
-    double cones_inside_ = 0.0;
 };
+
+/// Sets the features of a lane that its widths decide: all in `lane` that LaneGrowth leaves 0 but those of
+/// the scene. `near_vertices`: by side, at least one.
+void add_width_features(const OnlineLaneWidth& width, const std::array<std::size_t, 2>& near_vertices,
+                        LaneFeatures& lane);
 
 /// Features that LaneGrowth leaves to others.
 inline constexpr std::size_t kWidthVarianceFeature = 3;

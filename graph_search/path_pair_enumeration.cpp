@@ -52,6 +52,8 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     Call first;
     first.unvisited = {next_vertex_.after_start(start.left, heading),
                        next_vertex_.after_start(start.right, heading)};
+    first.tried = {0, 0};
+    first.discrepancies = 0;
     first.visited_early = {kNoVertex, kNoVertex};
     first.last = {start.left, start.right};
     first.direction = {heading, heading};
@@ -103,6 +105,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
             ++guide_position_[side];
         } else {
             ++call.unvisited[side].begin;
+            ++call.tried[side];
         }
         const Vertex from = call.last[side];
         const bool first_segment = from == (side == kLeft ? start.left : start.right);
@@ -117,6 +120,8 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
             continue;
         }
         Call below = call;
+        if (!guided) below.discrepancies += call.tried[side] - 1;
+        below.tried[side] = 0;
         below.last[side] = next.vertex;
         below.direction[side] = segment;
         const double segment_m = segment.norm();
@@ -134,6 +139,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
 }
 
 bool PathPairEnumeration::drop_visited(Call& call, Side side) const {
+    if (call.discrepancies + call.tried[side] > rules_.most_discrepancies) return false;
     NextVertexDecider::Range& unvisited = call.unvisited[side];
     while (unvisited.begin != unvisited.end) {
         const Vertex vertex = next_vertex_.option(unvisited.begin).vertex;
@@ -179,7 +185,7 @@ void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathP
     pairs.add_found({call.step, false, iteration, length_m});
     if (rules_.with_features) {
         LaneFeatures features = call.growth.features();
-        features[kWidthVarianceFeature] = constraints_.width().variance();
+        add_width_features(constraints_.width(), call.growth.near_vertices(), features);
         pairs.add_features(features);
     }
 

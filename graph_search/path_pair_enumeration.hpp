@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,10 @@ struct EnumerationRules {
     /// Without it the search goes on where no extension can become feasible: slower, and finds the same.
     bool backtracking = true;
     double next_vertex_distance_weight = 0.0;  ///< of NVD; 0: equation (3)
-    bool with_features = false;                ///< whether PathPairs::features is filled
+    /// Limited-discrepancy search: lanes with more are left out. A vertex that NVD puts in place k + 1 counts
+    /// k, and a lane's are added up.
+    std::uint32_t most_discrepancies = std::numeric_limits<std::uint32_t>::max();
+    bool with_features = false;  ///< whether PathPairs::features is filled
 };
 
 /// What a search may spend, and what it has spent; several enumerations may draw on one.
@@ -95,8 +99,8 @@ class PathPairs {
 /// side all of whose neighbours are visited; line 22 would give up each of its further extensions one by one.
 class PathPairEnumeration {
   public:
-    /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side, in the order
-    /// met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
+    /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
+    /// rules.most_discrepancies, in the order met; each one that can be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in
     /// which an iteration is one run of the loop in line 3. Returns whether the enumeration is complete.
     /// Keeps memory from call to call. Precondition: `heading` is a unit vector, start.left != start.right.
     ///
@@ -110,6 +114,8 @@ class PathPairEnumeration {
     /// One call of EPP: the path pair it extends, by its last step, and the visited sets, by position.
     struct Call {
         std::array<NextVertexDecider::Range, 2> unvisited;
+        std::array<std::uint32_t, 2> tried;   ///< vertices that NVD puts before the next one
+        std::uint32_t discrepancies;          ///< of the lane
         std::array<Vertex, 2> visited_early;  ///< the guide's vertex, out of the order of `unvisited`
         std::array<Vertex, 2> last;
         std::array<Point, 2> direction;  ///< of the last segments

@@ -40,6 +40,7 @@ struct BinaryProgram {
         double lower;
         double upper;
         bool integer;
+        bool branch_first = false;  ///< advice: of the integer columns, branch on these before the others
     };
     struct RowBounds {
         Label label;

@@ -15,8 +15,8 @@ constexpr std::array kPaper{constraints::width_pairs, constraints::heading,     
 constexpr std::array kTight{constraints::turn_flow, constraints::four_endpoints, constraints::width_cliques,
                             constraints::heading,   constraints::near_endpoints, constraints::far_partners};
 
-constexpr FormulationParts kPaperParts{EdgeExtent::all_pairs, true, true, true, kPaperFixed, kPaper};
-constexpr FormulationParts kTightParts{EdgeExtent::candidates, false, false, false, {}, kTight};
+constexpr FormulationParts kPaperParts{EdgeExtent::all_pairs, true, true, true, false, true, kPaperFixed, kPaper};
+constexpr FormulationParts kTightParts{EdgeExtent::candidates, false, false, false, true, false, {}, kTight};
 
 }  // namespace
 

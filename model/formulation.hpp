@@ -3,6 +3,7 @@
 #include "model/binary_program.hpp"
 #include "model/lane_graph_problem.hpp"
 
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,7 @@ namespace conelane {
 /// Two programs with the same integer points.
 enum class Formulation {
     paper,  ///< the rows as printed (after the errata), every variable binary
-    tight,  ///< stronger relaxation, fewer rows and columns; only edges are integer
+    tight,  ///< stronger relaxation, fewer rows; only edges are integer
 };
 [[nodiscard]] std::string_view to_string(Formulation formulation);
 
@@ -22,6 +23,8 @@ struct ColumnMap {
     std::vector<int> turn;     ///< f_ijk by problem turn
     std::vector<int> inlier;   ///< g_i by cone
     std::vector<int> not_far;  ///< u_i by cone
+    /// e_ij and e_ji by problem edge {i, j}, i < j: a path ends at its first and at its second cone by it
+    std::vector<std::array<int, 2>> end;
 };
 
 /// What a constraint family works on.
@@ -36,7 +39,9 @@ using ConstraintFamily = void (*)(const FamilyContext&);
 struct FormulationParts {
     EdgeExtent extent;
     bool high_cost_turns;  ///< f columns for forbidden turns too
+    bool inliers;          ///< g columns
     bool far_marks;        ///< u columns
+    bool path_ends;        ///< e columns
     bool all_integer;
     /// Families whose rows depend on the number of cones alone; they come first.
     std::span<const ConstraintFamily> fixed_families;

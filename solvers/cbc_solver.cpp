@@ -20,6 +20,9 @@ class CbcSession : public MilpSession {
         lp_.messageHandler()->setLogLevel(0);
         lp_.getModelPtr()->setLogLevel(0);
         integers_ = detail::load_into(lp_, program);
+        for (const int column : integers_) {
+            priorities_.push_back(program.columns[static_cast<std::size_t>(column)].branch_first ? 1 : 2);
+        }
     }
 
     MilpReport solve(const MilpLimits& limits) override {
@@ -71,6 +74,7 @@ class CbcSession : public MilpSession {
         model.setAllowableFractionGap(0.0);
         // The default increment would cut off solutions that are better by less than 1e-5.
         model.setDblParam(CbcModel::CbcCutoffIncrement, 1e-7);
+        model.passInPriorities(priorities_.data(), false);
         if (std::isfinite(limits.cutoff)) model.setCutoff(limits.cutoff);
         const detail::CbcDeadline handler(&deadline);
         if (std::isfinite(limits.time_limit_ms)) {
@@ -100,6 +104,7 @@ class CbcSession : public MilpSession {
 
     OsiClpSolverInterface lp_;
     std::vector<int> integers_;
+    std::vector<int> priorities_;  ///< of the integer columns, smaller ones are branched on first
     bool solved_once_ = false;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <coin/ClpSimplex.hpp>
@@ -28,7 +29,9 @@ class ClpBranchAndBound : public MilpSession {
     explicit ClpBranchAndBound(const BinaryProgram& program) : lp_(*interface_.getModelPtr()) {
         interface_.messageHandler()->setLogLevel(0);
         lp_.setLogLevel(0);
-        integers_ = detail::load_into(interface_, program);
+        for (const int column : detail::load_into(interface_, program)) {
+            (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_).push_back(column);
+        }
     }
 
     MilpReport solve(const MilpLimits& limits) override {
@@ -107,11 +110,17 @@ class ClpBranchAndBound : public MilpSession {
         return lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible();
     }
 
+    /// -1 where all are integral.
     [[nodiscard]] int most_fractional() const {
+        const int column = most_fractional(first_);
+        return column >= 0 ? column : most_fractional(others_);
+    }
+
+    [[nodiscard]] int most_fractional(std::span<const int> columns) const {
         const double* x = lp_.primalColumnSolution();
         int column = -1;
         double largest = detail::kIntegrality;
-        for (const int c : integers_) {
+        for (const int c : columns) {
             const double distance = std::abs(x[c] - std::round(x[c]));
             if (distance > largest) {
                 largest = distance;
@@ -146,7 +155,8 @@ class ClpBranchAndBound : public MilpSession {
 
     OsiClpSolverInterface interface_;
     ClpSimplex& lp_;
-    std::vector<int> integers_;
+    std::vector<int> first_;  ///< integer columns to branch on first
+    std::vector<int> others_;
     std::vector<Branching> path_;
 };
 

@@ -1,15 +1,13 @@
 #include "solvers/ipopt_relaxation.hpp"
 
 #include "solvers/deadline.hpp"
-#include "solvers/path_pair_solver.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
-#include "solvers/relaxation/lp_relaxation.hpp"
-#include "solvers/relaxation/rounding.hpp"
+#include "solvers/relaxation/relaxation_solver.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
-#include <span>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -149,58 +147,32 @@ bool wait_for_turn(std::unique_lock<std::timed_mutex>& lock, const Deadline& dea
         std::chrono::duration<double, std::milli>(std::min(deadline.remaining_ms(), kLongest_ms)));
 }
 
-class IpoptRelaxation : public RldSolver {
-  public:
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
-        const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch watch;
-        const LpRelaxation start = solve_lp_relaxation(problem, deadline);
-        RldReport report;
-        if (start.infeasible) {
-            report.status = SolveStatus::infeasible;
-        } else if (std::unique_lock lock(ipopt_turn(), std::defer_lock);
-                   !start.bound || !wait_for_turn(lock, deadline)) {
-            report.status = SolveStatus::time_limit;
-        } else {
-            const std::vector<double> values = minimise(problem, start.edge_values, deadline);
-            lock.unlock();
-            report =
-                round_by_search(problem, values, *path_pair_, {deadline.remaining_ms(), limits.absolute_gap});
-        }
-        report.bound = start.bound;
-        report.rounds = 1;
-        report.solve_ms = watch.elapsed_ms();
-        return report;
+/// Edge values where Ipopt ended, be it without convergence: the rounding repairs them.
+std::optional<std::vector<double>> minimise(const LaneGraphProblem& problem, const std::vector<double>& start,
+                                            const Deadline& deadline) {
+    std::unique_lock lock(ipopt_turn(), std::defer_lock);
+    if (!wait_for_turn(lock, deadline)) return std::nullopt;
+    const EdgeRelaxation relaxation(problem);
+    const Ipopt::SmartPtr<RelaxationProgram> program =
+        new RelaxationProgram(relaxation, relaxation.point(start), deadline);
+    const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+    application->Options()->SetIntegerValue("print_level", 0);
+    application->Options()->SetStringValue("sb", "yes");
+    application->Options()->SetStringValue("jac_c_constant", "yes");
+    application->Options()->SetStringValue("jac_d_constant", "yes");
+    application->Options()->SetStringValue("hessian_constant", "yes");
+    application->Options()->SetNumericValue("tol", kTolerance);
+    application->Options()->SetIntegerValue("max_iter", kMostIterations);
+    if (application->Initialize("") == Ipopt::Solve_Succeeded) {
+        (void)application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(program)));
     }
-
-  private:
-    /// Edge values where Ipopt ended, be it without convergence: the rounding repairs them.
-    static std::vector<double> minimise(const LaneGraphProblem& problem, std::span<const double> start,
-                                        const Deadline& deadline) {
-        const EdgeRelaxation relaxation(problem);
-        const Ipopt::SmartPtr<RelaxationProgram> program =
-            new RelaxationProgram(relaxation, relaxation.point(start), deadline);
-        const Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
-        application->Options()->SetIntegerValue("print_level", 0);
-        application->Options()->SetStringValue("sb", "yes");
-        application->Options()->SetStringValue("jac_c_constant", "yes");
-        application->Options()->SetStringValue("jac_d_constant", "yes");
-        application->Options()->SetStringValue("hessian_constant", "yes");
-        application->Options()->SetNumericValue("tol", kTolerance);
-        application->Options()->SetIntegerValue("max_iter", kMostIterations);
-        if (application->Initialize("") == Ipopt::Solve_Succeeded) {
-            (void)application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(program)));
-        }
-        return relaxation.edge_values(program->point());
-    }
-
-    std::unique_ptr<RldSolver> path_pair_ = make_path_pair_solver();
-};
+    return relaxation.edge_values(program->point());
+}
 
 }  // namespace
 
 std::unique_ptr<RldSolver> make_ipopt_relaxation_solver() {
-    return std::make_unique<IpoptRelaxation>();
+    return make_relaxation_solver(minimise);
 }
 
 }  // namespace conelane

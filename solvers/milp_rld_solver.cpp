@@ -74,7 +74,16 @@ class MilpRldSolver : public RldSolver {
             }
             const std::vector<ProgramRow> violated = model_->separate(round.point);
             if (violated.empty()) {
-                take(problem, model_->decode(round.point), report);
+                LaneGraph graph = model_->decode(round.point);
+                if (!is_feasible(problem, graph)) {
+                    report = {};
+                    report.message = "the solver's point violates the program";
+                    return;
+                }
+                // A backend that ignores the cutoff may stop at a point that is worse than the start.
+                if (!has_start || objective(problem, graph) < *report.objective) {
+                    take(problem, std::move(graph), report);
+                }
                 // A bound comes from the solver's own sums: it may exceed the objective by rounding only.
                 if (report.bound) report.bound = std::min(*report.bound, *report.objective);
                 return;

@@ -13,7 +13,8 @@ namespace conelane {
 struct MilpLimits {
     double time_limit_ms = std::numeric_limits<double>::infinity();
     double absolute_gap = 1e-9;
-    /// Only points with a smaller objective are wanted: status infeasible then says that there is none.
+    /// Only points with a smaller objective are wanted: status infeasible then says that there is none. A
+    /// backend may ignore it.
     double cutoff = std::numeric_limits<double>::infinity();
 };
 

@@ -8,6 +8,7 @@
 #include "solvers/ipopt_relaxation.hpp"
 #include "solvers/lp_rounding_solver.hpp"
 #include "solvers/milp_rld_solver.hpp"
+#include "solvers/nlopt_relaxation.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/symphony_solver.hpp"
 
@@ -38,6 +39,8 @@ constexpr RldSolverEntry kSolvers[]{
      [](Formulation) { return make_path_pair_solver(); }},
     {"lp-rounding", "Clp's relaxation, rounded; no proof", false, false,
      [](Formulation) { return make_lp_rounding_solver(); }},
+    {"nlopt", "NLopt on the relaxation with products, rounded; no proof", false, false,
+     [](Formulation) { return make_nlopt_relaxation_solver(); }},
 #ifdef CONELANE_HAS_IPOPT
     {"ipopt", "Ipopt on the relaxation with products, rounded; no proof", false, false,
      [](Formulation) { return make_ipopt_relaxation_solver(); }},

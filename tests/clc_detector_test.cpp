@@ -250,6 +250,35 @@ TEST(ClcDetector, TriesOtherStartsWhereFalsePositivesStandAtTheCar) {
     EXPECT_THAT(detect(scene).lane.left, ElementsAre(30, 70, 110, 150));
 }
 
+std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> candidates(const Scene& scene,
+                                                                         const ClcOptions& options) {
+    const LaneAnswer answer = detect(scene, options, {.keep_candidates = true});
+    EXPECT_LE(answer.enumeration->iterations, options.iteration_limit);
+    std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> lanes;
+    for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+        lanes.emplace(candidate.lane.left, candidate.lane.right);
+    }
+    return lanes;
+}
+
+TEST(ClcDetector, SearchesASecondTimeOnlyWhereTheFirstSearchIsNotComplete) {
+    ClcOptions once;
+    ClcOptions twice;
+    twice.second_search_discrepancies = 3;
+    const Scene easy = winding_lane(6, 0.4, 1);
+    ASSERT_TRUE(detect(easy, once).enumeration->complete);
+    EXPECT_EQ(candidates(easy, twice), candidates(easy, once));
+    std::size_t more = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene hard = with_false_positives(winding_lane(12, 0.4, seed), 40, seed);
+        EXPECT_FALSE(detect(hard, twice).enumeration->complete);
+        const auto of_one = candidates(hard, once);
+        for (const auto& lane : candidates(hard, twice)) more += of_one.contains(lane) ? 0 : 1;
+    }
+    EXPECT_GT(more, 100u);
+}
+
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
     Scene scene;
     for (int i = 0; i < 12; ++i) {

@@ -206,6 +206,51 @@ TEST(PathPairEnumeration, BacktrackingSavesIterationsAndLosesNothing) {
     EXPECT_GT(saved, 10000);
 }
 
+/// By definition: for each step of a side after its start, the vertices not yet on that side that make a
+/// smaller angle with its last segment (the heading at the start).
+std::size_t discrepancies(const std::vector<Point>& points, double d_max_m, const PathPairVertices& lane) {
+    std::size_t sum = 0;
+    for (const std::vector<Vertex>& side : lane) {
+        Point direction = kHeading;
+        for (std::size_t i = 1; i < side.size(); ++i) {
+            const Point& tip = points[side[i - 1]];
+            const auto angle_rad = [&](Vertex next) {
+                return std::abs(turning_angle(direction, points[next] - tip));
+            };
+            for (Vertex other = 0; other < points.size(); ++other) {
+                const bool on_path = std::find(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(i),
+                                               other) != side.begin() + static_cast<std::ptrdiff_t>(i);
+                if (on_path || (points[other] - tip).norm() > d_max_m) continue;
+                if (angle_rad(other) < angle_rad(side[i])) ++sum;
+            }
+            direction = points[side[i]] - tip;
+        }
+    }
+    return sum;
+}
+
+TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
+    EnumerationRules all;
+    all.width_backtracking = WidthBacktracking::proven;
+    std::size_t kept = 0;
+    std::size_t left_out = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 6 + seed % 4);
+        EnumerationRules few = all;
+        few.most_discrepancies = seed % 4;
+        std::multiset<PathPairVertices> expected;
+        for (const PathPairVertices& lane : open_pairs(enumerate(points, all))) {
+            const bool keeps = discrepancies(points, all.d_max_m, lane) <= few.most_discrepancies;
+            if (keeps) expected.insert(lane);
+            ++(keeps ? kept : left_out);
+        }
+        ASSERT_EQ(open_pairs(enumerate(points, few)), expected);
+    }
+    EXPECT_GT(kept, 100u);
+    EXPECT_GT(left_out, 100u);
+}
+
 // Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
 // back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
 TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {

@@ -166,7 +166,7 @@ TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
     const std::string file = stem.string() + "." + GetParam().ending;
     const std::string solution_file = stem.string() + ".sol";
     int feasible = 0;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
         for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << to_string(formulation));
             const Scene scene = tests::random_scene(seed, 7);

@@ -5,6 +5,7 @@
 #include "tests/file_test.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -64,7 +65,8 @@ constexpr const char* kScene =
 TEST_F(Program, HelpIsEverywhere) {
     EXPECT_EQ(run("--help").exit_code, 0);
     for (const char* command :
-         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge"}) {
+         {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
+          "formulations", "optimality", "backends", "report"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -267,6 +269,19 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
 }
 
+/// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a
+/// merged one names no shard.
+std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
+    std::vector<nlohmann::json> rows;
+    std::ifstream lines(directory / "results.jsonl");
+    for (std::string line; std::getline(lines, line);) {
+        rows.push_back(nlohmann::json::parse(line));
+        for (const char* key : {"latency_ms", "within_budget_share", "solved_share", "run"})
+            rows.back().erase(key);
+    }
+    return rows;
+}
+
 /// Lanes files hold the same but for the times.
 std::vector<Lane> lanes_in(const std::filesystem::path& file) {
     std::vector<Lane> lanes;
@@ -289,6 +304,8 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     ASSERT_EQ(run(std::string(kTwoTracks) + "--out stopped").exit_code, 0);
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
+    EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
+    EXPECT_EQ(results_in(path("stopped")).size(), 3U * 2U);  // methods, rates
 }
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryStartAnew) {
@@ -312,6 +329,7 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     for (const char* method : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
         EXPECT_EQ(lanes_in(path("merged") / method), lanes_in(path("whole") / method));
     }
+    EXPECT_EQ(results_in(path("merged")), results_in(path("whole")));
     expect_refused("merge part0 part1 --out again", {"2/3 is missing"});
     expect_refused("merge part0 part1 part1 part2 --out again", {"1/3 is there twice"});
     expect_refused("merge part0 whole part2 --out again", {"whole", "shard"});
@@ -319,6 +337,43 @@ TEST_F(Program, MergedShardsEqualOneRun) {
         run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
     expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
     expect_refused("compare --shard 3/3 --out again", {"--shard"});
+}
+
+TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
+    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --fp 0.3 --out results").exit_code, 0);
+    for (const char* method : {"rld-cbc", "rld-pair", "clc"}) {
+        for (const LaneRecord& record :
+             read_lanes(path("results") / (std::string(method) + ".lanes.jsonl"))) {
+            EXPECT_EQ(record.checked,
+                      std::string(method) != "clc" && record.answer.status == LaneStatus::found);
+        }
+    }
+    for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
+}
+
+TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
+    make_scenes("--fp 0.2");
+    const Outcome optimality = run("optimality --scenes s.scenes.jsonl --out optimality.jsonl");
+    ASSERT_EQ(optimality.exit_code, 0) << optimality.errors;
+    EXPECT_THAT(optimality.output, HasSubstr("equal %"));
+    std::ifstream lines(path("optimality.jsonl"));
+    std::size_t rows = 0;
+    for (std::string line; std::getline(lines, line); ++rows) {
+        const auto row = nlohmann::json::parse(line);
+        if (!row.contains("gap")) continue;
+        const double optimum = row.at("optimum").at("objective");
+        const double candidate = row.at("candidate").at("objective");
+        EXPECT_DOUBLE_EQ(row.at("gap"),
+                         std::max(0.0, candidate - optimum) / std::max(1.0, std::abs(optimum)));
+    }
+    EXPECT_EQ(rows, read_scenes(path("s.scenes.jsonl")).size());
+    const Outcome backends = run("backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
+    ASSERT_EQ(backends.exit_code, 0) << backends.errors;
+    EXPECT_THAT(backends.output, HasSubstr("cbc-main/paper"));
+    expect_refused("optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
+                   {"method", "enumerate"});
+    expect_refused("optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
+    expect_refused("backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {

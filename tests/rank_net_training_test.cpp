@@ -90,6 +90,69 @@ TEST(PairLoss, GradientEqualsFiniteDifferences) {
     check(parameters.output, gradient.output);
 }
 
+/// Random parameters and two scenes of three and four candidates with eight inputs.
+struct ChoiceProblem {
+    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
+    CandidateScenes scenes{Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7), {0, 3, 7}};
+
+    ChoiceProblem() {
+        boost::random::mt19937_64 random(9);
+        const auto fill = [&](auto& values) {
+            for (Eigen::Index i = 0; i < values.size(); ++i) {
+                values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
+            }
+        };
+        fill(parameters.hidden);
+        fill(parameters.hidden_bias);
+        fill(parameters.output);
+        fill(scenes.inputs);
+        fill(scenes.quality);
+    }
+};
+
+TEST(ChoiceLoss, OfTwoScenesByHand) {
+    // One unit that passes the only input on: scores 1 and 1 in the first scene, ln 3 and 0 in the second.
+    const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
+                                       Eigen::VectorXd::Ones(1)};
+    CandidateScenes scenes{Eigen::MatrixXd(1, 4), Eigen::RowVectorXd(4), {0, 2, 4}};
+    scenes.inputs << 1.0, 1.0, std::log(3.0), 0.0;
+    scenes.quality << 0.9, 0.5, 1.0, -1.0;
+    EXPECT_NEAR(choice_loss(parameters, scenes, nullptr), -(0.7 + (0.75 - 0.25)) / 2.0, 1e-12);
+    scenes.inputs(0, 0) = 1e6;
+    EXPECT_NEAR(choice_loss(parameters, scenes, nullptr), -(0.9 + 0.5) / 2.0, 1e-12);
+}
+
+TEST(ChoiceLoss, GradientEqualsFiniteDifferences) {
+    ChoiceProblem problem;
+    RankNetParameters gradient;
+    (void)choice_loss(problem.parameters, problem.scenes, &gradient);
+    const auto check = [&](auto& values, const auto& derivatives) {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            const double value = values(i);
+            values(i) = value + kStep;
+            const double above = choice_loss(problem.parameters, problem.scenes, nullptr);
+            values(i) = value - kStep;
+            const double below = choice_loss(problem.parameters, problem.scenes, nullptr);
+            values(i) = value;
+            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
+        }
+    };
+    check(problem.parameters.hidden, gradient.hidden);
+    check(problem.parameters.hidden_bias, gradient.hidden_bias);
+    check(problem.parameters.output, gradient.output);
+}
+
+TEST(RankNetTraining, LearnsToChooseFromWholeScenes) {
+    RankNetTrainingOptions options = quick();
+    options.loss = RankLoss::choice;
+    options.scenes_a_step = 10;
+    options.epochs = 60;
+    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+}
+
 TEST(RankNetTraining, LearnsWhatDecides) {
     const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), quick());
     const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
@@ -146,6 +209,7 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.units = 0; }), "units");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.epochs = 0; }), "epochs");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.scenes_a_step = 0; }), "scenes_a_step");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");

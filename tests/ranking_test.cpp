@@ -151,6 +151,46 @@ TEST(LaneGrowth, OfALaneToFollowByHand) {
     EXPECT_DOUBLE_EQ(of("end_segment_m"), 4.0);
 }
 
+// A left boundary along y = 2 with one vertex 1 m off beyond the near part, and a straight right one.
+TEST(LaneGrowth, TellsTheNearPartFromTheRest) {
+    std::vector<Point> points;
+    for (int i = 0; i < 9; ++i) {
+        points.emplace_back(4.0 * i, i == 7 ? 3.0 : 2.0);
+        points.emplace_back(4.0 * i, -2.0);
+    }
+    SearchGraph graph;
+    graph.build(points, 5.5);
+    LaneGrowth growth;
+    OnlineLaneWidth width;
+    growth.start(graph, 0, 1, {1.0, 0.0});
+    width.reset(points[0], points[1], 6.5);
+    for (Vertex vertex = 2; vertex < points.size(); ++vertex) {
+        growth.push(graph, vertex % 2, vertex);
+        width.push(vertex % 2, points[vertex]);
+    }
+    LaneFeatures features = growth.features();
+    add_width_features(width, growth.near_vertices(), features);
+    const auto of = [&](std::string_view name) {
+        const auto names = lane_feature_names();
+        return features[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+    };
+    // Steps begin at 0, 4, ..., 28 m; those from 0 to 20 m are near, six a side, and end at 24 m.
+    EXPECT_EQ(of("near_vertices"), 14.0);
+    EXPECT_EQ(of("near_sharpest_turn_rad"), 0.0);
+    EXPECT_NEAR(of("sharpest_turn_rad"), 2.0 * std::atan(0.25), 1e-12);
+    EXPECT_EQ(of("near_largest_offset_m"), 0.0);
+    // Where the two before and the two after the vertex at 20 m (2, 2, 2, 3) put it: (4 (2 + 2) - (2 + 3)) /
+    // 6, 1/6 m off; at 24 m (4 (2 + 3) - (2 + 2)) / 6 - 2 = 2/3 m, across a chord that rises 1 in 8.
+    EXPECT_NEAR(of("largest_offset_m"), 2.0 / 3.0 * 8.0 / std::sqrt(65.0), 1e-12);
+    EXPECT_EQ(of("near_narrowest_m"), 4.0);
+    EXPECT_EQ(of("near_widest_m"), 4.0);
+    EXPECT_NEAR(of("widest_m"), 5.0, 1e-12);
+    EXPECT_EQ(of("near_width_deviation_m"), 0.0);
+    EXPECT_EQ(of("near_longest_segment_m"), 4.0);
+    EXPECT_EQ(of("near_largest_segment_change_m"), 0.0);
+    EXPECT_EQ(of("near_curvature_difference_rad_per_m"), 0.0);
+}
+
 TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     RankNetWeights weights;
     weights.mean = Eigen::VectorXd::Ones(8);

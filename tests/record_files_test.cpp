@@ -32,7 +32,7 @@ class LaneFileTest : public FileTest {
 };
 
 TEST_F(LaneFileTest, EverythingAMethodKnowsSurvivesARoundTrip) {
-    LaneRecord full{"a", "clc", {}, 1.73, 12};
+    LaneRecord full{"a", "clc", {}, 1.73, 12, true};
     full.answer.status = LaneStatus::found;
     full.answer.lane = {{49, 17}, {5, 10}, true};
     full.answer.confidence = 0.5;
@@ -48,7 +48,7 @@ TEST_F(LaneFileTest, EverythingAMethodKnowsSurvivesARoundTrip) {
               R"("latency_ms":1.73,"confidence":0.5,"trusted_m":12.5,)"
               R"("objective":-3.5,"bound":-4.0,"optimal":false,"iterations":17,"complete":true,"candidates":)"
               R"([{"left":[49],"right":[5],"iteration":3},)"
-              R"({"left":[1,2],"right":[3],"closed":true,"iteration":4}],"nearest":12})"
+              R"({"left":[1,2],"right":[3],"closed":true,"iteration":4}],"nearest":12,"checked":true})"
               "\n"
               R"({"scene":"b","method":"clc","status":"error","left":[],"right":[],"closed":false,)"
               R"("latency_ms":0.0,"message":"out of memory"})"
@@ -59,6 +59,8 @@ TEST_F(LaneFileTest, EverythingAMethodKnowsSurvivesARoundTrip) {
     EXPECT_EQ(read[0].method, "clc");
     EXPECT_EQ(read[0].latency_ms, 1.73);
     EXPECT_EQ(read[0].nearest, 12u);
+    EXPECT_TRUE(read[0].checked);
+    EXPECT_FALSE(read[1].checked);
     EXPECT_EQ(read[0].answer.lane, full.answer.lane);
     EXPECT_EQ(read[0].answer.confidence, 0.5);
     EXPECT_EQ(read[0].answer.trusted_m, 12.5);

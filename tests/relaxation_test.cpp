@@ -113,6 +113,25 @@ TEST(Relaxations, AnswerLaneGraphsBetweenBoundAndOptimumAndClaimNoOptimality) {
     }
 }
 
+/// Two straight boundaries at the expected spacing and nothing else: four edges at -1 each, and the linear
+/// relaxation is there already.
+TEST(Relaxations, FindTheOnlyLane) {
+    Scene scene;
+    for (const double left_m : {1.5, -1.5}) {
+        for (const double ahead_m : {1.0, 4.2, 7.4}) {
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {ahead_m, left_m}});
+        }
+    }
+    const LaneGraph lane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    for (const RldSolverEntry* entry : heuristics()) {
+        const RldReport report = entry->make(Formulation::tight)->solve(make_problem(scene, {}), {});
+        ASSERT_EQ(report.status, SolveStatus::feasible) << entry->name << ": " << report.message;
+        EXPECT_EQ(report.lane_graph, lane) << entry->name;
+        EXPECT_NEAR(*report.objective, -4.0, 1e-9) << entry->name;
+        EXPECT_NEAR(*report.bound, -4.0, 1e-6) << entry->name;
+    }
+}
+
 TEST(Relaxations, StopAtTheTimeLimit) {
     for (const RldSolverEntry* entry : heuristics()) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(1, 16), {});

@@ -275,6 +275,80 @@ TEST(SceneGeneration, ColoursShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem
     }
 }
 
+TEST(SceneGeneration, ColourErrorsPaintConesOfABoundaryLikeTheOtherOne) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.3}, {15.0});
+    wanted.with_color = true;
+    const auto right = generate(straight(), poses, wanted);
+    wanted.color_error_rate = 0.2;
+    const auto scenes = generate(straight(), poses, wanted);
+    ASSERT_THAT(scenes, SizeIs(1000));
+    EXPECT_EQ(scenes[3].scene.id, "toy/pose_0003/fp_0.30/range_15/color_error_0.2");
+    int wrong = 0;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const auto count = [&](const std::vector<ConeId>& run, ConeColor own, ConeColor other) {
+            for (const ConeId id : run) {
+                const ConeColor color = cone_of(scenes[i], id).color;
+                EXPECT_TRUE(color == own || color == other);
+                if (color == other) ++wrong;
+            }
+        };
+        count(scenes[i].ground_truth->left, ConeColor::blue, ConeColor::yellow);
+        count(scenes[i].ground_truth->right, ConeColor::yellow, ConeColor::blue);
+        // Nothing else has moved: the same false positives in the same order.
+        ASSERT_EQ(scenes[i].scene.cones.size(), right[i].scene.cones.size());
+        for (std::size_t c = 0; c < right[i].scene.cones.size(); ++c) {
+            EXPECT_EQ(scenes[i].scene.cones[c].position, right[i].scene.cones[c].position);
+        }
+    }
+    EXPECT_NEAR(wrong / 6000.0, 0.2, 0.02);  // three cones a side in each scene
+}
+
+/// Means and spreads of the two distributions by the Beta's formulas, and the share of pairs in which the
+/// real cone has the higher confidence.
+TEST(SceneGeneration, ConfidencesOfConesAndFalsePositivesOverlap) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.5}, {15.0});
+    const auto plain = generate(straight(), poses, wanted);
+    wanted.with_confidence = true;
+    const auto scenes = generate(straight(), poses, wanted);
+    std::vector<double> real;
+    std::vector<double> others;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const Lane& lane = *scenes[i].ground_truth;
+        for (std::size_t c = 0; c < scenes[i].scene.cones.size(); ++c) {
+            const Cone& cone = scenes[i].scene.cones[c];
+            EXPECT_EQ(plain[i].scene.cones[c].confidence, 1.0);
+            EXPECT_EQ(plain[i].scene.cones[c].position, cone.position);
+            ASSERT_TRUE(cone.confidence >= 0.0 && cone.confidence <= 1.0);
+            const bool on_lane =
+                std::ranges::count(lane.left, cone.id) + std::ranges::count(lane.right, cone.id) > 0;
+            (on_lane ? real : others).push_back(cone.confidence);
+        }
+    }
+    const auto expect_beta = [](const std::vector<double>& values, double a, double b) {
+        const auto count = static_cast<double>(values.size());
+        double sum = 0.0;
+        double squares = 0.0;
+        for (const double value : values) {
+            sum += value;
+            squares += value * value;
+        }
+        const double mean = sum / count;
+        EXPECT_NEAR(mean, a / (a + b), 0.01);
+        EXPECT_NEAR(squares / count - mean * mean, a * b / ((a + b) * (a + b) * (a + b + 1.0)), 0.002);
+    };
+    ASSERT_THAT(real, SizeIs(6000));
+    ASSERT_THAT(others, SizeIs(8000));  // the stray point of the map and seven false positives
+    expect_beta(real, 5.0, 2.0);
+    expect_beta(others, 2.0, 4.0);
+    int higher = 0;
+    for (std::size_t i = 0; i < real.size(); ++i) {
+        if (real[i] > others[i]) ++higher;
+    }
+    EXPECT_NEAR(higher / 6000.0, 0.93, 0.01);
+}
+
 TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
     const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
     SceneOptions wanted = options({0.0}, {15.0});
@@ -404,6 +478,9 @@ TEST(SceneGeneration, BytesDependNeitherOnThreadsNorOnOtherScenes) {
         wanted.noise_sigma_m = 0.1;
         wanted.pose_noise_lateral_m = 0.2;
         wanted.miss_rate = 0.05;
+        wanted.with_color = true;
+        wanted.color_error_rate = 0.1;
+        wanted.with_confidence = true;
         const auto scenes = generate(straight(), poses, wanted);
         ASSERT_EQ(scenes.size(), 4 * poses.size());
         wanted.threads = 4;
@@ -487,6 +564,13 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
     EXPECT_EQ(error([](SceneOptions& o) { o.pose_noise_yaw_rad = kNan; }),
               "pose-noise: must be in [0, 1000]");
     EXPECT_EQ(error([](SceneOptions& o) { o.miss_rate = 1.0; }), "miss: must be in [0, 1)");
+    EXPECT_EQ(error([](SceneOptions& o) {
+                  o.with_color = true;
+                  o.color_error_rate = 1.5;
+              }),
+              "color-error: must be in [0, 1]");
+    EXPECT_EQ(error([](SceneOptions& o) { o.color_error_rate = 0.1; }),
+              "color-error: needs scenes with colour");
     EXPECT_EQ(error([](SceneOptions& o) { o.threads = 0; }), "threads: must be in [1, 1024]");
 
     const SceneOptions good = options({0.5}, {30.0});

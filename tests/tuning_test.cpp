@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
 }
 
 TEST(ParameterBox, LeadsToThePointAndBack) {
-    const RldParameters start;
+    RldParameters start;
+    start.s_crit = 4.0;
     const RldParameters back = from_unit_cube(to_unit_cube(start), start);
     for (const TunedParameter& tuned : tuned_parameters()) {
         EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
@@ -165,12 +167,33 @@ TEST(Losses, NameTheConstraintThatTheGroundTruthBreaks) {
         return loss_on(scene, parameters, 12, 1e5);
     };
     EXPECT_EQ(loss([](RldParameters&) {}), Loss::accurate);
-    EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::spacing);
-    EXPECT_EQ(loss([](RldParameters& p) { p.t_crit = 0.0; }), Loss::angle);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_min = 30.0; }), Loss::width);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_h = 0.0; }), Loss::heading);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_max = 0.0; }), Loss::endpoints);
-    EXPECT_EQ(loss([](RldParameters& p) { p.w_b = 0.0; }), Loss::cheaper_one);
+    EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::breaks_spacing);
+    EXPECT_EQ(loss([](RldParameters& p) { p.t_crit = 0.0; }), Loss::breaks_angle);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_min = 30.0; }), Loss::breaks_width);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_h = 0.0; }), Loss::breaks_heading);
+    EXPECT_EQ(loss([](RldParameters& p) { p.d_max = 0.0; }), Loss::breaks_endpoints);
+}
+
+/// Cones every 4 m on both sides, and on the left a false positive in the middle of each gap. At an expected
+/// spacing of 2 m they all belong to the lane of least cost: it has two edges more than the ground truth, and
+/// w_s (2 / 1.7)^4 = 1.92 w_s less of spacing cost for each gap.
+TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
+    AnnotatedScene scene;
+    scene.scene.id = "every_gap_halved";
+    for (const ConeId i : {0, 1, 2}) {
+        scene.scene.cones.push_back({i, {1.0 + 4.0 * static_cast<double>(i), 1.5}});
+        scene.scene.cones.push_back({10 + i, {1.0 + 4.0 * static_cast<double>(i), -1.5}});
+    }
+    scene.scene.cones.push_back({20, {3.0, 1.5}});
+    scene.scene.cones.push_back({21, {7.0, 1.5}});
+    scene.ground_truth = Lane{{0, 1, 2}, {10, 11, 12}};
+    RldParameters parameters;
+    parameters.d_e = 2.0;
+    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_benefit);
+    parameters.w_s = 0.6;
+    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_spacing);
+    parameters.d_e = 4.0;
+    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::accurate);
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {

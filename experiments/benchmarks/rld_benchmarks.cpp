@@ -122,12 +122,9 @@ void register_all(const Scenes& all) {
     }
     for (const RldSolverEntry& entry : rld_solvers()) {
         for (const std::int64_t size : kSizes) {
-            if (!entry.uses_formulation) {
-                if (size <= 9) register_solve(all, entry, Formulation::tight, size);
-                continue;
-            }
             register_solve(all, entry, Formulation::tight, size);
-            if (size <= kLargestPaperSize) register_solve(all, entry, Formulation::paper, size);
+            if (entry.uses_formulation && size <= kLargestPaperSize)
+                register_solve(all, entry, Formulation::paper, size);
         }
     }
 }

@@ -15,6 +15,9 @@ void add_check_command(CLI::App& program);
 void add_certify_command(CLI::App& program);
 void add_exchange_commands(CLI::App& program);  ///< export, import-solution
 void add_formulations_command(CLI::App& program);
+void add_backends_command(CLI::App& program);
+void add_optimality_command(CLI::App& program);
+void add_relaxations_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_report_command(CLI::App& program);

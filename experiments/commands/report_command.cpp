@@ -10,12 +10,13 @@ namespace {
 struct Options {
     std::string results;
     std::string page;
+    std::string pictures;
     std::string python;
 };
 
 void make_report(const Options& options) {
     try {
-        write_report(options.results, options.page, options.python);
+        write_report(options.results, options.page, options.pictures, options.python);
     } catch (const ReportRefused&) {
         throw CLI::RuntimeError(2);  // it has said why
     }
@@ -28,6 +29,7 @@ void add_report_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--results", options->results, "directory that `conelane compare` wrote")->required();
     command.add_option("--out", options->page, "PAGE.html")->required();
+    command.add_option("--png", options->pictures, "folder for the main figures as PNG too");
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
     command.callback([options] { make_report(*options); });
 }

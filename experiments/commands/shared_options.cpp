@@ -34,6 +34,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->expected(2);
     command.add_option("--miss", options.miss_rate, "share of the cones not seen");
     command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
+    command.add_option("--color-error", options.color_error_rate,
+                       "with --color: share of the cones seen in the other boundary's colour");
+    command.add_flag("--confidence", options.with_confidence,
+                     "scenes carry simulated confidences, lower ones for false positives");
     command.add_option("--seed", options.seed, "base seed")->capture_default_str();
 }
 

@@ -39,7 +39,10 @@ void print(const char* of, const RankingFigures& figures) {
 void train(Options& options) {
     TrainingRunOptions& run = options.run;
     run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
-    if (options.extended) run.candidates.search = extended_clc_options();
+    if (options.extended) {
+        run.candidates.search = extended_search_options();
+        run.training.loss = RankLoss::choice;
+    }
     run.training.seed = run.scenes.seed;
     run.candidates.seed = run.scenes.seed;
     run.scenes.threads = options.threads;
@@ -63,11 +66,14 @@ void add_train_command(CLI::App& program) {
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
     add_scene_options(command, run.scenes);
+    command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
+        ->capture_default_str();
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
     command.add_flag("--extended", options->extended,
-                     "the network of clc, on its search and all features; without it that of clc-paper");
+                     "the network of clc, on its search, by all features and the quality of its choice; "
+                     "without it that of clc-paper");
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();

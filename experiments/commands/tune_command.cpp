@@ -37,8 +37,8 @@ struct Options {
     std::filesystem::path log;
 };
 
-/// All that the figures of parameters depend on.
-ordered_json conditions(const Options& options) {
+/// All that the figures of parameters depend on, `start` for what tuning does not move.
+ordered_json conditions(const Options& options, const RldParameters& start) {
     const SceneOptions& scenes = options.scenes;
     ordered_json json{{"commit", provenance().commit},
                       {"tracks", options.tracks},
@@ -49,9 +49,16 @@ ordered_json conditions(const Options& options) {
                       {"noise", scenes.noise_sigma_m},
                       {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
                       {"miss", scenes.miss_rate},
+                      {"color", scenes.with_color},
+                      {"color_error", scenes.color_error_rate},
+                      {"confidence", scenes.with_confidence},
                       {"seed", scenes.seed},
                       {"time_limit_ms", options.evaluation.time_limit_ms},
-                      {"most_nodes", options.evaluation.most_nodes}};
+                      {"most_nodes", options.evaluation.most_nodes},
+                      {"pairing", to_string(start.pairing)},
+                      {"w_color", start.w_color},
+                      {"use_confidence", start.use_confidence},
+                      {"forbid_crossing", start.forbid_crossing}};
     if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
     return json;
 }
@@ -97,8 +104,27 @@ ordered_json losses(const std::vector<AnnotatedScene>& scenes, const RldParamete
     return json;
 }
 
-ordered_json record_of(const Options& options, const Tuned& tuned, const Evaluation& evaluation) {
-    ordered_json record = conditions(options);
+/// A line for each rate: shares of the scenes that count.
+void print_losses(const ordered_json& by_rate) {
+    const std::string not_counted(to_string(Loss::no_ground_truth));
+    for (const auto& [rate, counts] : by_rate.items()) {
+        double scenes = 0.0;
+        for (const auto& [cause, count] : counts.items()) {
+            if (cause != not_counted) scenes += count.get<double>();
+        }
+        std::string line = fmt::format("false positives {}:", rate);
+        for (const auto& [cause, count] : counts.items()) {
+            if (cause != not_counted) {
+                line += fmt::format(" {} {:.1f} %,", cause, 100.0 * count.get<double>() / scenes);
+            }
+        }
+        line.pop_back();
+        fmt::print("{}\n", line);
+    }
+}
+
+ordered_json record_of(const Options& options, const RldParameters& start, const Tuned& tuned) {
+    ordered_json record = conditions(options, start);
     record["folds"] = options.tuner.folds;
     record["evaluations"] = options.tuner.evaluations;
     record["compiler"] = provenance().compiler;
@@ -117,7 +143,6 @@ ordered_json record_of(const Options& options, const Tuned& tuned, const Evaluat
     record["figures_of_start"] = to_json(tuned.laps_of_start);
     record["figures"] = to_json(tuned.laps);
     record["fold_results"] = folds;
-    record["losses"] = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
     return record;
 }
 
@@ -130,7 +155,7 @@ void run(Options& options) {
     options.tuner.seed = options.scenes.seed;
     const RldParameters start = ParameterSource{options.start, {}}.load();
     const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
-    EvaluationLog log(options.log, to_line(conditions(options)),
+    EvaluationLog log(options.log, to_line(conditions(options, start)),
                       [&](const RldParameters& parameters) { return evaluation(parameters); });
     const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
     Tuned tuned;
@@ -146,9 +171,11 @@ void run(Options& options) {
             start, options.tuner);
     }
     write_rld_parameters(options.out, tuned.parameters);
-    AtomicFile record(record_path(options.out));
-    record.stream() << record_of(options, tuned, evaluation).dump(2) << '\n';
-    record.commit();
+    ordered_json record = record_of(options, start, tuned);
+    record["losses"] = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
+    AtomicFile file(record_path(options.out));
+    file.stream() << record.dump(2) << '\n';
+    file.commit();
 
     fmt::print("{} on {} scenes: {:.2f} % before, {:.2f} % after\n", to_string(options.evaluation.objective),
                evaluation.scenes().size(), 100.0 * mean_over_scenes(tuned.laps_of_start),
@@ -158,6 +185,7 @@ void run(Options& options) {
                    100.0 * mean_over_scenes(fold.held_out_laps_of_start),
                    100.0 * mean_over_scenes(fold.held_out_laps));
     }
+    print_losses(record["losses"]);
 }
 
 }  // namespace

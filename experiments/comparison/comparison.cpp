@@ -16,19 +16,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 
-/// Every count-th lap.
-std::vector<AnnotatedScene> part_of(std::vector<AnnotatedScene> scenes, const Shard& shard) {
-    if (shard.count == 1) return scenes;
-    std::vector<AnnotatedScene> part;
-    const std::vector<std::size_t> starts = lap_starts(scenes);
-    for (std::size_t lap = shard.index; lap + 1 < starts.size(); lap += shard.count) {
-        const auto begin = scenes.begin() + static_cast<std::ptrdiff_t>(starts[lap]);
-        const auto end = scenes.begin() + static_cast<std::ptrdiff_t>(starts[lap + 1]);
-        std::ranges::move(begin, end, std::back_inserter(part));
-    }
-    return part;
-}
-
 /// Runs an entrant on the scenes that its lanes file does not answer yet.
 void answer_scenes(const Entrant& entrant, std::span<const AnnotatedScene> scenes, RunOptions options,
                    const fs::path& file) {
@@ -73,8 +60,7 @@ std::vector<ScoreRow> score_directory(const fs::path& directory, const SceneSet&
 
 std::vector<ScoreRow> compare(const ComparisonOptions& options, const fs::path& directory) {
     for (const Entrant& entrant : options.entrants) (void)find_method(entrant.method);
-    SceneSet set = make_scene_set(options.tracks, options.scenes);
-    set.scenes = part_of(std::move(set.scenes), options.shard);
+    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard);
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
 

@@ -12,10 +12,13 @@ namespace conelane::experiments {
 /// The main job. Every entrant on the same scenes, scored in the same way, everything on file in the
 /// directory:
 ///   run.json                                 what the run depends on
-///   scenes.scenes.jsonl, scenes.tracks.json  what the methods saw, and the boundaries they are scored
-///   against METHOD.lanes.jsonl                       what they answered; METHOD.lanes.jsonl.part until it is
-///   whole scores.jsonl                             a line per scene and method results.jsonl a line per
-///   method, rate and range, with provenance table.txt                                the same for reading
+///   scenes.scenes.jsonl    what the methods saw
+///   scenes.tracks.json     the boundaries they are scored against
+///   METHOD.lanes.jsonl     what they answered; METHOD.lanes.jsonl.part until it is whole
+///   scores.jsonl           a line per scene and method
+///   results.jsonl          a line per method, rate and range, with provenance
+///   table.txt              the same for reading
+///
 /// A run that was stopped goes on after its last whole lap. Returns the rows of the table. Throws InputError
 /// or InvalidInput.
 [[nodiscard]] std::vector<ScoreRow> compare(const ComparisonOptions& options,

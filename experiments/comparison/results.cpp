@@ -30,6 +30,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     put_if_known("false_positive_rate", scene->false_positive_rate);
     put_if_known("range", scene->range_m);
     line["status"] = to_string(record->answer.status);
+    if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
     line["iou"] = score.iou;
     line["lane_length_m"] = score.lane_length_m;

@@ -66,6 +66,8 @@ std::string run_record(const ComparisonOptions& options) {
                                   {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
                                   {"miss", scenes.miss_rate},
                                   {"color", scenes.with_color},
+                                  {"color_error", scenes.color_error_rate},
+                                  {"confidence", scenes.with_confidence},
                                   {"seed", scenes.seed},
                                   {"threads", options.run.threads},
                                   {"candidates", options.run.limits.keep_candidates}};

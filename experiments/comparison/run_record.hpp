@@ -2,6 +2,7 @@
 
 #include "experiments/comparison/runner.hpp"
 #include "experiments/scenes/scene_generation.hpp"
+#include "experiments/scenes/scene_set.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace conelane::experiments {
-
-/// Part `index` of `count`, from 0: every count-th lap of the scenes.
-struct Shard {
-    std::size_t index = 0;
-    std::size_t count = 1;
-};
 
 /// A method, and the cone-set size it gets instead of its own.
 struct Entrant {

@@ -1,5 +1,6 @@
 #include "experiments/comparison/runner.hpp"
 
+#include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/progress.hpp"
 
@@ -42,6 +43,7 @@ std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const Ann
                                   const RunOptions& options, Progress& progress) {
     const std::unique_ptr<LaneDetector> detector = method.make(options.method);
     const std::optional<std::size_t> nearest = cone_set_size(method, options.method);
+    const RldParameters parameters = rld_parameters(options.method);
     (void)detect(*detector, lap.front().scene, options.limits);
     detector->reset();
     std::vector<LaneRecord> records;
@@ -50,8 +52,12 @@ std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const Ann
         const auto start = std::chrono::steady_clock::now();
         LaneAnswer answer = detect(*detector, scene.scene, options.limits);
         const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - start;
-        records.push_back(
-            {scene.scene.id, std::string(method.name), std::move(answer), latency.count(), nearest});
+        LaneRecord record{scene.scene.id, std::string(method.name), std::move(answer), latency.count(),
+                          nearest};
+        if (method.is_rld) {
+            check_answer(record, nearest ? nearest_ahead(scene.scene, *nearest) : scene.scene, parameters);
+        }
+        records.push_back(std::move(record));
         progress.advance();
     }
     return records;

@@ -30,7 +30,8 @@ using LapSink = std::function<void(std::span<const LaneRecord>)>;
 /// Runs a method on every scene and times each call in the same way: from the scene in memory to the lane in
 /// memory, on the wall clock. The first scene of each lap is answered once untimed before, so that no latency
 /// holds the loading of code; the detector then forgets it. The cut to the cone set is part of the method and
-/// of its time. An exception becomes an answer with status error.
+/// of its time. An exception becomes an answer with status error, and so does what an RLD method found where
+/// the independent checker rejects it (see check_answer; not timed).
 void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
          const LapSink& sink);
 

@@ -75,6 +75,7 @@ LaneRecord read_record(const JsonNode& json) {
     if (const auto nearest = json.find("nearest")) {
         record.nearest = static_cast<std::size_t>(nearest->non_negative_integer());
     }
+    if (const auto checked = json.find("checked")) record.checked = checked->boolean();
     return record;
 }
 
@@ -109,6 +110,7 @@ ordered_json to_json(const LaneRecord& record, const std::string& key) {
         }
     }
     if (record.nearest) json["nearest"] = *record.nearest;
+    if (record.checked) json["checked"] = true;
     return json;
 }
 

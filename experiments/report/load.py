@@ -16,7 +16,7 @@ _NUMBERS = {
     "rate": "false_positive_rate", "range": "range", "iou": "iou", "lane_length": "lane_length_m",
     "ground_truth_length": "ground_truth_length_m", "divergence": "divergence_m", "accurate": "accurate",
     "solved": "solved", "objective": "objective", "optimal": "optimal", "iterations": "iterations",
-    "complete": "complete", "best_candidate_iou": "best_candidate_iou",
+    "complete": "complete", "checked": "checked", "best_candidate_iou": "best_candidate_iou",
     "first_near_iteration": "first_near_iteration", "cones": "cones", "latency": "latency_ms"}
 _REQUIRED = ("rate", "range", "iou", "lane_length", "ground_truth_length", "cones", "latency")
 
@@ -39,6 +39,7 @@ class Sample:
     scene: np.ndarray
     track: np.ndarray
     category: np.ndarray
+    status: np.ndarray
     values: dict
 
     def __getattr__(self, name):
@@ -55,12 +56,17 @@ class Sample:
         return label_of(self.method, self.nearest)
 
     @property
+    def carries_state(self):
+        """From scene to scene of a lap, as the names of such methods say."""
+        return self.method.endswith("-warm")
+
+    @property
     def success(self):
         return np.isin(self.category, SUCCESSES).astype(float)
 
     def where(self, mask):
         return Sample(self.method, self.nearest, self.scene[mask], self.track[mask], self.category[mask],
-                      {key: column[mask] for key, column in self.values.items()})
+                      self.status[mask], {key: column[mask] for key, column in self.values.items()})
 
     def at(self, rate=None, range_m=None):
         mask = np.ones(len(self), bool)
@@ -98,6 +104,11 @@ class Results:
 
     def path(self, name):
         return os.path.join(self.directory, name)
+
+    def origin(self, row):
+        """A sentence where a stored row comes from another commit than the comparison; else nothing."""
+        commit = row.get("commit", "unknown")
+        return "" if commit == self.run.get("commit", "unknown") else f" Measured at commit {commit}."
 
 
 _SCENE_AT_START = re.compile(r'\{"(?:id|scene)":"([^"\\]*)"')
@@ -159,7 +170,7 @@ def _read_samples(path):
         category = require(path, number, line, "category", (str,))
         if category not in CATEGORIES:
             raise InputError(f"{path}:{number}: category: there is no '{category}'")
-        row = [require(path, number, line, "scene", (str,)), require(path, number, line, "track", (str,)), category]
+        row = [require(path, number, line, key, (str,)) for key in ("scene", "track", "category", "status")]
         for name, source in _NUMBERS.items():
             if source not in line and name not in _REQUIRED:
                 row.append(math.nan)
@@ -169,8 +180,8 @@ def _read_samples(path):
     samples = []
     for (method, nearest), rows in texts.items():
         columns = list(zip(*rows))
-        samples.append(Sample(method, nearest, *(np.array(column, dtype=object) for column in columns[:3]),
-                              {name: np.array(column) for name, column in zip(_NUMBERS, columns[3:])}))
+        samples.append(Sample(method, nearest, *(np.array(column, dtype=object) for column in columns[:4]),
+                              {name: np.array(column) for name, column in zip(_NUMBERS, columns[4:])}))
     return samples
 
 
@@ -220,8 +231,9 @@ def load_results(directory):
     samples = sorted((s for s in samples if s.label in order), key=lambda sample: order.index(sample.label))
     sweep_file = path(os.path.join("sweep", "scores.jsonl"))
     sweep = _read_samples(sweep_file) if os.path.exists(sweep_file) else []
+    sweep = [sample for sample in sweep if sample.nearest is not None]
     methods = list(dict.fromkeys([row["method"] for row in rows] + [sample.method for sample in sweep]))
-    sweep.sort(key=lambda sample: (methods.index(sample.method), sample.nearest or math.inf))
+    sweep.sort(key=lambda sample: (methods.index(sample.method), sample.nearest))
     tracks_file = path("scenes.tracks.json")
     tracks = read_object(tracks_file) if os.path.exists(tracks_file) else {}
     return Results(directory, run, rows, samples, sweep, tracks, methods)

@@ -4,7 +4,8 @@ import json
 import pkgutil
 from html import escape
 
-from . import clc_figures, comparison, gallery, provenance, rld_figures, sweep, verdict
+from . import experiments, filters, gallery, provenance, verdict
+from .experiment import blocks
 from .load import CATEGORIES
 from .scenes import read_scenes
 from .theme import METHOD_COLOURS
@@ -45,11 +46,14 @@ def _viewer(results, data):
     tracks = {track: {side: [round(100 * value) for point in boundaries[side] for value in point]
                       for side in ("left", "right")} | {"closed": bool(boundaries.get("closed", True))}
               for track, boundaries in results.tracks.items()}
+    part = ("" if len(data.frames) == data.scene_count else
+            f'<p class="note">One pose in {data.stride} of each lap, as the page has room for: {len(data.frames)} of '
+            f"{data.scene_count} scenes. Tables and figures use all.</p>")
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
     content = {"methods": methods, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES]}
-    return f'{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}</script>'
+    return f'{part}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}</script>'
 
 
 def _asset(name):
@@ -60,16 +64,19 @@ def render(results, published):
     """The whole page as text; the same results give the same bytes."""
     data = read_scenes(results)
     sections = (
-        ("verdict", "Verdict", verdict.html(results) + sweep.html(results)),
-        ("comparison", "Comparison", comparison.html(results) + sweep.figures(results)),
-        ("rld", "Beside the RLD paper", rld_figures.html(results, published)),
-        ("clc", "Beside the CLC paper", clc_figures.html(results, published)),
-        ("gallery", "Scenes", gallery.html(results, data)),
-        ("play", "Scene viewer", _viewer(results, data)),
-        ("protocol", "Protocol and provenance", provenance.html(results, data)))
-    links = "".join(f'<a href="#{name}">{escape(title)}</a>' for name, title, _ in sections)
+        ("verdict", "Verdict", "Verdict", verdict.html(results)),
+        ("comparison", "Comparison", "Comparison",
+         filters.html(results) + blocks(experiments.COMPARISON, results, published)),
+        ("exactness", "Exactness", "What exactness buys",
+         blocks(experiments.EXACTNESS, results, published)),
+        ("rld", "RLD paper", "Beside the RLD paper", blocks(experiments.RLD_PAPER, results, published)),
+        ("clc", "CLC paper", "Beside the CLC paper", blocks(experiments.CLC_PAPER, results, published)),
+        ("gallery", "Scenes", "Scenes", gallery.html(results, data)),
+        ("play", "Viewer", "Scene viewer", _viewer(results, data)),
+        ("protocol", "Protocol", "Protocol and provenance", provenance.html(results, data)))
+    links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
-                   for name, title, content in sections)
+                   for name, _, title, content in sections)
     commit = escape(str(results.run.get("commit", "unknown")))
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">

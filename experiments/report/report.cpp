@@ -119,7 +119,7 @@ void write_archive(const std::filesystem::path& file) {
 }  // namespace
 
 void write_report(const std::filesystem::path& results, const std::filesystem::path& page,
-                  const std::string& wished_python) {
+                  const std::filesystem::path& pictures, const std::string& wished_python) {
     const std::string python = find_python(wished_python);
     const TemporaryFolder folder;
     const std::filesystem::path archive = folder.path() / "report.zip";
@@ -127,7 +127,9 @@ void write_report(const std::filesystem::path& results, const std::filesystem::p
     const std::string start =
         "import sys, runpy; sys.path.insert(0, sys.argv.pop(1)); "
         "runpy.run_module('report', run_name='__main__', alter_sys=True)";
-    const int code = run({python, "-c", start, archive, results.string(), page.string(), published()}, false);
+    const int code =
+        run({python, "-c", start, archive, results.string(), page.string(), published(), pictures.string()},
+            false);
     if (code == 2) throw ReportRefused();
     if (code != 0) throw std::runtime_error("the report failed, see above");
 }

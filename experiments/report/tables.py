@@ -63,7 +63,8 @@ def _cell_html(cell, column, tag):
 
 
 def table(name, caption, columns, rows, published_rows=(), row_attributes=None, note=""):
-    """`published_rows`: numbers of the rows that a paper prints, or how many of the first ones."""
+    """`caption` is empty where the table stands below an experiment's title. `published_rows`: numbers of the rows
+    that a paper prints, or how many of the first ones."""
     if isinstance(published_rows, int):
         published_rows = range(published_rows)
     published_rows = set(published_rows)
@@ -78,7 +79,8 @@ def table(name, caption, columns, rows, published_rows=(), row_attributes=None, 
                         for j, (cell, column) in enumerate(zip(row, columns)))
         body.append(f"<tr{attributes}>{cells}</tr>")
     note = f'<p class="note">{escape(note)}</p>' if note else ""
-    return (f'<div class="table" id="{name}"><h4 id="{name}-title">{escape(caption)}</h4>'
-            f'<div class="scroll" tabindex="0" role="region" aria-labelledby="{name}-title">'
-            f'<table class="sortable" aria-labelledby="{name}-title"><thead><tr>{head}</tr></thead>'
+    title = f'<h4 id="{name}-title">{escape(caption)}</h4>' if caption else ""
+    label = f'aria-labelledby="{name}-title"' if caption else f'aria-label="{name}"'
+    return (f'<div class="table" id="{name}">{title}<div class="scroll" tabindex="0" role="region" {label}>'
+            f'<table class="sortable" {label}><thead><tr>{head}</tr></thead>'
             f'<tbody>{"".join(body)}</tbody></table></div>{note}</div>')

@@ -1,16 +1,31 @@
 """The look of the figures. They are drawn in stand-in colours that become CSS variables in the SVG, so that one
-figure serves the light and the dark page."""
+figure serves the light and the dark page; as pictures they have the colours of the light one."""
 
+import contextlib
 import io
+import pkgutil
 import re
 
 import matplotlib
+import matplotlib.colors
 
 matplotlib.use("svg")
 from matplotlib import pyplot  # noqa: E402  (the backend has to be chosen first)
 
-INK, MUTED, GRID, ACCENT, SURFACE = "#010201", "#010202", "#010203", "#010204", "#010205"
-_VARIABLES = {INK: "--ink", MUTED: "--muted", GRID: "--grid", ACCENT: "--accent", SURFACE: "--surface"}
+# Names that matplotlib looks up when it draws: stand-ins for the page, which replaces them by CSS variables, and for
+# pictures the values that the light page gives those variables.
+_VARIABLES = ("ink", "muted", "grid", "accent", "surface") + tuple(f"m{i}" for i in range(8))
+_STAND_INS = {variable: f"#0102{index:02x}" for index, variable in enumerate(_VARIABLES)}
+_NAMES = matplotlib.colors.get_named_colors_mapping()
+
+
+def _use(colours):
+    for variable, colour in colours.items():
+        _NAMES[f"conelane:{variable}"] = colour
+
+
+_use(_STAND_INS)
+INK, MUTED, GRID, ACCENT, SURFACE = (f"conelane:{variable}" for variable in _VARIABLES[:5])
 METHOD_COLOURS = 8  # --m0 ... --m7 of style.css
 _DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
 MARKERS = "osD^vPX*"
@@ -26,8 +41,8 @@ pyplot.rcParams.update({
 
 
 def method_colour(methods, method):
-    """Stand-in of a method's colour, the same in every figure."""
-    return f"#0103{methods.index(method) % METHOD_COLOURS:02x}"
+    """A method's colour, the same in every figure."""
+    return f"conelane:m{methods.index(method) % METHOD_COLOURS}"
 
 
 def method_style(methods, method, variant=0):
@@ -38,10 +53,22 @@ def method_style(methods, method, variant=0):
             "linestyle": _DASHES[(index // METHOD_COLOURS + variant) % len(_DASHES)]}
 
 
+def series_style(index):
+    """As method_style, for curves that are no methods."""
+    return {"color": f"conelane:m{index % METHOD_COLOURS}", "linestyle": _DASHES[index % len(_DASHES)]}
+
+
 def logarithmic(axis):
     """Ticks at powers of ten, written out: 0.1, 1, 10."""
     axis.set_major_formatter(lambda value, _: f"{value:g}")
     axis.set_minor_formatter(lambda value, _: "")
+
+
+def percent_axis(axes):
+    """Room for a marker at 100 %, and no tick above."""
+    axes.set_ylim(top=102)
+    bottom = axes.get_ylim()[0]
+    axes.set_yticks([tick for tick in axes.get_yticks() if bottom <= tick <= 100])
 
 
 def new_figure(height=2.9, width=4.7):
@@ -54,7 +81,27 @@ def legend(axes):
     if handles:
         height_in = axes.figure.get_size_inches()[1]
         axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.5 / (height_in - 0.7)),
-                    ncol=2 if max(map(len, labels)) < 30 else 1, handlelength=2.4, columnspacing=1.4)
+                    ncol=max(1, min(3, 54 // (6 + max(map(len, labels))))), handlelength=2.4, columnspacing=1.4)
+
+
+@contextlib.contextmanager
+def picture_colours():
+    """Figures made and saved within have the colours of the light page."""
+    style = pkgutil.get_data(__package__, "style.css").decode("utf-8")
+    light = dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", style[:style.index("}")]))
+    _use({variable: light[variable] for variable in _VARIABLES})
+    try:
+        yield
+    finally:
+        _use(_STAND_INS)
+
+
+def png_of(figure, dpi=200):
+    """The figure as a PNG file's bytes; the same figure gives the same bytes."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=dpi, facecolor=SURFACE, metadata={"Software": None})
+    pyplot.close(figure)
+    return stream.getvalue()
 
 
 def svg_of(figure, name):
@@ -65,9 +112,8 @@ def svg_of(figure, name):
     pyplot.close(figure)
     svg = stream.getvalue()
     svg = svg[svg.index("<svg"):]
-    for stand_in, variable in _VARIABLES.items():
-        svg = svg.replace(stand_in, f"var({variable})")
-    svg = re.sub(r"#0103([0-9a-f]{2})", lambda found: f"var(--m{int(found[1], 16)})", svg)
+    for variable, stand_in in _STAND_INS.items():
+        svg = svg.replace(stand_in, f"var(--{variable})")
     svg = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font-size: \1px", svg)
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
     for kind in (r'id="', r'href="#', r"url\(#"):

@@ -5,53 +5,13 @@ from html import escape
 import numpy as np
 
 from . import measures
-from .figures import percent_label
+from .experiments import optimality
+from .figures import name_of_set, percent_label
+from .leaders import MEASURES, REAL_TIME_BUDGET_MS, leaders_of, success_values
 from .tables import Column, Cell, table, text
 
-REAL_TIME_BUDGET_MS = 50.0
-
-
-def accurate_values(part):
-    part = part.known("accurate")
-    return dict(zip(part.scene, part.accurate)), dict(zip(part.scene, part.track))
-
-
-def success_values(part):
-    return dict(zip(part.scene, part.success)), dict(zip(part.scene, part.track))
-
-
-def difference_interval(first, second, values_of):
-    """Interval of the mean of first - second over the scenes that both have; None for a single track."""
-    (a, tracks), (b, _) = values_of(first), values_of(second)
-    scenes = [scene for scene in a if scene in b]
-    if not scenes:
-        return None
-    differences = np.array([a[scene] - b[scene] for scene in scenes])
-    return measures.mean_interval(differences, np.array([tracks[scene] for scene in scenes], dtype=object))
-
-
-MEASURES = (("accurate", "accurate", accurate_values), ("success", "successful", success_values))
+_IN_TIME_SHARE = 0.99  # of the scenes
 _NBSP = "\u00a0"
-
-
-def leaders_of(parts, values_of):
-    """(mean, samples): the highest mean, and all that the tracks do not tell from it. None without values."""
-    means = [(float(np.mean(list(values_of(part)[0].values()))), part) for part in parts if values_of(part)[0]]
-    if not means:
-        return None
-    best_mean, best = max(means, key=lambda pair: pair[0])
-    level = [best]
-    for mean, part in means:
-        if part is best:
-            continue
-        interval = difference_interval(best, part, values_of)
-        if mean == best_mean or (interval and interval[0] <= 0.0 <= interval[1]):
-            level.append(part)
-    return best_mean, level
-
-
-def _name_of_set(nearest):
-    return "all that is visible" if nearest is None else f"the {nearest} nearest cones"
 
 
 def _grid(results):
@@ -107,9 +67,39 @@ def _pieces(rates, leaders):
     return ", ".join(pieces)
 
 
+def _recommended(samples):
+    """The one most often successful over all scenes, as a sentence's end; None without scores."""
+    leaders = leaders_of(samples, success_values)
+    if leaders is None:
+        return None, ""
+    best = leaders[1][0]
+    level = [f"<b>{escape(sample.label)}</b>" for sample in leaders[1][1:]]
+    tail = f" The tracks do not tell {_joined(level)} from it." if level else ""
+    return best, (f"<b>{escape(best.label)}</b>: success in {100 * leaders[0]:.1f}{_NBSP}% of all scenes and rates, "
+                  f"mean IoU {100 * best.iou.mean():.1f}{_NBSP}%, 99{_NBSP}% of the answers within "
+                  f"{measures.quantile(best.latency, 0.99):.2f}{_NBSP}ms.{tail}")
+
+
+def _headline(results):
+    """The method to run among those that keep the real-time budget; where it carries its last lane along, which the
+    scenes reward more than a track would, also the best of those that do not."""
+    in_time = [sample for sample in results.samples
+               if np.mean(sample.latency <= REAL_TIME_BUDGET_MS) >= _IN_TIME_SHARE]
+    best, text_of_best = _recommended(in_time)
+    if best is None:
+        return ""
+    headline = f'<p class="headline">Run {text_of_best}</p>'
+    if not best.carries_state:
+        return headline
+    _, without = _recommended([sample for sample in in_time if not sample.carries_state])
+    return headline + ("<p>It carries its last lane along, and these scenes draw false positives anew at every pose, "
+                       "so it filters them out; where they stay in place it gains less."
+                       f"{f' Without such memory, {without}' if without else ''}</p>")
+
+
 def _sentence(results, nearest, grid):
     """The leaders on one cone set by both measures."""
-    lead = "Of all methods" if nearest == "any" else f"On {_name_of_set(nearest)}"
+    lead = "Of all methods" if nearest == "any" else f"On {name_of_set(nearest)}"
     samples = [sample for sample in results.samples if nearest in ("any", sample.nearest)]
     parts = []
     for name, words, _ in MEASURES:
@@ -163,6 +153,33 @@ def _agreement_sentence(results):
     return "".join(pieces)
 
 
+def _checker_sentence(results):
+    """What the independent checker said of what the RLD methods answered."""
+    accepted = int(sum(np.nansum(sample.checked) for sample in results.samples))
+    errors = int(sum(np.sum(sample.status == "error") for sample in results.samples))
+    if not accepted:
+        return ""
+    failed = (f"accepted {accepted} lane graphs; {errors} answers were errors and count as failures" if errors else
+              f"accepted all {accepted} lane graphs; no answer was an error")
+    return f"<li>Of what the RLD methods answered, the independent checker {failed}.</li>"
+
+
+def _optimality_sentence(results):
+    """How far the graph search is from RLD's optimum, and which of the two drives better."""
+    rows = optimality.compared(optimality.read(results))
+    if not rows:
+        return ""
+    equal = np.mean([float(row["equal"]) for row in rows])
+    best, candidate = (optimality.success(rows, name) for name in ("optimum", "candidate"))
+    interval = measures.mean_interval(best - candidate, optimality.tracks_of(rows))
+    told = interval and not interval[0] <= 0.0 <= interval[1]
+    drives = ("drives no better or worse" if not told else
+              "drives better" if best.mean() > candidate.mean() else "drives worse")
+    return (f"<li>Under RLD's objective, the best of CLC's candidates is the proven optimum in "
+            f"{100 * equal:.1f}{_NBSP}% of {len(rows)} scenes. The optimum {drives}: success "
+            f"{100 * best.mean():.1f}{_NBSP}% against {100 * candidate.mean():.1f}{_NBSP}%.</li>")
+
+
 def _tiles(results):
     scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
     tracks = len({track for sample in results.samples for track in sample.track})
@@ -189,12 +206,13 @@ def _grid_table(results, grid):
         rows.append([text(where), text(titles[name])] + cells)
     return table("winners", "Ahead, by cone set and false positives", columns, rows,
                  note="All ranges together. Several names: their paired difference to the best has a 95 % interval, "
-                 "tracks resampled, that holds zero. The number is the best one's mean. Accurate refers to the method's own "
-                 "cone set, so of all methods those on few cones have the easier task; success does not.")
+                 "tracks resampled, that holds zero. The number is the best one's mean. Accurate refers to the "
+                 "method's own cone set, so of all methods those on few cones have the easier task; success does not.")
 
 
 def html(results):
     grid = _grid(results)
     sentences = "".join(_sentence(results, nearest, grid) for nearest in dict.fromkeys(key[0] for key in grid))
-    return (_tiles(results) + f'<ul class="verdict">{sentences}{_speed_sentence(results)}'
-            f"{_agreement_sentence(results)}</ul>" + _grid_table(results, grid))
+    return (_headline(results) + _tiles(results) + f'<ul class="verdict">{sentences}{_speed_sentence(results)}'
+            f"{_agreement_sentence(results)}{_optimality_sentence(results)}{_checker_sentence(results)}</ul>" +
+            _grid_table(results, grid))

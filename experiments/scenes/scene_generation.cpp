@@ -8,11 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
 
+#include <boost/random/beta_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
@@ -24,6 +27,14 @@
 #include <oneapi/tbb/task_arena.h>
 
 namespace conelane::experiments {
+
+struct Course {
+    const Track& track;
+    TrackBoundaries polylines;
+    std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
+    std::unordered_set<ConeId> boundary_ids;
+};
+
 namespace {
 
 using Generator = boost::random::mt19937_64;
@@ -81,21 +92,17 @@ ConeId draw_new_id(Generator& generator, std::int64_t space, std::unordered_set<
     return id;
 }
 
-/// What all scenes of a track share.
-struct Course {
-    const Track& track;
-    TrackBoundaries polylines;
-    std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
-};
-
 Course make_course(const Track& track, const SceneOptions& options) {
-    Course course{track, boundaries(track), track.cones};
+    Course course{track, boundaries(track), track.cones, {}};
     Generator generator = generator_for(fmt::format("{}/{}/ids", track.name, options.seed));
     std::unordered_set<ConeId> used;
     for (Cone& cone : course.cones) {
         cone.id = draw_new_id(generator, id_space(track), used);
         cone.confidence = 1.0;
         if (!options.with_color) cone.color = ConeColor::unknown;
+    }
+    for (const std::vector<std::size_t>* side : {&track.left, &track.right}) {
+        for (const std::size_t index : *side) course.boundary_ids.insert(course.cones[index].id);
     }
     if (options.with_color) {
         const auto paint = [&](const std::vector<std::size_t>& side, ConeColor color) {
@@ -169,10 +176,12 @@ class SceneMaker {
         const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m_};
         const std::vector<Sight> sights = look(view);
         scene.cones = seen_cones(sights);
+        mistake_colors(scene.cones);
         Lane lane = ground_truth(sights, scene);
         if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
         result.ground_truth = std::move(lane);
         add_false_positives(scene.cones, view);
+        draw_confidences(scene.cones);
         shuffle(scene.cones);
         if (options_.nearest) {
             result.ground_truth = ground_truth_of_nearest(result, *options_.nearest);
@@ -197,6 +206,8 @@ class SceneMaker {
                 fmt::format("/pose_noise_{}_{}", options_.pose_noise_lateral_m, options_.pose_noise_yaw_rad);
         }
         if (options_.miss_rate > 0.0) id += fmt::format("/miss_{}", options_.miss_rate);
+        if (options_.color_error_rate > 0.0) id += fmt::format("/color_error_{}", options_.color_error_rate);
+        if (options_.with_confidence) id += "/confidence";
         if (options_.nearest) id += fmt::format("/nearest_{}", *options_.nearest);
         return id;
     }
@@ -239,6 +250,31 @@ class SceneMaker {
             }
         }
         return cones;
+    }
+
+    void mistake_colors(std::vector<Cone>& cones) const {
+        if (options_.color_error_rate == 0.0) return;
+        Generator random = generator("color errors");
+        boost::random::uniform_01<double> uniform;
+        for (Cone& cone : cones) {
+            if (uniform(random) >= options_.color_error_rate) continue;
+            if (cone.color == ConeColor::blue) {
+                cone.color = ConeColor::yellow;
+            } else if (cone.color == ConeColor::yellow) {
+                cone.color = ConeColor::blue;
+            }
+        }
+    }
+
+    void draw_confidences(std::vector<Cone>& cones) const {
+        if (!options_.with_confidence) return;
+        Generator random = generator("confidences");
+        boost::random::beta_distribution<double> of_boundary(5.0, 2.0);
+        boost::random::beta_distribution<double> of_others(2.0, 4.0);
+        for (Cone& cone : cones) {
+            const bool real = course_.boundary_ids.contains(cone.id);
+            cone.confidence = rounded(real ? of_boundary(random) : of_others(random), 1e3);
+        }
     }
 
     [[nodiscard]] Lane ground_truth(const std::vector<Sight>& sights, const Scene& scene) const {
@@ -327,13 +363,17 @@ void validate(const SceneOptions& options) {
     if (!(options.miss_rate >= 0.0 && options.miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");
     }
+    require_between(options.color_error_rate, 0.0, 1.0, "color-error");
+    if (options.color_error_rate > 0.0 && !options.with_color) {
+        throw InvalidInput("color-error", "needs scenes with colour");
+    }
     if (options.threads < 1 || options.threads > 1024) {
         throw InvalidInput("threads", "must be in [1, 1024]");
     }
 }
 
-std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
-                                            const SceneOptions& options) {
+TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options)
+    : poses_(poses), options_(options) {
     validate(options);
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
         require_near_origin(track.cones[i].position, fmt::format("{}: cones[{}]", track.name, i));
@@ -343,25 +383,52 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
         require_near_origin(poses[i].position, key);
         if (!std::isfinite(poses[i].yaw_rad)) throw InvalidInput(key, "yaw must be a finite number");
     }
-    if (track.left.size() < 2 || track.right.size() < 2) return {};
+    if (track.left.size() < 2 || track.right.size() < 2) return;
+    course_ = std::make_unique<const Course>(make_course(track, options));
+}
 
-    const Course course = make_course(track, options);
-    const std::size_t rates = options.false_positive_rates.size();
-    std::vector<std::optional<AnnotatedScene>> made(options.ranges_m.size() * rates * poses.size());
+TrackLaps::~TrackLaps() = default;
+
+std::size_t TrackLaps::size() const {
+    return options_.ranges_m.size() * options_.false_positive_rates.size();
+}
+
+std::optional<AnnotatedScene> TrackLaps::scene(std::size_t lap, std::size_t pose) const {
+    const std::size_t rates = options_.false_positive_rates.size();
+    const double rate = options_.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
+    return SceneMaker(*course_, options_, rate, options_.ranges_m[lap / rates], pose).make(poses_[pose]);
+}
+
+std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
+    if (!course_) return {};
+    std::vector<std::optional<AnnotatedScene>> made(poses_.size());
     oneapi::tbb::task_arena arena(
-        std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency()));
+        std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t job) {
-            const std::size_t pose = job % poses.size();
-            const std::size_t lap = job / poses.size();
-            const double rate = options.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
-            made[job] =
-                SceneMaker(course, options, rate, options.ranges_m[lap / rates], pose).make(poses[pose]);
-        });
+        oneapi::tbb::parallel_for(std::size_t{0}, made.size(),
+                                  [&](std::size_t pose) { made[pose] = scene(lap, pose); });
     });
     std::vector<AnnotatedScene> scenes;
-    for (std::optional<AnnotatedScene>& scene : made) {
-        if (scene) scenes.push_back(*std::move(scene));
+    for (std::optional<AnnotatedScene>& seen : made) {
+        if (seen) scenes.push_back(*std::move(seen));
+    }
+    return scenes;
+}
+
+bool TrackLaps::is_empty(std::size_t lap) const {
+    if (!course_) return true;
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
+        if (scene(lap, pose)) return false;
+    }
+    return true;
+}
+
+std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
+                                            const SceneOptions& options) {
+    const TrackLaps laps(track, poses, options);
+    std::vector<AnnotatedScene> scenes;
+    for (std::size_t lap = 0; lap < laps.size(); ++lap) {
+        std::ranges::move(laps.make(lap), std::back_inserter(scenes));
     }
     return scenes;
 }

@@ -10,18 +10,31 @@
 
 namespace conelane::experiments {
 
-SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options) {
+SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
+                        const Shard& shard) {
     validate(options);
     SceneSet set;
+    std::size_t laps_with_scenes = 0;
     for (const std::string& spec : track_specs) {
         for (const Track& track : load_tracks(spec)) {
             const auto [entry, is_new] = set.tracks.emplace(track.name, boundaries(track));
             if (!is_new) throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
             const std::vector<Pose> poses = centre_line_poses(entry->second, options.every_m);
-            std::ranges::move(generate_scenes(track, poses, options), std::back_inserter(set.scenes));
+            const TrackLaps laps(track, poses, options);
+            for (std::size_t lap = 0; lap < laps.size(); ++lap) {
+                // Laps without a scene are not counted: no reader of a scenes file can know of them.
+                if (laps_with_scenes % shard.count != shard.index) {
+                    if (!laps.is_empty(lap)) ++laps_with_scenes;
+                    continue;
+                }
+                std::vector<AnnotatedScene> scenes = laps.make(lap);
+                if (!scenes.empty()) ++laps_with_scenes;
+                std::ranges::move(scenes, std::back_inserter(set.scenes));
+            }
         }
     }
-    if (set.scenes.empty()) throw InputError("", 0, "--tracks", "no pose sees two cones of both boundaries");
+    if (laps_with_scenes == 0)
+        throw InputError("", 0, "--tracks", "no pose sees two cones of both boundaries");
     return set;
 }
 

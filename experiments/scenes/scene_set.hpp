@@ -3,6 +3,7 @@
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,10 +16,17 @@ struct SceneSet {
     TrackBoundariesByName tracks;
 };
 
+/// Part `index` of `count`, from 0: every count-th lap that has a scene.
+struct Shard {
+    std::size_t index = 0;
+    std::size_t count = 1;
+};
+
 /// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and
-/// range. Throws InputError where a track is named twice or no scene has a ground truth.
+/// range; of these the laps of the shard, which may have none. Takes the memory and nearly only the time of
+/// these. Throws InputError where a track is named twice or no scene of any shard has a ground truth.
 [[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
-                                      const SceneOptions& options);
+                                      const SceneOptions& options, const Shard& shard = {});
 
 /// Writes the scenes file and its companion beside it.
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set);

@@ -193,6 +193,7 @@ SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double l
 
     SceneScore result;
     result.latency_ms = latency_ms;
+    result.error = answer.status == LaneStatus::error;
     result.ground_truth_length_m = lane_length_m(ground_truth);
     result.divergence_known = boundaries != nullptr;
     if (answer.optimality) {
@@ -227,6 +228,7 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
     std::vector<double> latencies_ms;
     for (const SceneScore& score : scores) {
         ++of_category[static_cast<std::size_t>(score.category)];
+        if (score.error) ++result.errors;
         if (!score.divergence_known) ++result.divergence_unknown;
         if (score.success()) ++successes;
         if (score.accuracy) ++result.accuracy_scenes;

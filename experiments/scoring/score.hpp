@@ -60,7 +60,8 @@ struct EnumerationScore {
 /// visible, accuracy to that of the method's own cone set.
 struct SceneScore {
     Category category = Category::none;
-    double iou = 0.0;  ///< 0 where there is no lane
+    bool error = false;  ///< the method failed, or the checker rejected what it found
+    double iou = 0.0;    ///< 0 where there is no lane
     double lane_length_m = 0.0;
     double ground_truth_length_m = 0.0;
     bool divergence_known = false;                ///< annotated boundaries were given
@@ -95,6 +96,7 @@ struct SceneScore {
 /// sample have them, as not solved, not complete, best IoU 0. A measure that no scene has is absent.
 struct ScoreSummary {
     std::size_t scenes = 0;
+    std::size_t errors = 0;                               ///< scenes on which the method failed
     std::size_t divergence_unknown = 0;                   ///< scenes scored without annotated boundaries
     std::array<double, kCategoryCount> category_share{};  ///< indexed by Category
     double success_share = 0.0;

@@ -28,6 +28,7 @@ struct Column {
         diverging_from_20,
         diverging_below_20,
         none,
+        error,
         success,
         iou,
         accurate,
@@ -42,9 +43,9 @@ struct Column {
     };
 };
 constexpr std::array<std::string_view, Column::count> kHeader{
-    "method",    "fp %",      "range m", "scenes",    "GT %",   "near GT %",  "too short %",
-    "div>=20 %", "div<20 %",  "none %",  "success %", "IoU %",  "accurate %", "complete %",
-    "solved %",  "median ms", "mean ms", "p95 ms",    "p99 ms", "max ms"};
+    "method",     "fp %",     "range m",   "scenes",  "GT %",      "near GT %", "too short %",
+    "div>=20 %",  "div<20 %", "none %",    "error %", "success %", "IoU %",     "accurate %",
+    "complete %", "solved %", "median ms", "mean ms", "p95 ms",    "p99 ms",    "max ms"};
 using Line = std::array<std::string, Column::count>;
 constexpr std::string_view kUnknown = "-";
 
@@ -71,6 +72,7 @@ Line line_of(const ScoreRow& row) {
     line[Column::scenes] = fmt::format("{}", summary.scenes);
     line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
     line[Column::none] = percent(summary.share(Category::none));
+    line[Column::error] = percent(static_cast<double>(summary.errors) / static_cast<double>(summary.scenes));
     // Divergence that is unknown everywhere is not a share of zero, and what rests on it is unknown too.
     if (summary.divergence_unknown < summary.scenes) {
         line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));
@@ -206,6 +208,7 @@ std::string summary_json(const ScoreRow& row) {
     put_if_known("false_positive_rate", row.key.false_positive_rate);
     put_if_known("range", row.key.range_m);
     json["scenes"] = summary.scenes;
+    json["errors"] = summary.errors;
     json["divergence_unknown"] = summary.divergence_unknown;
     for (std::size_t i = 0; i < kCategoryCount; ++i) {
         json["share"][std::string(to_string(static_cast<Category>(i)))] = summary.category_share[i];

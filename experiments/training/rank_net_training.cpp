@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -28,13 +29,12 @@ constexpr double kSmallest = 1e-8;
 /// All candidates, a column each, and where each list of them begins.
 struct Candidates {
     Eigen::MatrixXd inputs;
-    std::vector<double> quality;      ///< what equation (14) compares
+    std::vector<double> quality;      ///< IoU, lowered where the lane diverges early
     std::vector<std::size_t> begins;  ///< one more than there are lists
 };
 
 double penalty(double divergence_m, double divergence_penalty) {
-    if (divergence_m < kCriticalDivergence_m) return divergence_penalty;
-    return std::isfinite(divergence_m) ? 0.5 * divergence_penalty : 0.0;
+    return divergence_m < kCriticalDivergence_m ? divergence_penalty : 0.0;
 }
 
 Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
@@ -160,6 +160,15 @@ class Adam {
 
 using Pair = std::pair<Eigen::Index, Eigen::Index>;
 
+/// The same order from the same generator with any standard library.
+template <typename Value>
+void shuffle(std::vector<Value>& values, Generator& random) {
+    for (std::size_t i = values.size(); i > 1; --i) {
+        std::swap(values[i - 1],
+                  values[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+    }
+}
+
 /// The pairs of an epoch, shuffled.
 std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& parameters,
                              const RankNetTrainingOptions& options, Generator& random) {
@@ -178,11 +187,65 @@ std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& par
             if (second != first) pairs.emplace_back(begin + first, begin + second);
         }
     }
-    for (std::size_t i = pairs.size(); i > 1; --i) {
-        std::swap(pairs[i - 1],
-                  pairs[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
-    }
+    shuffle(pairs, random);
     return pairs;
+}
+
+/// One epoch. `rate`: the learning rate by the share of the epoch that is done.
+template <typename Rate>
+void train_on_pairs(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
+                    Generator& random, Adam& adam, RankNetParameters& parameters) {
+    const std::vector<Pair> pairs = draw_pairs(all, parameters, options, random);
+    CandidatePairs batch;
+    RankNetParameters gradient;
+    for (std::size_t begin = 0; begin < pairs.size(); begin += options.pairs_a_step) {
+        const std::size_t count = std::min(options.pairs_a_step, pairs.size() - begin);
+        const auto columns = static_cast<Eigen::Index>(count);
+        batch.first.resize(all.inputs.rows(), columns);
+        batch.second.resize(all.inputs.rows(), columns);
+        batch.first_is_better.resize(columns);
+        for (Eigen::Index i = 0; i < columns; ++i) {
+            const auto [first, second] = pairs[begin + static_cast<std::size_t>(i)];
+            batch.first.col(i) = all.inputs.col(first);
+            batch.second.col(i) = all.inputs.col(second);
+            batch.first_is_better(i) =
+                sigmoid(options.iou_factor * (all.quality[static_cast<std::size_t>(first)] -
+                                              all.quality[static_cast<std::size_t>(second)]));
+        }
+        (void)pair_loss(parameters, batch, &gradient);
+        adam.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(pairs.size())), parameters);
+    }
+}
+
+/// One epoch: every scene once, in random order.
+template <typename Rate>
+void train_on_scenes(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
+                     Generator& random, Adam& adam, RankNetParameters& parameters) {
+    std::vector<std::size_t> order(all.begins.size() - 1);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    shuffle(order, random);
+    CandidateScenes batch;
+    RankNetParameters gradient;
+    for (std::size_t begin = 0; begin < order.size(); begin += options.scenes_a_step) {
+        const std::span<const std::size_t> drawn =
+            std::span(order).subspan(begin, std::min(options.scenes_a_step, order.size() - begin));
+        batch.begins.assign(1, 0);
+        for (const std::size_t list : drawn) {
+            batch.begins.push_back(batch.begins.back() +
+                                   static_cast<Eigen::Index>(all.begins[list + 1] - all.begins[list]));
+        }
+        batch.inputs.resize(all.inputs.rows(), batch.begins.back());
+        batch.quality.resize(batch.begins.back());
+        for (std::size_t i = 0; i < drawn.size(); ++i) {
+            const auto from = static_cast<Eigen::Index>(all.begins[drawn[i]]);
+            const Eigen::Index size = batch.begins[i + 1] - batch.begins[i];
+            batch.inputs.middleCols(batch.begins[i], size) = all.inputs.middleCols(from, size);
+            batch.quality.segment(batch.begins[i], size) =
+                Eigen::Map<const Eigen::RowVectorXd>(all.quality.data() + from, size);
+        }
+        (void)choice_loss(parameters, batch, &gradient);
+        adam.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(order.size())), parameters);
+    }
 }
 
 void validate(const RankNetTrainingOptions& options) {
@@ -194,6 +257,7 @@ void validate(const RankNetTrainingOptions& options) {
     require(options.units > 0, "units", "must be positive");
     require(options.epochs > 0, "epochs", "must be positive");
     require(options.pairs_a_step > 0, "pairs_a_step", "must be positive");
+    require(options.scenes_a_step > 0, "scenes_a_step", "must be positive");
     require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
             "must be positive");
     require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
@@ -225,38 +289,50 @@ double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pair
     return loss / count;
 }
 
+double choice_loss(const RankNetParameters& parameters, const CandidateScenes& scenes,
+                   RankNetParameters* gradient) {
+    const Pass pass(parameters, scenes.inputs);
+    const auto scene_count = static_cast<double>(scenes.begins.size() - 1);
+    Eigen::RowVectorXd by_score(pass.scores.size());
+    double loss = 0.0;
+    for (std::size_t i = 0; i + 1 < scenes.begins.size(); ++i) {
+        const Eigen::Index begin = scenes.begins[i];
+        const Eigen::Index size = scenes.begins[i + 1] - begin;
+        const auto score = pass.scores.segment(begin, size).array();
+        const auto quality = scenes.quality.segment(begin, size).array();
+        // Shifted so that nothing overflows.
+        Eigen::RowVectorXd probability = (score - score.maxCoeff()).exp();
+        probability /= probability.sum();
+        const double expected = (probability.array() * quality).sum();
+        loss -= expected;
+        by_score.segment(begin, size) = probability.array() * (expected - quality) / scene_count;
+    }
+    if (gradient != nullptr) {
+        *gradient = {parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0};
+        pass.add_gradient(parameters, scenes.inputs, by_score, *gradient);
+    }
+    return loss / scene_count;
+}
+
 RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
     validate(options);
     Candidates all = gather(lists, options);
     const auto [mean, deviation] = standardise(all.inputs);
     Generator random(options.seed);
     RankNetParameters parameters = initial(options, random);
-    RankNetParameters gradient;
     Adam adam(parameters);
-    CandidatePairs batch;
     Progress progress("training", options.show_progress ? options.epochs : 0);
     for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
-        const std::vector<Pair> pairs = draw_pairs(all, parameters, options, random);
-        for (std::size_t begin = 0; begin < pairs.size(); begin += options.pairs_a_step) {
-            const std::size_t count = std::min(options.pairs_a_step, pairs.size() - begin);
-            const auto columns = static_cast<Eigen::Index>(count);
-            batch.first.resize(all.inputs.rows(), columns);
-            batch.second.resize(all.inputs.rows(), columns);
-            batch.first_is_better.resize(columns);
-            for (Eigen::Index i = 0; i < columns; ++i) {
-                const auto [first, second] = pairs[begin + static_cast<std::size_t>(i)];
-                batch.first.col(i) = all.inputs.col(first);
-                batch.second.col(i) = all.inputs.col(second);
-                batch.first_is_better(i) =
-                    sigmoid(options.iou_factor * (all.quality[static_cast<std::size_t>(first)] -
-                                                  all.quality[static_cast<std::size_t>(second)]));
-            }
-            (void)pair_loss(parameters, batch, &gradient);
-            const double done = (static_cast<double>(epoch) +
-                                 static_cast<double>(begin) / static_cast<double>(pairs.size())) /
-                                static_cast<double>(options.epochs);
-            adam.step(gradient, options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done)),
-                      parameters);
+        // The rate falls along a cosine from the first step to the last.
+        const auto rate = [&](double share_of_epoch) {
+            const double done =
+                (static_cast<double>(epoch) + share_of_epoch) / static_cast<double>(options.epochs);
+            return options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done));
+        };
+        if (options.loss == RankLoss::pairs) {
+            train_on_pairs(all, options, rate, random, adam, parameters);
+        } else {
+            train_on_scenes(all, options, rate, random, adam, parameters);
         }
         progress.advance();
     }

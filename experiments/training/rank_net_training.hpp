@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -30,18 +31,39 @@ struct CandidatePairs {
 [[nodiscard]] double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pairs,
                                RankNetParameters* gradient);
 
+/// All candidates of some scenes, a column each, standardised.
+struct CandidateScenes {
+    Eigen::MatrixXd inputs;
+    Eigen::RowVectorXd quality;        ///< the higher, the better
+    std::vector<Eigen::Index> begins;  ///< of each scene, and the end of the last one
+};
+
+/// Minus the quality to be expected where a scene's lane is drawn with probabilities softmax(scores), mean
+/// over the scenes. Where equation (14) is content with the order of two lanes, this is the figure that
+/// counts itself, made smooth: how good the one chosen is. Writes the derivatives as pair_loss does.
+[[nodiscard]] double choice_loss(const RankNetParameters& parameters, const CandidateScenes& scenes,
+                                 RankNetParameters* gradient);
+
+enum class RankLoss {
+    pairs,  ///< pair_loss, as in the paper
+    choice  ///< choice_loss
+};
+
 struct RankNetTrainingOptions {
     std::size_t inputs = kPaperFeatureCount;  ///< the paper's features, or kLaneFeatureCount for all
     std::size_t units = 100;
-    std::size_t epochs = 60;          ///< in each, every candidate is the first of one pair
+    RankLoss loss = RankLoss::pairs;
+    /// In each, every candidate is the first of one pair; or for choice_loss, every scene is met once.
+    std::size_t epochs = 60;
     std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
+    std::size_t scenes_a_step = 64;   ///< for choice_loss
     double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
-    double iou_factor = 50.0;         ///< lambda_iou of equation (14)
-    /// Subtracted from the IoU of equation (14) for a candidate that diverges below kCriticalDivergence_m,
-    /// half of it for one that diverges later; 0 is the paper. A short way off the lane costs little area.
+    double iou_factor = 50.0;         ///< lambda_iou of equation (14); pairs only
+    /// Subtracted from the IoU, which is else the quality of a candidate, where it diverges below
+    /// kCriticalDivergence_m; 0 is the paper. A short way off the lane costs little area.
     double divergence_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
-    /// the epoch; the others have any of the scene. What counts in the end is who is first.
+    /// the epoch; the others have any of the scene. What counts in the end is who is first. Pairs only.
     double leader_share = 0.5;
     std::uint64_t seed = 0;
     bool show_progress = true;

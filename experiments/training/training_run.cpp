@@ -44,8 +44,10 @@ Json describe(const SceneOptions& scenes) {
 
 Json describe(const RankNetTrainingOptions& training) {
     return {{"units", training.units},
+            {"loss", training.loss == RankLoss::pairs ? "pairs" : "choice"},
             {"epochs", training.epochs},
             {"pairs_a_step", training.pairs_a_step},
+            {"scenes_a_step", training.scenes_a_step},
             {"learning_rate", training.learning_rate},
             {"iou_factor", training.iou_factor},
             {"divergence_penalty", training.divergence_penalty},
@@ -58,7 +60,9 @@ Json describe(const RankNetTrainingOptions& training) {
 TrainingRun run_training(const TrainingRunOptions& options) {
     const SceneSet set = make_scene_set(options.tracks, options.scenes);
     SceneSet held_out;
-    if (!options.hold_out.empty()) held_out = make_scene_set(options.hold_out, options.scenes);
+    SceneOptions hold_out_scenes = options.scenes;
+    hold_out_scenes.every_m = options.hold_out_every_m;
+    if (!options.hold_out.empty()) held_out = make_scene_set(options.hold_out, hold_out_scenes);
     for (const auto& [name, boundaries] : held_out.tracks) {
         if (set.tracks.contains(name)) {
             throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
@@ -76,6 +80,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     const Json record{{"tracks", track_names(set)},
                       {"hold_out_tracks", track_names(held_out)},
                       {"scenes", describe(options.scenes)},
+                      {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
                       {"network", describe(options.training)},
                       {"figures_of_training", describe(run.trained)},

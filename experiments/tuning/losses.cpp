@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace conelane::experiments {
@@ -37,24 +38,68 @@ Loss broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) 
         ++listed;
         if (edge.along_heading) ++along_heading;
     }
-    if (listed != graph.edges.size()) return Loss::spacing;
+    if (listed != graph.edges.size()) return Loss::breaks_spacing;
     const bool too_sharp = std::ranges::any_of(problem.turns, [&](const ProblemTurn& turn) {
         return turn.high_cost && chosen[turn.edge_i] && chosen[turn.edge_k];
     });
-    if (too_sharp) return Loss::angle;
+    if (too_sharp) return Loss::breaks_angle;
     const bool too_close = std::ranges::any_of(problem.conflicts, [&](const auto& conflict) {
         return chosen[conflict.first] && chosen[conflict.second];
     });
-    if (too_close) return Loss::width;
-    return along_heading < 2 ? Loss::heading : Loss::endpoints;
+    if (too_close) return Loss::breaks_width;
+    return along_heading < 2 ? Loss::breaks_heading : Loss::breaks_endpoints;
+}
+
+/// The terms of objective (29).
+struct Terms {
+    double benefit = 0.0;  ///< at most zero
+    double spacing = 0.0;
+    double angle = 0.0;
+    double heading = 0.0;
+    double color = 0.0;
+};
+
+Terms terms_of(const LaneGraphProblem& problem, const LaneGraph& graph) {
+    const RldParameters& p = problem.parameters;
+    Terms terms;
+    std::vector<bool> chosen(problem.edges.size(), false);
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        const ProblemEdge& edge = problem.edges[e];
+        chosen[e] = std::ranges::binary_search(graph.edges, Edge{edge.i, edge.j});
+        if (!chosen[e]) continue;
+        const double spacing = p.w_s * edge.spacing_cost;
+        const double heading = p.w_p * edge.heading_cost;
+        const double color = p.w_color * edge.color_cost;
+        terms.spacing += spacing;
+        terms.heading += heading;
+        terms.color += color;
+        terms.benefit += edge.cost - spacing - heading - color;
+    }
+    for (const ProblemTurn& turn : problem.turns) {
+        if (chosen[turn.edge_i] && chosen[turn.edge_k]) terms.angle += turn.cost;
+    }
+    return terms;
+}
+
+/// The term in which the ground truth costs most more than the answer.
+Loss dearest_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth, const LaneGraph& answer) {
+    const Terms theirs = terms_of(problem, ground_truth);
+    const Terms ours = terms_of(problem, answer);
+    const std::array differences{std::pair(theirs.benefit - ours.benefit, Loss::cheaper_benefit),
+                                 std::pair(theirs.spacing - ours.spacing, Loss::cheaper_spacing),
+                                 std::pair(theirs.angle - ours.angle, Loss::cheaper_angle),
+                                 std::pair(theirs.heading - ours.heading, Loss::cheaper_heading),
+                                 std::pair(theirs.color - ours.color, Loss::cheaper_color)};
+    return std::ranges::max(differences, {}, [](const auto& entry) { return entry.first; }).second;
 }
 
 }  // namespace
 
 std::string_view to_string(Loss loss) {
-    constexpr std::array<std::string_view, kLossCount> kNames{"no_ground_truth", "accurate",    "spacing",
-                                                              "angle",           "width",       "heading",
-                                                              "endpoints",       "cheaper_one", "none_found"};
+    constexpr std::array<std::string_view, kLossCount> kNames{
+        "no_ground_truth", "accurate",         "breaks_spacing",  "breaks_angle",    "breaks_width",
+        "breaks_heading",  "breaks_endpoints", "cheaper_benefit", "cheaper_spacing", "cheaper_angle",
+        "cheaper_heading", "cheaper_color",    "none_found"};
     return kNames[static_cast<std::size_t>(loss)];
 }
 
@@ -77,8 +122,8 @@ Loss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
     }
     const LaneGraph graph = graph_of(*ground_truth, scene);
     if (!is_feasible(problem, graph)) return broken_constraint(problem, graph);
-    return report.objective && *report.objective <= objective(problem, graph) ? Loss::cheaper_one
-                                                                              : Loss::none_found;
+    if (!report.lane_graph || *report.objective > objective(problem, graph)) return Loss::none_found;
+    return dearest_term(problem, graph, *report.lane_graph);
 }
 
 }  // namespace conelane::experiments

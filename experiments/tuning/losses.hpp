@@ -15,15 +15,21 @@ namespace conelane::experiments {
 enum class Loss {
     no_ground_truth,  ///< the cone set holds fewer than two cones of a boundary: not counted
     accurate,
-    spacing,      ///< inaccurate, and the ground truth itself breaks (27): an edge too short or too long
-    angle,        ///< or (28): a turn too sharp
-    width,        ///< or (6)-(8): its boundaries too close
-    heading,      ///< or (9): fewer than two of its edges near the car along the heading
-    endpoints,    ///< or (11)-(17) or the pairing: its ends near, far or apart as they must not be
-    cheaper_one,  ///< the ground truth is feasible, another lane graph costs less
-    none_found,   ///< the ground truth is feasible, yet stopped at the time limit
+    // Inaccurate, and the ground truth itself is cut off:
+    breaks_spacing,    ///< by (27): an edge too short or too long
+    breaks_angle,      ///< by (28): a turn too sharp
+    breaks_width,      ///< by (6)-(8): its boundaries too close
+    breaks_heading,    ///< by (9): fewer than two of its edges near the car along the heading
+    breaks_endpoints,  ///< by (11)-(17) or the pairing: its ends near, far or apart as they must not be
+    // Inaccurate, the ground truth is feasible, and another lane graph costs less, mostly in its
+    cheaper_benefit,  ///< benefit: it has more edges
+    cheaper_spacing,
+    cheaper_angle,
+    cheaper_heading,
+    cheaper_color,
+    none_found,  ///< the ground truth is feasible, yet the search stopped at the time limit before it
 };
-inline constexpr std::size_t kLossCount = 9;
+inline constexpr std::size_t kLossCount = 13;
 [[nodiscard]] std::string_view to_string(Loss loss);
 
 /// Solves one scene by path-pair. Precondition: counts(scene).

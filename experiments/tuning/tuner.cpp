@@ -13,7 +13,10 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr double kGlobalShare = 0.6;
+constexpr double kGlobalShare = 0.3;
+/// How far the global search goes from the start on each axis of the unit cube. In the whole cube nearly
+/// every point is worse than a start by hand: 240 evaluations there ended below 100 of these.
+constexpr double kReach = 0.2;
 /// Of the unit cube: the figures are flat between points closer than that.
 constexpr double kFirstStep = 0.08;
 constexpr double kSmallestStep = 1e-3;
@@ -34,11 +37,18 @@ class Fit {
         best_ = mean_over_scenes(laps_of(evaluate_(start), tracks_));
     }
 
-    void run(nlopt::algorithm algorithm, std::size_t evaluations) {
+    /// From the best point so far, at most `reach` away from it on each axis.
+    void run(nlopt::algorithm algorithm, std::size_t evaluations, double reach) {
         if (evaluations == 0) return;
         nlopt::opt search(algorithm, static_cast<unsigned>(best_point_.size()));
-        search.set_lower_bounds(0.0);
-        search.set_upper_bounds(1.0);
+        std::vector<double> lower;
+        std::vector<double> upper;
+        for (const double coordinate : best_point_) {
+            lower.push_back(std::max(0.0, coordinate - reach));
+            upper.push_back(std::min(1.0, coordinate + reach));
+        }
+        search.set_lower_bounds(lower);
+        search.set_upper_bounds(upper);
         search.set_max_objective(&Fit::value, this);
         search.set_maxeval(static_cast<int>(evaluations));
         search.set_initial_step(kFirstStep);
@@ -97,8 +107,9 @@ Fit fit(const Evaluate& evaluate, const RldParameters& start, const std::set<std
     nlopt::srand(options.seed);
     Fit result(evaluate, start, tracks);
     const auto global = static_cast<std::size_t>(kGlobalShare * static_cast<double>(options.evaluations));
-    result.run(nlopt::GN_CRS2_LM, global);
-    result.run(nlopt::LN_SBPLX, options.evaluations - global);
+    constexpr double kWholeCube = 1.0;
+    result.run(nlopt::GN_CRS2_LM, global, kReach);
+    result.run(nlopt::LN_SBPLX, options.evaluations - global, kWholeCube);
     return result;
 }
 

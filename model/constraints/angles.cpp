@@ -22,11 +22,12 @@ void turn_products(const FamilyContext& context) {
     }
 }
 
-// At each cone j the allowed turns carry what enters on one edge out on another:
-//   sum of f over the turns of edge e at j <= a_e,   sum of f at j = A_j - g_j.
-// At integral a: degree 2 forces exactly one turn, which must be of the two chosen edges, so (22)(23) hold
-// and a forbidden turn (28), which has no f, is excluded; degree 1 gives g_j = 1. Adding the first rows over
-// the edges of j gives 2 (A_j - g_j) <= A_j, which is (2); f >= 0 gives (1). So f and g need not be integer.
+// At each cone j the allowed turns carry what enters on one edge out on another, or the path ends there:
+//   a_e = sum of f over the turns of edge e at j + e_ij,   sum of f at j + sum of e_ij over i <= 1.
+// At integral a the second row and the sum of the first ones, A_j = 2 sum of f + sum of e, allow A_j <= 2,
+// which is (2). Degree 2: both sums are at most 1, so the turns carry one unit and none ends; it is the turn
+// of the two chosen edges, so (22)(23) hold, and a forbidden turn (28), which has no f, is excluded. Degree
+// 1: no turn has both its edges, so e is 1. So f and e need not be integer.
 void turn_flow(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     std::vector<std::vector<std::size_t>> turns_at_cone(problem.cone_count);
@@ -35,23 +36,23 @@ void turn_flow(const FamilyContext& context) {
     }
     std::vector<std::vector<int>> turns_of_edge(problem.edges.size());
     for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
+        if (problem.incident[cone].empty()) continue;
         for (const std::size_t t : turns_at_cone[cone]) {
             turns_of_edge[problem.turns[t].edge_i].push_back(columns.turn[t]);
             turns_of_edge[problem.turns[t].edge_k].push_back(columns.turn[t]);
         }
+        const auto at_cone = static_cast<std::int32_t>(cone);
         for (const std::size_t edge : problem.incident[cone]) {
-            if (turns_of_edge[edge].empty()) continue;
-            rows.begin({"turns_of_edge", {static_cast<std::int32_t>(edge), static_cast<std::int32_t>(cone)}},
-                       -kInfinity, 0.0);
+            rows.begin({"edge_goes_on", {static_cast<std::int32_t>(edge), at_cone}}, 0.0, 0.0);
             for (const int turn : turns_of_edge[edge]) rows.add(turn, 1.0);
+            rows.add(end_column(context, edge, cone), 1.0);
             rows.add(columns.edge[edge], -1.0);
             rows.end();
             turns_of_edge[edge].clear();
         }
-        rows.begin({"turns_at_cone", {static_cast<std::int32_t>(cone)}}, 0.0, 0.0);
+        rows.begin({"cone_once", {at_cone}}, -kInfinity, 1.0);
         for (const std::size_t t : turns_at_cone[cone]) rows.add(columns.turn[t], 1.0);
-        for (const std::size_t edge : problem.incident[cone]) rows.add(columns.edge[edge], -1.0);
-        rows.add(columns.inlier[cone], 1.0);
+        add_endpoint_mark(context, cone, 1.0);
         rows.end();
     }
 }

@@ -2,7 +2,17 @@
 
 namespace conelane::constraints {
 
+int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone) {
+    return context.columns.end[edge][context.problem.edges[edge].i == cone ? 0 : 1];
+}
+
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient) {
+    if (!context.columns.end.empty()) {
+        for (const std::size_t edge : context.problem.incident[cone]) {
+            context.rows.add(end_column(context, edge, cone), coefficient);
+        }
+        return;
+    }
     context.rows.add(context.columns.inlier[cone], 2.0 * coefficient);
     for (const std::size_t edge : context.problem.incident[cone]) {
         context.rows.add(context.columns.edge[edge], -coefficient);

@@ -8,7 +8,11 @@
 /// formulation.
 namespace conelane::constraints {
 
-/// Adds coefficient * m_i to the open row, m_i = 2 g_i - A_i (10): 1 where the cone is an endpoint, else 0.
+/// The e column of the paths that end at one of the edge's cones by it.
+[[nodiscard]] int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone);
+
+/// Adds coefficient * m_i to the open row, 1 where the cone is an endpoint, else 0: m_i = 2 g_i - A_i (10),
+/// or the sum of its e columns where the formulation has those.
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient);
 
 // degree.cpp

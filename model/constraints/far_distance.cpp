@@ -1,3 +1,4 @@
+#include "model/constraints/conflict_graph.hpp"
 #include "model/constraints/families.hpp"
 
 namespace conelane::constraints {
@@ -27,22 +28,42 @@ void far_distance(const FamilyContext& context) {
     }
 }
 
-// Exactly two endpoints are far, by (3) and (11), so a far endpoint i has the other one within d_max of it:
-//   m_i <= sum of m_j over the far cones j != i with D_ij <= d_max.
-// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart, and a row a cone.
+namespace {
+
+bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
+    return a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j;
+}
+
+}  // namespace
+
+// Exactly two endpoints are far, by (3) and (11), so where a path ends at a far cone i by the edge {k, i},
+// the other one ends at a far cone j within d_max of it, by an edge that can be chosen beside {k, i}:
+//   e_ki <= sum of e_lj over those.
+// With pairing near_far the two paths are different ones, so their last edges have no cone in common.
+// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart.
 void far_partners(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t n = problem.cone_count;
     std::vector<bool> apart(n * n, false);
     for (const auto& [i, j] : problem.far_apart) apart[i * n + j] = apart[j * n + i] = true;
+    const bool disjoint = problem.parameters.pairing == Pairing::near_far;
+    const ConflictGraph conflicts(problem);
     for (std::size_t i = 0; i < n; ++i) {
         if (problem.near[i]) continue;
-        rows.begin({"far_partner", {static_cast<std::int32_t>(i)}}, -kInfinity, 0.0);
-        add_endpoint_mark(context, i, 1.0);
-        for (std::size_t j = 0; j < n; ++j) {
-            if (j != i && !problem.near[j] && !apart[i * n + j]) add_endpoint_mark(context, j, -1.0);
+        for (const std::size_t edge : problem.incident[i]) {
+            rows.begin({"far_partner", {static_cast<std::int32_t>(edge), static_cast<std::int32_t>(i)}},
+                       -kInfinity, 0.0);
+            rows.add(end_column(context, edge, i), 1.0);
+            for (std::size_t j = 0; j < n; ++j) {
+                if (j == i || problem.near[j] || apart[i * n + j]) continue;
+                for (const std::size_t other : problem.incident[j]) {
+                    if (conflicts.joined(edge, other)) continue;
+                    if (disjoint && have_cone_in_common(problem.edges[edge], problem.edges[other])) continue;
+                    rows.add(end_column(context, other, j), -1.0);
+                }
+            }
+            rows.end();
         }
-        rows.end();
     }
 }
 

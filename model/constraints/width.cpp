@@ -1,30 +1,7 @@
+#include "model/constraints/conflict_graph.hpp"
 #include "model/constraints/families.hpp"
 
-#include <cstdint>
-
 namespace conelane::constraints {
-namespace {
-
-/// Edges as vertices, joined where both cannot be chosen; adjacency as bit rows.
-class ConflictGraph {
-  public:
-    explicit ConflictGraph(std::size_t edges) : words_((edges + 63) / 64), bits_(edges * words_, 0) {}
-
-    void join(std::size_t a, std::size_t b) {
-        row(a)[b / 64] |= bit(b);
-        row(b)[a / 64] |= bit(a);
-    }
-    [[nodiscard]] std::size_t words() const { return words_; }
-    [[nodiscard]] std::uint64_t* row(std::size_t edge) { return bits_.data() + edge * words_; }
-    static std::uint64_t bit(std::size_t edge) { return std::uint64_t{1} << (edge % 64); }
-
-  private:
-    std::size_t words_;
-    std::vector<std::uint64_t> bits_;
-};
-
-}  // namespace
-
 void width_pairs(const FamilyContext& context) {
     for (const auto& [first, second] : context.problem.conflicts) {
         context.rows.begin({"width", {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)}},
@@ -40,20 +17,14 @@ void width_pairs(const FamilyContext& context) {
 void width_cliques(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t edges = problem.edges.size();
-    ConflictGraph graph(edges);
+    const ConflictGraph graph(problem);
     ConflictGraph uncovered(edges);
-    for (const auto& [first, second] : problem.conflicts) {
-        graph.join(first, second);
-        uncovered.join(first, second);
-    }
-    for (const ProblemTurn& turn : problem.turns) {
-        if (turn.high_cost) graph.join(turn.edge_i, turn.edge_k);
-    }
+    for (const auto& [first, second] : problem.conflicts) uncovered.join(first, second);
     std::vector<std::uint64_t> common(graph.words());
     std::vector<std::size_t> clique;
     std::int32_t count = 0;
     for (const auto& [first, second] : problem.conflicts) {
-        if ((uncovered.row(first)[second / 64] & ConflictGraph::bit(second)) == 0) continue;
+        if (!uncovered.joined(first, second)) continue;
         clique.assign({first, second});
         for (std::size_t word = 0; word < common.size(); ++word) {
             common[word] = graph.row(first)[word] & graph.row(second)[word];
@@ -68,8 +39,7 @@ void width_cliques(const FamilyContext& context) {
         rows.begin({"width", {count++}}, -kInfinity, 1.0);
         for (const std::size_t edge : clique) {
             rows.add(columns.edge[edge], 1.0);
-            for (const std::size_t other : clique)
-                uncovered.row(edge)[other / 64] &= ~ConflictGraph::bit(other);
+            for (const std::size_t other : clique) uncovered.part(edge, other);
         }
         rows.end();
     }

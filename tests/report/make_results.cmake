@@ -1,4 +1,5 @@
-# cmake -D PROGRAM=conelane -D RESULTS=DIR -P make_results.cmake: a small comparison, a sweep and their page.
+# cmake -D PROGRAM=conelane -D BENCHMARKS=conelane_benchmarks -D RESULTS=DIR -P make_results.cmake: a small comparison,
+# a sweep, what is measured of exactness, and their page. BENCHMARKS may be empty.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${RESULTS})
@@ -9,4 +10,14 @@ conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,
          --candidates --out ${RESULTS})
 conelane(sweep --tracks generated:straight generated:circle --methods rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
+set(scenes ${RESULTS}/scenes.scenes.jsonl)
+conelane(optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
+conelane(backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
+conelane(formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
+if(BENCHMARKS)
+    execute_process(COMMAND ${BENCHMARKS} "--benchmark_filter=^(problem|build|update)/(tight|paper)/6$"
+                            --benchmark_min_time=0.01 --benchmark_out_format=json
+                            --benchmark_out=${RESULTS}/benchmarks.json
+                    OUTPUT_QUIET ERROR_QUIET COMMAND_ERROR_IS_FATAL ANY)
+endif()
 conelane(report --results ${RESULTS} --out ${RESULTS}/page.html)

@@ -12,7 +12,7 @@ from report.load import Sample  # noqa: E402
 
 def sample(method, latency, tracks):
     scenes = np.array([f"s{i}" for i in range(len(latency))], dtype=object)
-    return Sample(method, None, scenes, np.array(tracks, dtype=object), scenes, {"latency": np.array(latency)})
+    return Sample(method, None, scenes, np.array(tracks, dtype=object), scenes, scenes, {"latency": np.array(latency)})
 
 
 class Measures(unittest.TestCase):

@@ -12,6 +12,8 @@ import unittest
 from html.parser import HTMLParser
 
 PROGRAM, RESULTS = sys.argv[1:3]
+# Google Benchmark may be missing where this was built.
+BENCHMARKED = os.path.exists(os.path.join(RESULTS, "benchmarks.json"))
 VOID = {"meta", "link", "input", "br"}
 
 
@@ -97,12 +99,51 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(used - set(self.page.ids), set())
 
     def test_has_every_figure_or_says_why_not(self):
-        for name in ("winners", "by-size", "accurate-by-size", "success-by-rate", "latency", "rld-fig-5", "rld-fig-6",
-                     "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12", "clc-fig-15",
-                     "clc-fig-16a", "clc-fig-16b"):
+        for name in ("winners", "by-size", "growth", "accurate-by-size", "success-by-rate", "latency",
+                     "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
+                     "formulations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
+                     "rld-fig-7-circle", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
+                     "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios"):
             self.assertIn(name, self.page.ids)
-        self.assertTrue({"rld-fig-7-straight", "rld-fig-7-circle"} <= set(self.page.ids))
-        self.assertNotIn("the results hold no sweep", self.text)
+        absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
+        self.assertEqual(re.findall(r"<b>(.*?)</b>", absent), ["Performance profiles"] + ["Update against rebuild"] * (not BENCHMARKED))
+        self.assertIn("<code>conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS</code>", absent)
+
+    def test_every_experiment_says_what_it_shows(self):
+        articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
+        self.assertEqual(len(articles), 20 + BENCHMARKED)
+        for article in articles:
+            self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
+            self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
+                             ["Protocol", "Source", "Command"])
+        of_papers = [article for article in articles if re.match(r".*?<h3>(RLD|CLC) (Fig|Table)", article, flags=re.S)]
+        self.assertEqual(len(of_papers), 10)
+        for article in of_papers:
+            self.assertIn("<dt>Published</dt>", article)
+
+    def test_stored_exactness_is_what_is_shown(self):
+        stored = [line for line in lines("optimality.jsonl") if "gap" in line]
+        equal = sum(line["equal"] for line in stored) / len(stored)
+        self.assertIn(f"proven optimum in {100 * equal:.1f}\u00a0% of {len(stored)} scenes", self.text)
+        scenes = {line["scene"] for line in lines("backends.jsonl")}
+        self.assertIn(f"n = 6: 0 of {len(scenes)} scenes", self.text)
+
+    def test_pictures_are_whole_and_the_same_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            seen = []
+            for name in ("one", "two"):
+                pictures = os.path.join(folder, name)
+                done = report(RESULTS, os.path.join(folder, "page.html"), "--png", pictures)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertEqual(sorted(os.listdir(pictures)), ["growth.png", "iou.png", "latency.png", "success.png"])
+                found = {}
+                for picture in os.listdir(pictures):
+                    with open(os.path.join(pictures, picture), "rb") as stream:
+                        found[picture] = stream.read()
+                    self.assertEqual(found[picture][:8], b"\x89PNG\r\n\x1a\n")
+                    self.assertGreater(int.from_bytes(found[picture][16:20], "big"), 800)  # pixels across
+                seen.append(found)
+            self.assertEqual(seen[0], seen[1])
 
     def test_numbers_are_those_of_the_results(self):
         checked = 0
@@ -179,6 +220,16 @@ class ReportPage(unittest.TestCase):
                 with open(scores, "w", encoding="utf-8") as stream:
                     stream.writelines(change(whole))
                 self.assertIn(complaint, self.refused(copy, page))
+            with open(scores, "w", encoding="utf-8") as stream:
+                stream.writelines(whole)
+            for name, text, complaint in (("optimality.jsonl", '{"scene": "a"}\n', "optimality.jsonl:1: track: "),
+                                          ("backends.jsonl", "[]\n", "backends.jsonl:1: "),
+                                          ("formulations.jsonl", '{"cones": 6}\n', "formulations.jsonl:1: formulation"),
+                                          ("benchmarks.json", '{"benchmarks": [{}]}', "benchmarks.json")):
+                with open(os.path.join(copy, name), "w", encoding="utf-8") as stream:
+                    stream.write(text)
+                self.assertIn(complaint, self.refused(copy, page))
+                os.unlink(os.path.join(copy, name))
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
@@ -188,12 +239,19 @@ class ReportPage(unittest.TestCase):
             shutil.copytree(RESULTS, copy)
             os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
             shutil.rmtree(os.path.join(copy, "sweep"))
+            for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "benchmarks.json"):
+                if name != "benchmarks.json" or BENCHMARKED:
+                    os.unlink(os.path.join(copy, name))
             page = os.path.join(folder, "page.html")
             self.assertEqual(report(copy, page).returncode, 0)
             with open(page, encoding="utf-8") as stream:
                 text = stream.read()
             self.assertIn("the results hold no scenes.scenes.jsonl", text)
-            self.assertIn("the results hold no sweep", text)
+            for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
+                              "there is no backends.jsonl.", "there is no formulations.jsonl.",
+                              "there is no benchmarks.json."):
+                self.assertIn(complaint, text)
+            self.assertIn("<code>conelane sweep --out RESULTS/sweep</code>", text)
             self.assertEqual(Page(text).wrong, [])
 
 

@@ -1,0 +1,111 @@
+// What the stages of CLC take from scene to lane: the search graph, the enumeration with and without features
+// (as time for each of its iterations), the ranking (for each candidate), and a whole detection. Scenes are
+// of generated tracks, three false positives among ten points, 30 m; the scenes take turns.
+
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
+#include "graph_search/candidate_search.hpp"
+#include "graph_search/clc_detector.hpp"
+#include "graph_search/search_graph.hpp"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+namespace conelane::experiments {
+namespace {
+
+const std::vector<Scene>& scenes() {
+    static const std::vector<Scene> all = [] {
+        SceneOptions options;
+        options.false_positive_rates = {0.3};
+        options.ranges_m = {30.0};
+        options.every_m = 15.0;
+        std::vector<Scene> result;
+        for (const std::string& name : generated_track_names()) {
+            for (AnnotatedScene& scene : generate_scenes(generate_track(name, 0), options)) {
+                result.push_back(std::move(scene.scene));
+            }
+        }
+        return result;
+    }();
+    return all;
+}
+
+/// Time in seconds of one of the things that were counted, which the program prints with a unit.
+benchmark::Counter time_of_each(double count) {
+    return {count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
+}
+
+void build_search_graph(benchmark::State& state) {
+    std::vector<std::vector<Point>> points;
+    for (const Scene& scene : scenes()) {
+        points.emplace_back();
+        for (const Cone& cone : scene.cones) points.back().push_back(cone.position);
+    }
+    SearchGraph graph;
+    std::size_t turn = 0;
+    for ([[maybe_unused]] auto iteration : state) {
+        graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m,
+                    static_cast<SearchGraphKind>(state.range(0)));
+        benchmark::DoNotOptimize(graph.directed_edge_count());
+    }
+}
+BENCHMARK(build_search_graph)
+    ->ArgName("delaunay")
+    ->Arg(static_cast<std::int64_t>(SearchGraphKind::all_pairs))
+    ->Arg(static_cast<std::int64_t>(SearchGraphKind::delaunay));
+
+void enumerate(benchmark::State& state, const CandidateSearchOptions& options, bool with_features) {
+    CandidateSearch search(options);
+    CandidateSearch::Request request;
+    request.with_features = with_features;
+    double iterations = 0.0;
+    std::size_t turn = 0;
+    for ([[maybe_unused]] auto iteration : state) {
+        iterations += static_cast<double>(search.run(scenes()[turn++ % scenes().size()], request).iterations);
+    }
+    state.counters["each_iteration"] = time_of_each(iterations);
+}
+BENCHMARK_CAPTURE(enumerate, paper, CandidateSearchOptions{}, false);
+BENCHMARK_CAPTURE(enumerate, extended, extended_search_options(), false);
+BENCHMARK_CAPTURE(enumerate, extended_with_features, extended_search_options(), true);
+
+void rank(benchmark::State& state, const ClcOptions& options) {
+    CandidateSearch search(options);
+    CandidateSearch::Request request;
+    request.with_features = true;
+    std::vector<LaneFeatures> candidates;
+    for (const Scene& scene : scenes()) {
+        (void)search.run(scene, request);
+        const std::vector<LaneFeatures>& found = std::as_const(search).pairs().features();
+        candidates.insert(candidates.end(), found.begin(), found.end());
+        if (candidates.size() > 5000) break;
+    }
+    std::vector<double> scores(candidates.size());
+    for ([[maybe_unused]] auto iteration : state) {
+        options.ranking->score(candidates, scores);
+        benchmark::DoNotOptimize(scores.data());
+    }
+    state.counters["each_candidate"] =
+        time_of_each(static_cast<double>(candidates.size()) * static_cast<double>(state.iterations()));
+}
+BENCHMARK_CAPTURE(rank, paper, paper_clc_options());
+BENCHMARK_CAPTURE(rank, extended, extended_clc_options());
+
+void detect(benchmark::State& state, const ClcOptions& options) {
+    const auto detector = make_clc_detector(options);
+    std::size_t turn = 0;
+    for ([[maybe_unused]] auto iteration : state) {
+        LaneAnswer answer = detector->detect(scenes()[turn++ % scenes().size()], {});
+        benchmark::DoNotOptimize(answer);
+    }
+}
+BENCHMARK_CAPTURE(detect, paper, paper_clc_options())->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(detect, extended, extended_clc_options())->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,67 @@
+#include "experiments/comparison/answer_check.hpp"
+
+#include "model/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace conelane::experiments {
+namespace {
+
+/// What is wrong with a lane that was found; empty where nothing is.
+std::string objection(const LaneAnswer& answer, const Scene& cone_set, const RldParameters& parameters) {
+    const std::optional<LaneGraph> graph = lane_graph_of(answer.lane, cone_set);
+    if (!graph) return "the lane has a cone that the method was not given, or one twice in a row";
+    CheckReport report;
+    if (const auto& optimality = answer.optimality) {
+        Claim claim{optimality->optimal, optimality->objective, {}};
+        if (std::isfinite(optimality->bound)) claim.bound = optimality->bound;
+        report = check(cone_set, parameters, *graph, claim);
+    } else {
+        report = check(cone_set, parameters, *graph);
+    }
+    return report.violations.empty() ? "" : report.violations.front();
+}
+
+}  // namespace
+
+std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene) {
+    std::unordered_map<ConeId, std::size_t> index_of;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    LaneGraph graph;
+    for (const std::vector<ConeId>* boundary : {&lane.left, &lane.right}) {
+        std::vector<std::size_t> path;
+        for (const ConeId id : *boundary) {
+            const auto index = index_of.find(id);
+            if (index == index_of.end()) return std::nullopt;
+            path.push_back(index->second);
+        }
+        if (lane.closed && !path.empty()) path.push_back(path.front());
+        for (std::size_t i = 1; i < path.size(); ++i) {
+            if (path[i - 1] == path[i]) return std::nullopt;
+            graph.edges.push_back(make_edge(path[i - 1], path[i]));
+        }
+    }
+    std::ranges::sort(graph.edges);
+    return graph;
+}
+
+void check_answer(LaneRecord& record, const Scene& cone_set, const RldParameters& parameters) {
+    if (record.answer.status != LaneStatus::found) return;
+    const std::string found = objection(record.answer, cone_set, parameters);
+    if (found.empty()) {
+        record.checked = true;
+        return;
+    }
+    LaneAnswer rejected;
+    rejected.status = LaneStatus::error;
+    rejected.message = "rejected by the checker: " + found;
+    record.answer = std::move(rejected);
+}
+
+}  // namespace conelane::experiments

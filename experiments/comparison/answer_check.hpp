@@ -1,0 +1,23 @@
+#pragma once
+
+#include "experiments/files/lane_file.hpp"
+#include "model/lane.hpp"
+#include "model/lane_graph.hpp"
+#include "model/rld_parameters.hpp"
+#include "model/scene.hpp"
+
+#include <optional>
+
+namespace conelane::experiments {
+
+/// The edges between consecutive cones of each boundary; of a closed lane also those from last to first.
+/// Nothing where the lane names a cone that is not in the scene, or one twice in a row.
+[[nodiscard]] std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene);
+
+/// Holds what an RLD method found against the independent checker: every constraint, the stated objective,
+/// bound and optimality. `cone_set` is what the method saw. An answer that passes is marked as checked; one
+/// that does not becomes status error with the checker's first objection as its message. A record without a
+/// lane stays as it is.
+void check_answer(LaneRecord& record, const Scene& cone_set, const RldParameters& parameters);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,54 @@
+"""An experiment on the page. Each is a module of `experiments` whose docstring says what it is about:
+
+    Title
+
+    Claim: what is to be shown.
+    Protocol: how it is measured.
+    Source: the paper and its figure, or this project.
+    Published: what the paper prints, for those that reproduce one.
+    Command: what makes the results that it is drawn from.
+
+and whose `html(results, published)` gives its tables and figures, or raises Missing."""
+
+import re
+from html import escape
+
+
+class Missing(Exception):
+    """The results do not hold what the experiment shows; says what."""
+
+
+def _described(module):
+    """The title, and the parts of the docstring by their names."""
+    title, _, rest = module.__doc__.strip().partition("\n")
+    parts = re.findall(r"^(\w+): (.*?)(?=^\w+: |\Z)", rest.strip(), flags=re.M | re.S)
+    return title, {name: " ".join(text.split()) for name, text in parts}
+
+
+def _prose(text):
+    """Text with `code`."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+
+
+def _block(module, content):
+    title, parts = _described(module)
+    details = "".join(f"<div><dt>{name}</dt><dd>{_prose(text)}</dd></div>" for name, text in parts.items()
+                      if name != "Claim")
+    wide = " wide" if 'class="table"' in content or 'class="figures"' in content else ""
+    return (f'<article class="experiment{wide}"><h3>{escape(title)}</h3><p class="claim">{_prose(parts["Claim"])}</p>'
+            f'{content}<details><summary>Protocol and source</summary><dl class="about">{details}</dl></details>'
+            "</article>")
+
+
+def blocks(modules, results, published):
+    """The experiments in order, then what the results do not hold and which command makes it."""
+    present, absent = [], []
+    for module in modules:
+        try:
+            present.append(_block(module, module.html(results, published)))
+        except Missing as missing:
+            title, parts = _described(module)
+            absent.append(f"<li><b>{escape(title)}</b>: {_prose(str(missing))} "
+                          f"<code>{escape(parts['Command'])}</code></li>")
+    missing = (f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else "")
+    return f'<div class="experiments">{"".join(present)}</div>{missing}'

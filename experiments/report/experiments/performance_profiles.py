@@ -1,0 +1,58 @@
+"""Performance profiles
+
+Claim: Which exact method is fastest on most scenes, and how far behind are the others?
+Protocol: Dolan and Moré: the share of scenes that a method solves to proven optimality within a multiple of the \
+fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set only; \
+what is unproven after 0.4 s counts as unsolved.
+Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
+Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS
+"""
+
+import numpy as np
+
+from .. import measures
+from ..experiment import Missing
+from ..figures import drawn, group, name_of_set
+from ..theme import legend, logarithmic, method_style, new_figure
+
+
+def profile_figure(labels, styles, times):
+    """`times`: (scenes, methods), infinite where unsolved."""
+    ratios = measures.performance_profiles(times)
+    figure, axes = new_figure()
+    finite = ratios[np.isfinite(ratios)]
+    most = max(2.0, finite.max() if len(finite) else 2.0)
+    places = np.geomspace(1.0, most, 200)
+    for i, (label, style) in enumerate(zip(labels, styles)):
+        shares = np.searchsorted(ratios[:, i], places, side="right") / len(times)
+        axes.step(places, 100 * shares, where="post", label=label, **style | {"marker": ""})
+    axes.set_xscale("log")
+    ticks = (1, 2, 5, 10, 20, 50, 100) if most <= 200 else 10.0 ** np.arange(7)
+    axes.set_xticks([tick for tick in ticks if tick <= most])
+    logarithmic(axes.xaxis)
+    axes.set_xlabel("time / fastest method's time on the same scene")
+    axes.set_ylabel("scenes solved [%]")
+    axes.set_ylim(-2, 103)
+    legend(axes)
+    return figure
+
+
+def html(results, published):
+    figures = []
+    for nearest in dict.fromkeys(sample.nearest for sample in results.samples if sample.has("solved")):
+        samples = [s for s in results.samples if s.nearest == nearest and s.has("solved")]
+        scenes = sorted(set.intersection(*(set(sample.scene) for sample in samples)))
+        if len(samples) < 2 or not scenes:
+            continue
+        columns = []
+        for sample in samples:
+            times = dict(zip(sample.scene, np.where(sample.solved == 1.0, sample.latency, np.inf)))
+            columns.append([times[scene] for scene in scenes])
+        figure = profile_figure([sample.label for sample in samples],
+                                [method_style(results.methods, sample.method) for sample in samples],
+                                np.array(columns).T)
+        figures.append(drawn(f"profile-{nearest or 'all'}", f"On {name_of_set(nearest)}, {len(scenes)} scenes.",
+                             figure))
+    if not figures:
+        raise Missing("no two methods that prove optimality saw the same cone sets.")
+    return group(figures) if len(figures) > 1 else figures[0]

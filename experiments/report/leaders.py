@@ -1,0 +1,45 @@
+"""Who is ahead: the highest mean, and all that the tracks do not tell from it."""
+
+import numpy as np
+
+from . import measures
+
+REAL_TIME_BUDGET_MS = 50.0
+
+
+def accurate_values(part):
+    part = part.known("accurate")
+    return dict(zip(part.scene, part.accurate)), dict(zip(part.scene, part.track))
+
+
+def success_values(part):
+    return dict(zip(part.scene, part.success)), dict(zip(part.scene, part.track))
+
+
+def difference_interval(first, second, values_of):
+    """Interval of the mean of first - second over the scenes that both have; None for a single track."""
+    (a, tracks), (b, _) = values_of(first), values_of(second)
+    scenes = [scene for scene in a if scene in b]
+    if not scenes:
+        return None
+    differences = np.array([a[scene] - b[scene] for scene in scenes])
+    return measures.mean_interval(differences, np.array([tracks[scene] for scene in scenes], dtype=object))
+
+
+MEASURES = (("accurate", "accurate", accurate_values), ("success", "successful", success_values))
+
+
+def leaders_of(parts, values_of):
+    """(mean, samples): the highest mean, and all that the tracks do not tell from it. None without values."""
+    means = [(float(np.mean(list(values_of(part)[0].values()))), part) for part in parts if values_of(part)[0]]
+    if not means:
+        return None
+    best_mean, best = max(means, key=lambda pair: pair[0])
+    level = [best]
+    for mean, part in means:
+        if part is best:
+            continue
+        interval = difference_interval(best, part, values_of)
+        if mean == best_mean or (interval and interval[0] <= 0.0 <= interval[1]):
+            level.append(part)
+    return best_mean, level

@@ -1,0 +1,45 @@
+#include "solvers/relaxation/relaxation_solver.hpp"
+
+#include "solvers/path_pair_solver.hpp"
+#include "solvers/relaxation/lp_relaxation.hpp"
+#include "solvers/relaxation/rounding.hpp"
+
+#include <utility>
+
+namespace conelane {
+namespace {
+
+class RelaxationSolver : public RldSolver {
+  public:
+    explicit RelaxationSolver(Relax relax) : relax_(std::move(relax)) {}
+
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
+        const Stopwatch watch;
+        const LpRelaxation linear = solve_lp_relaxation(problem, deadline);
+        RldReport report;
+        report.status = linear.infeasible ? SolveStatus::infeasible : SolveStatus::time_limit;
+        if (linear.bound) {
+            if (const auto values = relax_(problem, linear.edge_values, deadline)) {
+                report = round_by_search(problem, *values, *path_pair_,
+                                         {deadline.remaining_ms(), limits.absolute_gap});
+            }
+        }
+        report.bound = linear.bound;
+        report.rounds = 1;
+        report.solve_ms = watch.elapsed_ms();
+        return report;
+    }
+
+  private:
+    Relax relax_;
+    std::unique_ptr<RldSolver> path_pair_ = make_path_pair_solver();
+};
+
+}  // namespace
+
+std::unique_ptr<RldSolver> make_relaxation_solver(Relax relax) {
+    return std::make_unique<RelaxationSolver>(std::move(relax));
+}
+
+}  // namespace conelane

@@ -1,0 +1,77 @@
+#include "graph_search/path_pair_enumeration.hpp"
+
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+// Every allocation of this program comes through here; the other forms of operator new call this one.
+// Inlined, GCC 12 takes new and free for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+    std::free(memory);
+}
+
+namespace conelane {
+namespace {
+
+/// A lane of 15 cones a side among 30 false positives. It is straight: a course that might be closed is
+/// measured as a whole, which does allocate.
+std::vector<Point> points() {
+    boost::random::mt19937_64 random(4);
+    boost::random::uniform_real_distribution<> ahead(0.0, 50.0);
+    boost::random::uniform_real_distribution<> across(-8.0, 8.0);
+    std::vector<Point> all;
+    for (int i = 0; i < 15; ++i) {
+        all.emplace_back(1.0 + 3.5 * i, 1.9);
+        all.emplace_back(0.8 + 3.5 * i, -1.8);
+    }
+    while (all.size() < 60) {
+        const double x = ahead(random);
+        all.emplace_back(x, across(random));
+    }
+    return all;
+}
+
+class EnumerationAllocations : public ::testing::TestWithParam<bool> {};
+
+TEST_P(EnumerationAllocations, NoneOnceTheMemoryIsThere) {
+    EnumerationRules rules;
+    rules.with_features = GetParam();
+    SearchGraph graph;
+    graph.build(points(), rules.d_max_m);
+    PathPairEnumeration enumeration;
+    PathPairs pairs;
+    const auto search = [&](std::int64_t iteration_limit) {
+        pairs.clear();
+        SearchBudget budget;
+        budget.iteration_limit = iteration_limit;
+        const std::size_t before = allocations;
+        (void)enumeration.run(graph, {0, 1}, {1.0, 0.0}, rules, budget, pairs);
+        EXPECT_EQ(budget.iterations, iteration_limit);
+        return allocations - before;
+    };
+    EXPECT_GT(search(20000), 0u) << "allocations are counted";
+    EXPECT_GT(pairs.found().size(), 1000u);
+    EXPECT_EQ(search(20000), 0u);
+    EXPECT_EQ(search(2500), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutFeatures, EnumerationAllocations, ::testing::Bool());
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,146 @@
+// Graph search, exact search and all backends under one objective.
+
+#include "experiments/comparison/optimality.hpp"
+
+#include "experiments/comparison/backends.hpp"
+#include "experiments/scenes/scene_set.hpp"
+#include "model/invalid_input.hpp"
+#include "tests/straight_scene.hpp"
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+SceneSet some_scenes(std::vector<double> rates) {
+    SceneOptions options;
+    options.false_positive_rates = std::move(rates);
+    options.ranges_m = {25.0};
+    options.every_m = 20.0;
+    return make_scene_set({"generated:kidney", "generated:straight"}, options);
+}
+
+TEST(OptimalityRow, GapIsRelativeToTheOptimumButNotToLessThanOne) {
+    OptimalityRow row;
+    row.optimum = PricedLane{-8.0};
+    EXPECT_FALSE(row.gap());  // no candidate
+    row.candidate = PricedLane{-6.0};
+    EXPECT_FALSE(row.gap());  // not proven
+    row.status = SolveStatus::optimal;
+    EXPECT_DOUBLE_EQ(*row.gap(), 0.25);
+    EXPECT_FALSE(row.is_optimal());
+    row.optimum->objective = 0.5;
+    row.candidate->objective = 0.75;
+    EXPECT_DOUBLE_EQ(*row.gap(), 0.25);
+    row.candidate->objective = 0.5 - 1e-9;  // rounding makes nothing better than the optimum
+    EXPECT_DOUBLE_EQ(*row.gap(), 0.0);
+    EXPECT_TRUE(row.is_optimal());
+}
+
+TEST(Optimality, FindsTheStraightLaneOptimal) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};
+    const std::vector<OptimalityRow> rows = optimality_rows(scenes, {}, {});
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].status, SolveStatus::optimal);
+    EXPECT_TRUE(rows[0].is_optimal());
+    EXPECT_EQ(rows[0].optimum->iou, 1.0);
+    EXPECT_EQ(rows[0].candidate->category, Category::ground_truth);
+    EXPECT_GE(rows[0].candidates, rows[0].feasible);
+    EXPECT_GE(rows[0].feasible, 1u);
+}
+
+TEST(Optimality, NoCandidateBeatsTheProvenOptimum) {
+    const SceneSet set = some_scenes({0.0, 0.3});
+    OptimalityOptions options;
+    options.nearest = 14;
+    const std::vector<OptimalityRow> rows = optimality_rows(set.scenes, set.tracks, options);
+    ASSERT_EQ(rows.size(), set.scenes.size());
+    std::size_t compared = 0;
+    for (const OptimalityRow& row : rows) {
+        SCOPED_TRACE(row.scene->scene.id);
+        EXPECT_EQ(row.candidate.has_value(), row.feasible > 0);
+        if (!row.gap()) continue;
+        ++compared;
+        EXPECT_GE(*row.candidate->objective, *row.optimum->objective - 1e-6);
+        // What the ranking chose is one of the candidates.
+        if (row.choice && row.choice->objective) {
+            EXPECT_GE(*row.choice->objective, *row.candidate->objective - 1e-9);
+        }
+    }
+    EXPECT_GT(compared, rows.size() / 2);
+    EXPECT_THAT(optimality_table(rows), HasSubstr(" 30.0 "));
+}
+
+TEST(Optimality, DoesNotDependOnThreads) {
+    const SceneSet set = some_scenes({0.2});
+    const auto prices = [&](unsigned threads) {
+        OptimalityOptions options;
+        options.threads = threads;
+        std::vector<double> all;
+        for (const OptimalityRow& row : optimality_rows(set.scenes, set.tracks, options)) {
+            all.push_back(row.gap().value_or(-1.0));
+        }
+        return all;
+    };
+    EXPECT_EQ(prices(1), prices(3));
+}
+
+TEST(Optimality, WantsAMethodThatEnumerates) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};
+    OptimalityOptions options;
+    for (const char* method : {"rld-pair", "magic"}) {
+        options.method = method;
+        EXPECT_THROW((void)optimality_rows(scenes, {}, options), InvalidInput) << method;
+    }
+}
+
+TEST(Backends, AgreeWithAndWithoutAStart) {
+    const SceneSet set = some_scenes({0.2});
+    BackendOptions options;
+    options.sizes = {8, 10};
+    for (Backend backend : exact_backends()) {
+        options.backends.push_back(backend);
+        backend.warm_start = true;
+        options.backends.push_back(backend);
+    }
+    const std::vector<BackendRow> rows = backend_rows(set.scenes, options);
+    std::map<std::pair<std::size_t, std::string>, double> optimum;
+    std::set<std::string> labels;
+    for (const BackendRow& row : rows) {
+        SCOPED_TRACE(row.scene->scene.id + " " + row.backend.label());
+        labels.insert(row.backend.label());
+        EXPECT_THAT(row.message, "");
+        if (row.status == SolveStatus::time_limit || row.status == SolveStatus::feasible) continue;
+        ASSERT_TRUE(row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible);
+        const double value = row.status == SolveStatus::optimal ? *row.objective : 1e9;
+        const auto known = optimum.try_emplace({row.cones, row.scene->scene.id}, value).first;
+        EXPECT_NEAR(value, known->second, 1e-6);
+    }
+    EXPECT_EQ(labels.size(), options.backends.size());
+    EXPECT_TRUE(labels.contains("path-pair"));
+    EXPECT_TRUE(labels.contains("cbc-main/paper warm"));
+}
+
+TEST(Backends, LeaveOutScenesWithFewerCones) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};  // 20 cones
+    BackendOptions options;
+    options.backends = {Backend{"path-pair"}};
+    options.sizes = {20, 21};
+    const std::vector<BackendRow> rows = backend_rows(scenes, options);
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].cones, 20u);
+    options.backends = {Backend{"magic"}};
+    EXPECT_THROW((void)backend_rows(scenes, options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
