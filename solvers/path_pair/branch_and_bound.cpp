@@ -17,7 +17,7 @@ constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as pr
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr double kWorthwhile = 0.8;         ///< of the gap at which the tandem search failed, to try it again
-constexpr std::int64_t kFirstBudget = 200;  ///< labels
+constexpr std::int64_t kFirstBudget = 500;  ///< labels
 constexpr std::int64_t kWorkPerLabel =
     30;  ///< label updates of the ascent that a label may take the place of
 constexpr std::int64_t kMostLabels = 200000;  ///< before a node branches
@@ -150,7 +150,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
         }
         if (value >= cutoff()) return Verdict::closed;
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
-        if (options_.search_pairs && (step % 4 == 3 || last) &&
+        if (options_.search_pairs && (step == 0 || step % 4 == 3 || last) &&
             (last || cutoff() - value < kWorthwhile * failed_gap)) {
             const std::int64_t labels = last ? kMostLabels : std::max(kFirstBudget, work / kWorkPerLabel);
             if (tandem_.exhaust(here.graph, tolerance_, labels, stopped_)) return Verdict::closed;
