@@ -27,6 +27,7 @@ class Verification {
 
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
+        if (p_.w_color > 0.0) violated("certificates are for the model without colour cost");
         prices();
         cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);
@@ -77,8 +78,10 @@ class Verification {
                 if (middle == other) return turn_cost(i, middle, k) > p_.t_crit + kTieTolerance;
             }
         }
-        const SegmentDistance gap =
-            segment_distance({position(a.i), position(a.j)}, {position(b.i), position(b.j)});
+        const Segment first{position(a.i), position(a.j)};
+        const Segment second{position(b.i), position(b.j)};
+        if (p_.forbid_crossing && segments_cross(first, second)) return true;
+        const SegmentDistance gap = segment_distance(first, second);
         return gap.distance_m < p_.d_min - kTieTolerance && !gap.between_ends;
     }
 
@@ -115,7 +118,9 @@ class Verification {
                 const double across = std::abs(cross(v, heading_));
                 const double car_distance =
                     std::max((0.5 * (position(i) + position(j)) - scene_.pose.position).norm(), 0.5);
-                double cost = p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b;
+                const double confidence =
+                    p_.use_confidence ? scene_.cones[i].confidence * scene_.cones[j].confidence : 1.0;
+                double cost = p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b * confidence;
                 const bool along_heading =
                     foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
                     std::atan2(across, std::abs(v.dot(heading_))) <= p_.theta_heading + kTieTolerance;

@@ -6,7 +6,9 @@
 #include "solvers/path_pair/incumbent.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
+#include <vector>
 
 namespace conelane {
 namespace {
@@ -31,10 +33,12 @@ class PathPairSolver : public RldSolver {
         const double tolerance = std::max(limits.absolute_gap, kLeastGap);
         search_.reset_nodes();
 
+        const bool start_is_feasible = limits.start != nullptr && is_feasible(problem, *limits.start);
         // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
         Outcome outcome{};
         for (const double cutoff : {0.0, cost_limit(problem)}) {
             incumbent_.reset(graph_, cutoff);
+            if (start_is_feasible) offer(problem, *limits.start);
             outcome = search(problem, tolerance, deadline);
             ++report.rounds;
             if (incumbent_.found() || !outcome.complete) break;
@@ -77,6 +81,19 @@ class PathPairSolver : public RldSolver {
 
   private:
     using Outcome = BranchAndBound::Outcome;
+
+    /// Precondition: the lane graph is feasible.
+    void offer(const LaneGraphProblem& problem, const LaneGraph& start) {
+        std::array<std::vector<int>, 2> legs;
+        const auto boundaries = paths(start, problem.cone_count);
+        for (std::size_t leg = 0; leg < 2; ++leg) {
+            const std::vector<std::size_t>& path = (*boundaries)[leg];
+            for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+                legs[leg].push_back(graph_.arc(static_cast<int>(path[k]), static_cast<int>(path[k + 1])));
+            }
+        }
+        incumbent_.offer(legs[0], legs[1]);
+    }
 
     /// More than any lane graph costs.
     static double cost_limit(const LaneGraphProblem& problem) {
@@ -149,11 +166,10 @@ class PathPairSolver : public RldSolver {
 }  // namespace
 
 BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time_limit_ms) {
-    // Prices alone have to carry the bound: nothing may be dropped by the incumbent, no walk have a memory.
+    // Prices alone have to carry the bound: nothing may be dropped by the incumbent.
     PathPairOptions options;
     options.fix_arcs = false;
-    options.remember_cones = false;
-    options.enumerate_pairs = false;
+    options.search_pairs = false;
     return PathPairSolver(options).certify(problem, time_limit_ms);
 }
 

@@ -12,12 +12,10 @@ namespace conelane {
 struct PathPairOptions {
     bool fix_arcs = true;        ///< drop arcs whose reduced-cost bound reaches the incumbent
     bool clique_prices = true;   ///< price cliques of incompatible edges, not cones alone
-    bool remember_cones = true;  ///< forbid walks to return to the cones they return to most
     bool complete_walks = true;  ///< look for incumbents around the relaxation's walks
-    bool enumerate_pairs =
-        true;              ///< end nodes by the half-gap enumeration, not by branching to the last edge
-    int root_steps = 150;  ///< most ascent steps at the root
-    int node_steps = 30;   ///< and at each other node
+    bool search_pairs = true;    ///< end nodes by the tandem search, not by branching to the last edge
+    int root_steps = 150;        ///< most ascent steps at the root
+    int node_steps = 30;         ///< and at each other node
 };
 
 /// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its

@@ -187,43 +187,6 @@ TEST(PathPairLegSearch, FindsTheLegsThatBruteForceFinds) {
     }
 }
 
-/// A graph whose walks remember two cones holds every leg once, at the same cost, and no walk through one
-/// twice.
-TEST(PathPairResidualGraph, SplittingKeepsEveryLeg) {
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-        SCOPED_TRACE(testing::Message() << "seed " << seed);
-        const PricedScene s(seed);
-        std::vector<int> index;
-        ResidualGraph once, twice;
-        once.split(s.residual, static_cast<int>(seed % 9), index);
-        twice.split(once, static_cast<int>((seed + 4) % 9), index);
-        int legs = 0;
-        s.for_each_leg([&](const std::vector<int>&, double) { ++legs; });
-        std::vector<double> reduced, start, end;
-        for (int a = 0; a < twice.size(); ++a) {
-            const std::size_t at = static_cast<std::size_t>(a);
-            const int original = twice.arc[at];
-            const std::size_t old = static_cast<std::size_t>(std::ranges::find(s.residual.arc, original) -
-                                                             s.residual.arc.begin());
-            reduced.push_back(s.reduced[old]);
-            start.push_back(twice.first[at] != 0 ? s.start[old] : kUnreachable);
-            end.push_back(s.end[old]);
-        }
-        LegBounds bounds;
-        std::vector<double> backward;
-        bounds.backward(twice, reduced, end, std::vector<char>(twice.arc.size(), 1), backward);
-        int found = 0;
-        std::int64_t budget = 10'000'000;
-        LegSearch search;
-        EXPECT_TRUE(search.run({s.graph, twice, reduced, start, end, backward}, 1e6, budget,
-                               [&](std::span<const int>, double) {
-                                   ++found;
-                                   return 1e6;
-                               }));
-        EXPECT_EQ(found, legs);
-    }
-}
-
 /// With prices, a leg costs its own cost plus the prices of what it uses.
 TEST(PathPairPrices, ReducedCostOfALegIsItsCostPlusWhatItUses) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
@@ -309,14 +272,13 @@ TEST(PathPair, AgreesWithCbc) {
 
 TEST(PathPair, EveryStageCanBeSwitchedOff) {
     const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
-    std::vector<PathPairOptions> ablations(6);
+    std::vector<PathPairOptions> ablations(5);
     ablations[0].fix_arcs = false;
     ablations[1].clique_prices = false;
     ablations[2].complete_walks = false;
-    ablations[3].enumerate_pairs = false;
+    ablations[3].search_pairs = false;
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
-    ablations[5].remember_cones = false;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
@@ -325,6 +287,57 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
             const RldReport report = solve(*make_path_pair_solver(options), scene, {});
             ASSERT_EQ(report.status, expected.status);
             if (report.objective) {
+                EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+            }
+        }
+    }
+}
+
+/// The optimum as a start is kept, another lane graph is improved on, one that is none is dropped.
+TEST(PathPair, StartsFromALaneGraph) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 16), {});
+        const RldReport cold = solver->solve(problem, {});
+        if (!cold.lane_graph) continue;
+        ++started;
+        SolveLimits limits;
+        limits.start = &*cold.lane_graph;
+        EXPECT_EQ(solver->solve(problem, limits).lane_graph, cold.lane_graph);
+        limits.time_limit_ms = 0.0;  // nothing but the start
+        const RldReport stopped = solver->solve(problem, limits);
+        EXPECT_EQ(stopped.status, SolveStatus::feasible);
+        EXPECT_EQ(stopped.objective, cold.objective);
+        LaneGraph torn = *cold.lane_graph;
+        torn.edges.erase(torn.edges.begin() + static_cast<std::ptrdiff_t>(torn.edges.size() / 2));
+        limits = {};
+        limits.start = &torn;
+        EXPECT_NEAR(*solver->solve(problem, limits).objective, *cold.objective, 1e-9);
+    }
+    EXPECT_GT(started, 20);
+}
+
+/// Cones on a lattice, where walks of equal cost and cycles that are neutral abound: labels that improve by
+/// rounding alone must not go round for ever.
+TEST(PathPair, EndsWhereEverythingTies) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    for (const double spacing_m : {3.0, 3.2, 4.0}) {
+        for (const double theta_t : {0.9, 2.0}) {
+            SCOPED_TRACE(testing::Message() << spacing_m << " m, theta_t " << theta_t);
+            Scene scene;
+            for (ConeId id = 0; id < 15; ++id) {
+                const Point step(static_cast<double>(id / 3), static_cast<double>(id % 3) - 1.0);
+                scene.cones.push_back({id, Point(1.0, 0.0) + spacing_m * step});
+            }
+            RldParameters parameters;
+            parameters.theta_t = theta_t;
+            const RldReport report = solve(*path_pair, scene, parameters);
+            const RldReport expected = solve(*cbc, scene, parameters);
+            ASSERT_EQ(report.status, expected.status);
+            if (expected.objective) {
                 EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
             }
         }

@@ -221,6 +221,38 @@ TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
 }
 
+TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
+    make_scenes("--fp 0.2");
+    const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run(on_scenes + "--out s.certificates.jsonl").exit_code, 0);
+    const Outcome good = run(on_scenes + "--verify s.certificates.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+
+    // A bound that is higher by 1, a price below zero, a clique of edges that may go together.
+    std::string first_line = text_of(path("s.certificates.jsonl"));
+    first_line.resize(first_line.find('\n'));
+    const nlohmann::json certificate = nlohmann::json::parse(first_line);
+    std::vector<nlohmann::json> forgeries(4, certificate);
+    forgeries[0]["bound"] = certificate["bound"].get<double>() + 1.0;
+    forgeries[1]["heading_price"] = -0.1;
+    const nlohmann::json& prices = certificate["cone_prices"];
+    ASSERT_GE(prices.size(), 2U);
+    const nlohmann::json edge{prices[0][0], prices[1][0]};  // which does not exclude itself
+    forgeries[2]["cliques"].push_back({{"price", 0.1}, {"edges", {edge, edge}}});
+    forgeries[3]["cone_prices"][0][0] = 123456;
+    for (const nlohmann::json& forgery : forgeries) {
+        file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
+        const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
+        EXPECT_EQ(bad.exit_code, 1) << forgery;
+        EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
+    }
+    expect_refused(on_scenes + "--pairing paper --out x.certificates.jsonl", {"near_far"});
+    expect_refused(on_scenes, {"--out", "--verify"});
+    file_with("{\"scene\": 3}\n", "bad.certificates.jsonl");
+    expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
+}
+
 TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;

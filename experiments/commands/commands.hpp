@@ -12,6 +12,7 @@ void add_detect_command(CLI::App& program);
 void add_solvers_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
+void add_certify_command(CLI::App& program);
 void add_exchange_commands(CLI::App& program);  ///< export, import-solution
 void add_formulations_command(CLI::App& program);
 void add_backends_command(CLI::App& program);

@@ -78,6 +78,12 @@ void ArcGraph::build(const LaneGraphProblem& problem) {
     }
 }
 
+int ArcGraph::arc(int from, int to) const {
+    int a = 0;
+    while (tail(a) != from || head(a) != to) ++a;
+    return a;
+}
+
 double ArcGraph::turn_cost(int arc, int next) const {
     const std::span<const Succession> all = successions(arc);
     return std::ranges::find(all, next, &Succession::arc)->cost;

@@ -39,6 +39,8 @@ class ArcGraph {
         return {successions_.data() + start_[static_cast<std::size_t>(arc)],
                 successions_.data() + start_[static_cast<std::size_t>(arc) + 1]};
     }
+    /// The arc from one cone to another. Precondition: they have an edge.
+    [[nodiscard]] int arc(int from, int to) const;
     /// The cost of an allowed turn.
     [[nodiscard]] double turn_cost(int arc, int next) const;
 

@@ -16,11 +16,12 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
-constexpr double kWorthwhile = 0.8;  ///< of the gap at which the enumeration failed, to try it again
-constexpr std::int64_t kFirstBudget = 2000;
+constexpr double kWorthwhile = 0.8;         ///< of the gap at which the tandem search failed, to try it again
+constexpr std::int64_t kFirstBudget = 500;  ///< labels
+constexpr std::int64_t kWorkPerLabel =
+    30;  ///< label updates of the ascent that a label may take the place of
+constexpr std::int64_t kMostLabels = 200000;  ///< before a node branches
 constexpr int kRestSteps = 2;
-constexpr double kLeastRepeat = 0.02;
-constexpr int kMostArcs = 1500;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
 constexpr double kStepScale = 1.0;
@@ -59,11 +60,10 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     cliques_.clear();
     decisions_.reset(graph_);
     relaxation_.bind(graph_, system, cliques_, decisions_, stopped_);
-    pair_search_.bind(graph_, relaxation_, incumbent_);
+    completion_.bind(graph_, relaxation_, incumbent_);
+    tandem_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
-    repeat_use_.assign(at(graph_.cone_count()), 0.0);
-    visits_.assign(at(graph_.cone_count()), 0);
     index_.assign(at(graph_.cone_count()), 0);
     std::vector<char> starting = system.kinds[0].start;
     for (std::size_t cone = 0; cone < starting.size(); ++cone) {
@@ -118,7 +118,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     int since_best = 0;
     int next_try = 0;
     std::int64_t work = 0;             // label updates, about
-    double failed_gap = kUnreachable;  // at which the enumeration was given up
+    double failed_gap = kUnreachable;  // at which the tandem search was given up
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
         const double value = relaxation_.evaluate(here.graph, prices_);
@@ -142,24 +142,23 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
                 const double before = incumbent_.cutoff();
                 const std::array<std::vector<int>, 2>& walks = relaxation_.walks(here.graph);
                 for (int leg = 0; leg < 2; ++leg) {
-                    pair_search_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
-                                          tolerance_, incumbent_.found() ? kTries : kFirstTries);
+                    completion_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
+                                         tolerance_, incumbent_.found() ? kTries : kFirstTries);
                 }
                 next_try = step + (!incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + step / 2);
             }
         }
         if (value >= cutoff()) return Verdict::closed;
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
-        if (options_.enumerate_pairs && (step % 4 == 3 || last) &&
-            cutoff() - value < kWorthwhile * failed_gap) {
-            if (pair_search_.exhaust(here.graph, tolerance_, std::max(kFirstBudget, work / 2)))
-                return Verdict::closed;
+        if (options_.search_pairs && (step == 0 || step % 4 == 3 || last) &&
+            (last || cutoff() - value < kWorthwhile * failed_gap)) {
+            const std::int64_t labels = last ? kMostLabels : std::max(kFirstBudget, work / kWorkPerLabel);
+            if (tandem_.exhaust(here.graph, tolerance_, labels, stopped_)) return Verdict::closed;
             failed_gap = cutoff() - value;
             work = 0;
         }
         if (last) break;
-        const bool stalled = since_best >= kPatience;
-        if (stalled) {
+        if (since_best >= kPatience) {
             // Too far: from the best prices again, in shorter steps.
             since_best = 0;
             scale *= 0.5;
@@ -170,17 +169,14 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
             ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
         }
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
-        if (options_.remember_cones && stalled && remember_a_cone(here)) {
-            scale = std::min(1.0, 2.0 * scale);
-        }
         if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, prices_);
         }
     }
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
-    pair_search_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60);
-    return Verdict::closed;
+    return tandem_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60, stopped_) ? Verdict::closed
+                                                                                    : Verdict::stopped;
 }
 
 void BranchAndBound::count_usage(const ResidualGraph& graph) {
@@ -189,7 +185,6 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     usage_.along_heading = 0;
     for (double& use : edge_use_) use *= kMemory;
     for (double& use : end_use_) use *= kMemory;
-    for (double& use : repeat_use_) use *= kMemory;
     for (const int end : relaxation_.ends()) {
         if (end >= 0) end_use_[at(end)] += 1.0 - kMemory;
     }
@@ -197,18 +192,12 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     for (const std::vector<int>& walk : relaxation_.walks(graph)) {
         if (walk.empty()) continue;
         ++usage_.cone[at(graph.tail[at(walk.front())])];
-        visits_[at(graph.tail[at(walk.front())])] = 1;
         for (const int a : walk) {
             ++usage_.cone[at(graph.head[at(a)])];
-            if (++visits_[at(graph.head[at(a)])] > 1) {
-                repeat_use_[at(graph.head[at(a)])] += 1.0 - kMemory;
-            }
             edge_use_[at(graph.edge(a))] += 1.0 - kMemory;
             ++index_[at(graph.edge(a))];
             usage_.along_heading += graph_.along_heading(graph.edge(a)) ? 1 : 0;
         }
-        visits_[at(graph.tail[at(walk.front())])] = 0;
-        for (const int a : walk) visits_[at(graph.head[at(a)])] = 0;
     }
     for (int q = 0; q < cliques_.size(); ++q) {
         for (const int edge : cliques_.edges(q)) usage_.clique[at(q)] += index_[at(edge)];
@@ -263,16 +252,6 @@ void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
                                               : in ? Decisions::End::always
                                                    : Decisions::End::never);
     }
-}
-
-/// Where walks keep returning to a cone, gives them a memory of it.
-bool BranchAndBound::remember_a_cone(Node& here) {
-    const auto most = std::ranges::max_element(repeat_use_);
-    if (most == repeat_use_.end() || *most < kLeastRepeat || here.graph.size() > kMostArcs) return false;
-    spare_.split(here.graph, static_cast<int>(most - repeat_use_.begin()), index_);
-    std::swap(spare_, here.graph);
-    *most = 0.0;
-    return true;
 }
 
 void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,

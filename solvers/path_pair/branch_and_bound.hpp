@@ -3,9 +3,10 @@
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
-#include "solvers/path_pair/pair_search.hpp"
 #include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/tandem_search.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <cstdint>
@@ -18,9 +19,9 @@ namespace conelane::path_pair {
 
 /// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
 /// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and hands
-/// what is left to the pair search when that looks cheap; else it branches on what the relaxation is least
-/// sure about: ends first, for with both of them free two halves of a pair may run along one boundary, and
-/// two halves of another along the other.
+/// what is left to the tandem search, which ends nearly every node; else it branches on what the relaxation
+/// is least sure about: ends first, for with both of them free two halves of a pair may run along one
+/// boundary, and two halves of another along the other.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
@@ -55,7 +56,6 @@ class BranchAndBound {
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
     bool fix(Node& here);
-    bool remember_a_cone(Node& here);
     struct Branching {
         enum class On { nothing, end, edge } on;
         int what;  ///< the cone or the edge
@@ -77,14 +77,13 @@ class BranchAndBound {
     CliqueSeparation separation_;
     Decisions decisions_;
     PairRelaxation relaxation_;
-    PairSearch pair_search_;
+    PairCompletion completion_;
+    TandemSearch tandem_;
     Ascent ascent_;
     Usage usage_;
-    Prices prices_;                   ///< of the current step
-    std::vector<double> edge_use_;    ///< averaged over the steps
-    std::vector<double> end_use_;     ///< legs that end at a cone, averaged
-    std::vector<double> repeat_use_;  ///< visits of a cone after a walk's first, averaged
-    std::vector<int> visits_;
+    Prices prices_;                 ///< of the current step
+    std::vector<double> edge_use_;  ///< averaged over the steps
+    std::vector<double> end_use_;   ///< legs that end at a cone, averaged
     std::vector<std::unique_ptr<Node>> nodes_by_depth_;
     ResidualGraph spare_;
     std::vector<int> order_;

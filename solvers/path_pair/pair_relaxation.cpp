@@ -4,7 +4,6 @@
 #include <utility>
 
 namespace conelane::path_pair {
-namespace {}  // namespace
 
 void Decisions::reset(const ArcGraph& graph) {
     edge_.assign(static_cast<std::size_t>(graph.edge_count()), 0);
@@ -52,7 +51,7 @@ void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& pri
         start.resize(residual.arc.size());
         for (int a = 0; a < residual.size(); ++a) {
             const int cone = residual.tail[at(a)];
-            start[at(a)] = residual.first[at(a)] != 0 && system_->kinds[at(kind)].start[at(cone)] != 0 &&
+            start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
                                    decisions_->may_be_last(cone, residual.edge(a))
                                ? prices.cone[at(cone)]
                                : kUnreachable;
@@ -138,6 +137,17 @@ void PairRelaxation::evaluate_backward(const ResidualGraph& residual) {
         }
         bounds_.backward(residual, reduced_, legs.end, reachable_, legs.backward);
     }
+}
+
+void PairRelaxation::onward(const ResidualGraph& residual, int kind, std::vector<double>& label) {
+    const Legs& legs = legs_[at(kind)];
+    reachable_.resize(residual.arc.size());
+    onward_end_.resize(residual.arc.size());
+    for (int a = 0; a < residual.size(); ++a) {
+        reachable_[at(a)] = legs.forward[at(a)] < kUnreachable ? 1 : 0;
+        onward_end_[at(a)] = may_end(residual, kind, a) ? 0.0 : kUnreachable;
+    }
+    bounds_.backward(residual, reduced_, onward_end_, reachable_, label);
 }
 
 const std::array<std::vector<int>, 2>& PairRelaxation::walks(const ResidualGraph&) {

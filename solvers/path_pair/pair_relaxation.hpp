@@ -74,6 +74,9 @@ class PairRelaxation {
     /// Backward labels for the prices last evaluated.
     void evaluate_backward(const ResidualGraph& residual);
 
+    /// By arc: the cheapest way on from it to an end, whatever the other leg does. Precondition: evaluated.
+    void onward(const ResidualGraph& residual, int kind, std::vector<double>& label);
+
     /// Arcs of the legs that attain the bound.
     [[nodiscard]] const std::array<std::vector<int>, 2>& walks(const ResidualGraph& residual);
 
@@ -126,6 +129,7 @@ class PairRelaxation {
     std::vector<double> edge_price_;
     std::vector<int> cycle_;
     std::vector<char> reachable_;
+    std::vector<double> onward_end_;
     std::array<std::vector<int>, 2> walks_;
     std::array<int, 2> ends_{-1, -1};
     double offset_ = 0.0;

@@ -22,7 +22,6 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
     }
     tail.clear();
     head.clear();
-    first.assign(arc.size(), 1);
     out_start.assign(1, 0);
     out_arc.clear();
     out_cost.clear();
@@ -45,14 +44,12 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     arc.clear();
     tail.clear();
     head.clear();
-    first.clear();
     for (const int old : order) {
         const auto a = static_cast<std::size_t>(old);
         index[a] = size();
         arc.push_back(source.arc[a]);
         tail.push_back(source.tail[a]);
         head.push_back(source.head[a]);
-        first.push_back(source.first[a]);
     }
     out_start.assign(1, 0);
     out_arc.clear();
@@ -67,47 +64,6 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
             out_cost.push_back(source.out_cost[p]);
         }
         out_start.push_back(static_cast<int>(out_arc.size()));
-    }
-    index_predecessors();
-}
-
-void ResidualGraph::split(const ResidualGraph& source, int cone, std::vector<int>& index) {
-    assert(this != &source);
-    // index[2 a + visited]: the copy of a whose walks have (not) been at the cone, -1 where there is none.
-    index.assign(2 * source.arc.size(), -1);
-    arc.clear();
-    tail.clear();
-    head.clear();
-    first.clear();
-    for (std::size_t a = 0; a < source.arc.size(); ++a) {
-        for (std::size_t visited = 0; visited < 2; ++visited) {
-            if (visited == 0 && (source.head[a] == cone || source.tail[a] == cone)) continue;
-            index[2 * a + visited] = size();
-            arc.push_back(source.arc[a]);
-            tail.push_back(source.tail[a]);
-            head.push_back(source.head[a]);
-            const bool here = source.head[a] == cone || source.tail[a] == cone;
-            first.push_back(source.first[a] != 0 && here == (visited == 1) ? 1 : 0);
-        }
-    }
-    out_start.assign(1, 0);
-    out_arc.clear();
-    out_cost.clear();
-    for (std::size_t a = 0; a < source.arc.size(); ++a) {
-        for (std::size_t visited = 0; visited < 2; ++visited) {
-            if (index[2 * a + visited] < 0) continue;
-            for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
-                const auto p = static_cast<std::size_t>(position);
-                const auto b = static_cast<std::size_t>(source.out_arc[p]);
-                const bool arrives = source.head[b] == cone;
-                if (arrives && visited == 1) continue;
-                const int next = index[2 * b + (arrives ? 1 : visited)];
-                if (next < 0) continue;
-                out_arc.push_back(next);
-                out_cost.push_back(source.out_cost[p]);
-            }
-            out_start.push_back(static_cast<int>(out_arc.size()));
-        }
     }
     index_predecessors();
 }

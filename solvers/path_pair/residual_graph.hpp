@@ -17,7 +17,6 @@ struct ResidualGraph {
     std::vector<int> arc;   ///< in the arc graph
     std::vector<int> tail;  ///< cone
     std::vector<int> head;
-    std::vector<char> first;     ///< whether a leg may begin with it
     std::vector<int> out_start;  ///< size() + 1
     std::vector<int> out_arc;    ///< successions: the next arc, in this graph
     std::vector<double> out_cost;
@@ -35,11 +34,6 @@ struct ResidualGraph {
     /// `keep_out` (by position in source.out_arc) marks. `index` is scratch.
     void filter(const ResidualGraph& source, std::span<const int> order, std::span<const char> keep_out,
                 std::vector<int>& index);
-
-    /// Gives walks a memory of one cone: every arc in two copies, one for walks that have not been at the
-    /// cone up to the arc's head and one for those that have, which no longer lead to it. A path is still
-    /// exactly one walk; a walk that meets the cone twice is none any more.
-    void split(const ResidualGraph& source, int cone, std::vector<int>& index);
 
   private:
     void index_predecessors();

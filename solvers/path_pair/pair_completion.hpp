@@ -11,23 +11,12 @@
 
 namespace conelane::path_pair {
 
-/// Pairs of legs by enumeration, below a cutoff U of the incumbent.
-///
-/// Half-gap rule. Let P and Q be the legs of a pair with reduced costs c(P) + c(Q) < U' = U + offset, ends f
-/// and g, and let slack(P) = c(P) - F(f). Say slack(P) <= slack(Q). Then 2 slack(P) < U' - F(f) - F(g), and
-/// as h(f) <= F(g),
-///     c(P) + (h(f) - F(f)) / 2 < U' / 2.
-/// So it is enough to enumerate the legs P of this inequality (backward labels with (h - F) / 2 as the cost
-/// of ending), each completed by the best leg Q in what P leaves: its own cones and all edges incompatible
-/// with it are gone. Nothing couples Q any more, so its bound is by true costs, with prices on cones against
-/// cycles alone. With unlike kinds of legs, both have to be tried as P.
-class PairSearch {
+/// Incumbents from single legs: a leg given, the best other one in what it leaves. Its own cones and all
+/// edges incompatible with it are gone. Nothing couples the other leg any more, so its bound is by true
+/// costs, with prices on cones against cycles alone.
+class PairCompletion {
   public:
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
-
-    /// Every pair that costs less than the incumbent by more than `tolerance`. False where the budget of
-    /// tried arcs ran out first. Precondition: forward and backward labels of the residual graph.
-    bool exhaust(const ResidualGraph& residual, double tolerance, std::int64_t budget);
 
     /// Looks for an incumbent around a walk of the relaxation: the walk, or the best leg near by where it is
     /// no path, completed by the best second leg, which is then completed in turn.
@@ -35,7 +24,6 @@ class PairSearch {
                   std::int64_t budget);
 
   private:
-    bool exhaust_kind(const ResidualGraph& residual, int kind, double tolerance, std::int64_t& budget);
     bool second_legs(const ResidualGraph& residual, int kind, std::span<const int> first, double tolerance,
                      std::int64_t& budget);
     void leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first);
@@ -50,8 +38,6 @@ class PairSearch {
     LegBounds bounds_;
     LegSearch first_search_;
     LegSearch second_search_;
-    std::vector<double> half_end_;
-    std::vector<double> half_backward_;
     std::vector<char> usable_;
     std::vector<double> second_end_;
     std::vector<double> second_start_;

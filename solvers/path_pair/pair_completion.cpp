@@ -1,4 +1,4 @@
-#include "solvers/path_pair/pair_search.hpp"
+#include "solvers/path_pair/pair_completion.hpp"
 
 #include <algorithm>
 
@@ -13,56 +13,24 @@ std::size_t at(int index) {
 
 }  // namespace
 
-void PairSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
     graph_ = &graph;
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
     second_price_.assign(at(graph.cone_count()), 0.0);
 }
 
-double PairSearch::cutoff(double tolerance) const {
+double PairCompletion::cutoff(double tolerance) const {
     return incumbent_->cutoff() - tolerance + relaxation_->offset();
 }
 
-void PairSearch::to_arcs(const ResidualGraph& residual, std::span<const int> leg,
-                         std::vector<int>& arcs) const {
+void PairCompletion::to_arcs(const ResidualGraph& residual, std::span<const int> leg,
+                             std::vector<int>& arcs) const {
     arcs.clear();
     for (const int a : leg) arcs.push_back(residual.arc[at(a)]);
 }
 
-bool PairSearch::exhaust(const ResidualGraph& residual, double tolerance, std::int64_t budget) {
-    for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
-        if (!exhaust_kind(residual, kind, tolerance, budget)) return false;
-    }
-    return true;
-}
-
-bool PairSearch::exhaust_kind(const ResidualGraph& residual, int kind, double tolerance,
-                              std::int64_t& budget) {
-    const PairRelaxation& r = *relaxation_;
-    half_end_.resize(residual.arc.size());
-    usable_.resize(residual.arc.size());
-    for (int a = 0; a < residual.size(); ++a) {
-        const double end = r.end(kind)[at(a)];
-        usable_[at(a)] = r.forward(kind)[at(a)] < kUnreachable ? 1 : 0;
-        half_end_[at(a)] =
-            end < kUnreachable ? 0.5 * (end - r.best(kind, residual.head[at(a)])) : kUnreachable;
-    }
-    bounds_.backward(residual, r.reduced(), half_end_, usable_, half_backward_);
-    const LegSearch::Query query{*graph_, residual, r.reduced(), r.start(kind), half_end_, half_backward_};
-    bool complete = true;
-    const bool all =
-        first_search_.run(query, 0.5 * cutoff(tolerance), budget, [&](std::span<const int> leg, double) {
-            if (!second_legs(residual, kind, leg, tolerance, budget)) {
-                complete = false;
-                return -kUnreachable;
-            }
-            return 0.5 * cutoff(tolerance);
-        });
-    return all && complete;
-}
-
-void PairSearch::leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first) {
+void PairCompletion::leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first) {
     const PairRelaxation& r = *relaxation_;
     taken_.assign(at(graph_->cone_count()), 0);
     blocked_.assign((at(graph_->edge_count()) + 63) / 64, 0);
@@ -87,7 +55,7 @@ void PairSearch::leave_out(const ResidualGraph& residual, int second_kind, std::
     }
 }
 
-double PairSearch::price_second(const ResidualGraph& residual, int second_kind) {
+double PairCompletion::price_second(const ResidualGraph& residual, int second_kind) {
     const PairRelaxation& r = *relaxation_;
     second_reduced_.resize(residual.arc.size());
     second_start_.resize(residual.arc.size());
@@ -108,8 +76,8 @@ double PairSearch::price_second(const ResidualGraph& residual, int second_kind) 
     return offset;
 }
 
-bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<const int> first,
-                             double tolerance, std::int64_t& budget) {
+bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::span<const int> first,
+                                 double tolerance, std::int64_t& budget) {
     const int second_kind = relaxation_->other(kind);
     leave_out(residual, second_kind, first);
     to_arcs(residual, first, first_arcs_);
@@ -173,7 +141,7 @@ bool PairSearch::second_legs(const ResidualGraph& residual, int kind, std::span<
     });
 }
 
-bool PairSearch::is_leg(const ResidualGraph& residual, std::span<const int> walk) {
+bool PairCompletion::is_leg(const ResidualGraph& residual, std::span<const int> walk) {
     taken_.assign(at(graph_->cone_count()), 0);
     taken_[at(residual.tail[at(walk.front())])] = 1;
     for (std::size_t k = 0; k < walk.size(); ++k) {
@@ -187,8 +155,8 @@ bool PairSearch::is_leg(const ResidualGraph& residual, std::span<const int> walk
     return true;
 }
 
-void PairSearch::complete(const ResidualGraph& residual, int kind, std::span<const int> walk,
-                          double tolerance, std::int64_t budget) {
+void PairCompletion::complete(const ResidualGraph& residual, int kind, std::span<const int> walk,
+                              double tolerance, std::int64_t budget) {
     if (walk.empty()) return;
     const PairRelaxation& r = *relaxation_;
     if (is_leg(residual, walk)) {

@@ -1,0 +1,153 @@
+// What each stage of path-pair is worth, and whether its memory is flat.
+//
+//   ablation/STAGE/N   solves with one stage switched off, on cone sets of N (0: all visible), at most 50 ms
+//                      each; counters: share proven in time, nodes a scene
+//   memory             100 000 solves by one instance; counters: resident memory after 1000 and at the end
+//
+// Scenes are of generated tracks with three false positives among ten points, or those of the file that the
+// environment variable CONELANE_SCENES names.
+
+#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/tracks/generated_tracks.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "solvers/path_pair_solver.hpp"
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kTimeLimit_ms = 50.0;
+constexpr std::size_t kMemorySolves = 100000;
+constexpr std::size_t kWarmSolves = 1000;
+
+struct Ablation {
+    const char* name;
+    PathPairOptions options;
+};
+
+std::vector<Ablation> ablations() {
+    std::vector<Ablation> all{{"everything", {}}};
+    all.push_back({"no_fixing", {.fix_arcs = false}});
+    all.push_back({"no_cliques", {.clique_prices = false}});
+    all.push_back({"no_completion", {.complete_walks = false}});
+    all.push_back({"no_tandem_search", {.search_pairs = false}});
+    all.push_back({"no_ascent", {.root_steps = 1, .node_steps = 1}});
+    return all;
+}
+
+using Problems = std::vector<LaneGraphProblem>;
+
+std::vector<AnnotatedScene> make_scenes() {
+    if (const char* file = std::getenv("CONELANE_SCENES")) return read_scenes(file);
+    SceneOptions options;
+    options.false_positive_rates = {0.3};
+    options.ranges_m = {30.0};
+    options.every_m = 15.0;
+    std::vector<AnnotatedScene> all;
+    for (const std::string& name : generated_track_names()) {
+        std::vector<AnnotatedScene> scenes = generate_scenes(generate_track(name, 0), options);
+        std::move(scenes.begin(), scenes.end(), std::back_inserter(all));
+    }
+    return all;
+}
+
+std::shared_ptr<const Problems> problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
+    auto problems = std::make_shared<Problems>();
+    for (const AnnotatedScene& annotated : scenes) {
+        problems->push_back(
+            make_problem(size == 0 ? annotated.scene : nearest_ahead(annotated.scene, size), {}));
+    }
+    return problems;
+}
+
+/// Resident memory of this process [kB].
+double resident_kB() {
+    std::ifstream statistics("/proc/self/statm");
+    double total_pages = 0.0;
+    double resident_pages = 0.0;
+    statistics >> total_pages >> resident_pages;
+    return resident_pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1024.0;
+}
+
+/// An iteration is one pass over all problems.
+void run_ablation(benchmark::State& state, const PathPairOptions& options, const Problems& problems) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver(options);
+    std::int64_t solves = 0;
+    std::int64_t proven = 0;
+    std::int64_t nodes = 0;
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        for (const LaneGraphProblem& problem : problems) {
+            const RldReport report = solver->solve(problem, {kTimeLimit_ms});
+            ++solves;
+            nodes += report.nodes;
+            if (report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible) ++proven;
+        }
+    }
+    const auto count = static_cast<double>(solves);
+    state.counters["proven"] = static_cast<double>(proven) / count;
+    state.counters["nodes"] = static_cast<double>(nodes) / count;
+    state.counters["per_scene"] =
+        benchmark::Counter(count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void run_memory(benchmark::State& state, const Problems& problems) {
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+        for (std::size_t solve = 0; solve < kMemorySolves; ++solve) {
+            benchmark::DoNotOptimize(solver->solve(problems[solve % problems.size()], {kTimeLimit_ms}));
+            if (solve + 1 == kWarmSolves) state.counters["kB_after_1000"] = resident_kB();
+        }
+        state.counters["kB_at_end"] = resident_kB();
+    }
+}
+
+void register_all() {
+    const std::vector<AnnotatedScene> scenes = make_scenes();
+    for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
+        const std::shared_ptr<const Problems> problems = problems_of(scenes, size);
+        for (const Ablation& ablation : ablations()) {
+            const std::string name = std::string("ablation/") + ablation.name + "/" + std::to_string(size);
+            benchmark::RegisterBenchmark(
+                name.c_str(),
+                [=](benchmark::State& state) { run_ablation(state, ablation.options, *problems); })
+                ->Unit(benchmark::kMillisecond)
+                ->UseRealTime();
+        }
+    }
+    const std::shared_ptr<const Problems> small = problems_of(scenes, 30);
+    benchmark::RegisterBenchmark("memory", [=](benchmark::State& state) { run_memory(state, *small); })
+        ->Unit(benchmark::kSecond)
+        ->Iterations(1)
+        ->UseRealTime();
+}
+
+}  // namespace
+}  // namespace conelane::experiments
+
+int main(int argument_count, char** arguments) {
+    benchmark::Initialize(&argument_count, arguments);
+    if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
+    try {
+        conelane::experiments::register_all();
+    } catch (const std::exception& failure) {
+        std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';
+        return 2;
+    }
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+}
