@@ -40,8 +40,9 @@ class SymphonySession : public MilpSession {
         sym_set_int_param(env, "verbosity", -2);
         sym_set_dbl_param(env, "granularity", 1e-7);
         sym_set_dbl_param(env, "gap_limit", 0.0);
-        // With preprocessing, 5.6.17 was seen to abort on crossed bounds inside Clp.
+        // With either of these, 5.6.17 was seen to abort on crossed bounds inside Clp.
         sym_set_int_param(env, "prep_level", 0);
+        sym_set_int_param(env, "do_reduced_cost_fixing", 0);
         load(env);
         if (std::isfinite(limits.time_limit_ms)) {
             sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
