@@ -31,7 +31,8 @@ constexpr RldSolverEntry kSolvers[]{
     {"glpk", "GLPK's branch and bound", true, true, make_milp<make_glpk_solver>},
 #endif
 #ifdef CONELANE_HAS_SYMPHONY
-    {"symphony", "SYMPHONY's branch and cut, one at a time", true, true, make_milp<make_symphony_solver>},
+    {"symphony", "SYMPHONY's branch and cut, in a process of its own", true, true,
+     make_milp<make_symphony_solver>},
 #endif
     {"exhaustive", "every pair of paths, at most 9 cones", false, true,
      [](Formulation) { return make_exhaustive_solver(); }},

@@ -1,12 +1,13 @@
 #include "solvers/symphony_solver.hpp"
 
 #include "solvers/deadline.hpp"
-#include "solvers/detail/turn.hpp"
+#include "solvers/detail/child_process.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,8 +15,6 @@
 
 namespace conelane {
 namespace {
-
-std::timed_mutex one_at_a_time;
 
 struct CloseEnvironment {
     void operator()(sym_environment* environment) const { sym_close_environment(environment); }
@@ -28,27 +27,14 @@ class SymphonySession : public MilpSession {
   public:
     explicit SymphonySession(BinaryProgram program) : program_(std::move(program)) {}
 
-    /// The cutoff is not passed on, see the abort below.
+    /// Each solve runs in a process of its own: 5.6.17 aborts at times on crossed bounds inside Clp, mostly
+    /// with 30 cones and more, and more often with a cutoff, which is therefore not passed on.
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
+        const auto answer = detail::run_in_child([&] { return numbers_of(solve_here(deadline)); });
+        if (answer) return report_of(*answer);
         MilpReport report;
-        report.status = SolveStatus::time_limit;
-        const auto turn = detail::take_turn(one_at_a_time, deadline);
-        if (!turn.owns_lock()) return report;
-        const Environment environment(sym_open_environment());
-        sym_environment* env = environment.get();
-        sym_set_int_param(env, "verbosity", -2);
-        sym_set_dbl_param(env, "granularity", 1e-7);
-        sym_set_dbl_param(env, "gap_limit", 0.0);
-        // With either of these, 5.6.17 was seen to abort on crossed bounds inside Clp.
-        sym_set_int_param(env, "prep_level", 0);
-        sym_set_int_param(env, "do_reduced_cost_fixing", 0);
-        load(env);
-        if (std::isfinite(limits.time_limit_ms)) {
-            sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
-        }
-        sym_solve(env);
-        read(env, deadline, report);
+        report.message = "SYMPHONY aborted";
         return report;
     }
 
@@ -64,6 +50,39 @@ class SymphonySession : public MilpSession {
     }
 
   private:
+    static std::vector<double> numbers_of(const MilpReport& report) {
+        std::vector<double> numbers{static_cast<double>(report.status), static_cast<double>(report.nodes),
+                                    report.bound.value_or(std::numeric_limits<double>::quiet_NaN())};
+        numbers.insert(numbers.end(), report.point.begin(), report.point.end());
+        return numbers;
+    }
+
+    static MilpReport report_of(const std::vector<double>& numbers) {
+        MilpReport report;
+        report.status = static_cast<SolveStatus>(static_cast<int>(numbers[0]));
+        report.nodes = static_cast<std::int64_t>(numbers[1]);
+        if (!std::isnan(numbers[2])) report.bound = numbers[2];
+        report.point.assign(numbers.begin() + 3, numbers.end());
+        if (report.status == SolveStatus::error) report.message = "SYMPHONY stopped without a result";
+        return report;
+    }
+
+    [[nodiscard]] MilpReport solve_here(const Deadline& deadline) const {
+        MilpReport report;
+        const Environment environment(sym_open_environment());
+        sym_environment* env = environment.get();
+        sym_set_int_param(env, "verbosity", -2);
+        sym_set_dbl_param(env, "granularity", 1e-7);
+        sym_set_dbl_param(env, "gap_limit", 0.0);
+        load(env);
+        if (std::isfinite(deadline.remaining_ms())) {
+            sym_set_dbl_param(env, "time_limit", std::max(deadline.remaining_ms(), 0.01) / 1e3);
+        }
+        sym_solve(env);
+        read(env, deadline, report);
+        return report;
+    }
+
     /// SYMPHONY takes the matrix by columns, and rows as sense, right-hand side and range.
     void load(sym_environment* env) const {
         const std::size_t columns = program_.columns.size();
@@ -125,7 +144,6 @@ class SymphonySession : public MilpSession {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
         } else {
             report.status = SolveStatus::error;
-            report.message = "SYMPHONY stopped without a result, " + std::to_string(sym_get_status(env));
             return;
         }
         if (has_point) report.point = std::move(point);
