@@ -276,7 +276,7 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     ablations[0].fix_arcs = false;
     ablations[1].clique_prices = false;
     ablations[2].complete_walks = false;
-    ablations[3].search_pairs = false;
+    ablations[3].search_fronts = false;
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {

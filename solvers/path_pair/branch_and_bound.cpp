@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,11 +17,16 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
-constexpr double kWorthwhile = 0.8;         ///< of the gap at which the tandem search failed, to try it again
-constexpr std::int64_t kFirstBudget = 500;  ///< labels
-constexpr std::int64_t kWorkPerLabel =
-    30;  ///< label updates of the ascent that a label may take the place of
-constexpr std::int64_t kMostLabels = 200000;  ///< before a node branches
+constexpr double kWorthwhile = 0.8;       ///< of the gap at which the fronts were too many, to try again
+constexpr std::int64_t kFewFronts = 400;  ///< of the first try
+constexpr std::int64_t kWorkPerFront =
+    30;  ///< label updates of the ascent that a front may take the place of
+constexpr std::size_t kMostFronts = 300000;         ///< before a node branches
+constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
+constexpr std::size_t kMostLabels = 500000;
+constexpr int kWideFronts = 500;    ///< from here on first a narrow search, for the incumbent
+constexpr std::size_t kNarrow = 2;  ///< labels a front
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr int kRestSteps = 2;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
@@ -61,7 +67,8 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     decisions_.reset(graph_);
     relaxation_.bind(graph_, system, cliques_, decisions_, stopped_);
     completion_.bind(graph_, relaxation_, incumbent_);
-    tandem_.bind(graph_, relaxation_, incumbent_);
+    fronts_.bind(relaxation_);
+    front_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
     index_.assign(at(graph_.cone_count()), 0);
@@ -118,7 +125,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     int since_best = 0;
     int next_try = 0;
     std::int64_t work = 0;             // label updates, about
-    double failed_gap = kUnreachable;  // at which the tandem search was given up
+    double failed_gap = kUnreachable;  // at which the fronts were too many
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
         const double value = relaxation_.evaluate(here.graph, prices_);
@@ -150,10 +157,16 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
         }
         if (value >= cutoff()) return Verdict::closed;
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
-        if (options_.search_pairs && (step == 0 || step % 4 == 3 || last) &&
+        if (last) {
+            prices_ = here.prices;
+            prices_.clique.resize(at(cliques_.size()), 0.0);
+            if (relaxation_.evaluate(here.graph, prices_) == -kUnreachable) return Verdict::stopped;
+        }
+        if (options_.search_fronts && (step == 0 || step % 4 == 3 || last) &&
             (last || cutoff() - value < kWorthwhile * failed_gap)) {
-            const std::int64_t labels = last ? kMostLabels : std::max(kFirstBudget, work / kWorkPerLabel);
-            if (tandem_.exhaust(here.graph, tolerance_, labels, stopped_)) return Verdict::closed;
+            const auto few = static_cast<std::size_t>(std::max(kFewFronts, work / kWorkPerFront));
+            const Verdict verdict = search_fronts(here.graph, last ? kMostFronts : few, kMostLabels);
+            if (verdict != Verdict::open) return verdict;
             failed_gap = cutoff() - value;
             work = 0;
         }
@@ -175,8 +188,39 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     }
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
-    return tandem_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60, stopped_) ? Verdict::closed
-                                                                                    : Verdict::stopped;
+    return search_fronts(here.graph, kAny, kAny);
+}
+
+BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
+                                                      std::size_t most_labels) {
+    const auto limit = [&] { return cutoff() + relaxation_.offset(); };
+    edge_sets_.assign(graph_, graph);
+    sure_losses_.find(graph, relaxation_, edge_sets_, options_.drop_sure_losses);
+    if (most_fronts != kAny) {
+        most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
+    }
+    if (!fronts_.build(graph, edge_sets_, sure_losses_, limit(), most_fronts, stopped_)) {
+        return stopped_() ? Verdict::stopped : Verdict::open;
+    }
+    if (!(fronts_.find_onward(limit()) < limit())) return Verdict::closed;
+    fronts_.drop(limit());
+    if (options_.drop_sure_losses) {
+        fronts_.drop_sure_losses(edge_sets_);
+        fronts_.find_forward();
+        if (!(fronts_.find_onward(limit()) < limit())) return Verdict::closed;
+        fronts_.drop(limit());
+    }
+    for (const std::size_t width : {kNarrow, FrontSearch::kAnyWidth}) {
+        if (stopped_()) return Verdict::stopped;
+        if (width == kNarrow && fronts_.size() < kWideFronts) continue;
+        const double before = incumbent_.cutoff();
+        const FrontSearch::Outcome outcome =
+            front_search_.run(fronts_, edge_sets_, tolerance_, width, most_labels, stopped_);
+        if (outcome == FrontSearch::Outcome::exhausted) return Verdict::closed;
+        if (outcome == FrontSearch::Outcome::stopped) break;
+        if (incumbent_.cutoff() < before) fronts_.drop(limit());
+    }
+    return stopped_() ? Verdict::stopped : Verdict::open;
 }
 
 void BranchAndBound::count_usage(const ResidualGraph& graph) {
