@@ -30,6 +30,14 @@ std::uint64_t FrontGraph::key(const Front& front) {
            (front.ended ? 1U : 0U);
 }
 
+bool FrontGraph::out_of_time() {
+    if (--until_clock_ < 0) {
+        until_clock_ = kFrontsPerClock;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
 double FrontGraph::start_cost(int f) const {
     const Front& start = front(f);
     const int kind = start.moving_kind;
@@ -72,13 +80,19 @@ void FrontGraph::begin(double limit) {
     const auto cost = [&](int kind, int a) {
         return relaxation_->start(kind)[at(a)] + relaxation_->reduced()[at(a)];
     };
+    stack_.clear();  // arcs that a leg of the second kind may start with
+    for (int b = 0; b < r.size(); ++b) {
+        if (cost(second, b) < kUnreachable) stack_.push_back(b);
+    }
     for (int a = 0; a < r.size(); ++a) {
         if (cost(0, a) == kUnreachable) continue;
-        for (int b = symmetric ? a + 1 : 0; b < r.size(); ++b) {
-            if (cost(second, b) == kUnreachable) continue;
+        for (const int b : stack_) {
             const double start = cost(0, a) + cost(second, b);
             if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
-            if (r.head[at(a)] == r.head[at(b)] || !losses_->may_pair(0, a, second, b, false)) continue;
+            if ((symmetric && b <= a) || r.head[at(a)] == r.head[at(b)] ||
+                !losses_->may_pair(0, a, second, b, false)) {
+                continue;
+            }
             const int f =
                 number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::int8_t>(second), false});
             now_.forward[at(f)] = start;
@@ -86,6 +100,7 @@ void FrontGraph::begin(double limit) {
             open_[at(f) / 64] |= std::uint64_t{1} << (at(f) % 64);
         }
     }
+    stack_.clear();
 }
 
 FrontGraph::Front FrontGraph::after(const Front& front, int arc) const {
@@ -123,7 +138,7 @@ void FrontGraph::add_steps(int f, double limit) {
 }
 
 bool FrontGraph::build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses,
-                       double limit, std::size_t most_fronts, const std::function<bool()>& stopped) {
+                       double limit, std::size_t most_fronts) {
     residual_ = &residual;
     losses_ = &losses;
     set_.resize(edges.words());
@@ -136,17 +151,14 @@ bool FrontGraph::build(const ResidualGraph& residual, const EdgeSets& edges, con
     open_.clear();
     std::ranges::fill(table_, -1);
     begin(limit);
-    int until_clock = kFrontsPerClock;
+    is_stopped_ = false;
     for (bool again = true; again;) {
         again = false;
         for (std::size_t word = 0; word < open_.size(); ++word) {
             while (open_[word] != 0) {
                 const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
                 open_[word] &= open_[word] - 1;
-                if (--until_clock == 0) {
-                    if (stopped()) return false;
-                    until_clock = kFrontsPerClock;
-                }
+                if (out_of_time()) return false;
                 const Front here = front(f);
                 const std::vector<double>& leg_onward = leg_onward_[at(here.moving_kind)];
                 const double forward = now_.forward[at(f)];
@@ -246,6 +258,7 @@ double FrontGraph::find_onward(double limit) {
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return -kUnreachable;
             const std::span<const Step> on = steps(f);
             const auto changed = [&](const Step& step) { return changed_[at(step.to)] >= sweep - 1; };
             if (sweep > 1 && std::none_of(on.begin(), on.end(), changed)) continue;
@@ -270,6 +283,7 @@ void FrontGraph::find_forward() {
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
             const double value = now_.forward[at(f)];
             if (value == kUnreachable || (sweep > 1 && changed_[at(f)] < sweep - 1)) continue;
             for (const Step& step : steps(f)) {
@@ -319,6 +333,7 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
             if (sweep > 1 && changed_[at(f)] < sweep - 1) continue;
             for (const Step& step : steps(f)) {
                 if (is_lost(f, step.arc)) continue;
@@ -342,6 +357,7 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return;
             bool changed = false;
             if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
             for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {

@@ -35,14 +35,18 @@ class FrontGraph {
         double turn;  ///< cost of the turn into it
     };
 
-    void bind(PairRelaxation& relaxation) { relaxation_ = &relaxation; }
+    /// Once `stopped` says so, everything below ends early and what it found is of no use.
+    void bind(PairRelaxation& relaxation, const std::function<bool()>& stopped) {
+        relaxation_ = &relaxation;
+        stopped_ = &stopped;
+    }
 
     /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
-    /// forward(f). False where there are more than `most_fronts`, or `stopped` says so.
+    /// forward(f). False where there are more than `most_fronts`, or stopped.
     /// Precondition: the relaxation was evaluated on the residual graph. `limit`: with offset, here and
     /// below.
     bool build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses, double limit,
-               std::size_t most_fronts, const std::function<bool()>& stopped);
+               std::size_t most_fronts);
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
     double find_onward(double limit);
@@ -82,6 +86,7 @@ class FrontGraph {
     };
     static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     static std::uint64_t key(const Front& front);
+    bool out_of_time();
 
     void begin(double limit);
     void add_steps(int f, double limit);
@@ -92,6 +97,9 @@ class FrontGraph {
     void keep(std::span<const int> order);
 
     PairRelaxation* relaxation_ = nullptr;
+    const std::function<bool()>* stopped_ = nullptr;
+    int until_clock_ = 0;
+    bool is_stopped_ = false;
     const ResidualGraph* residual_ = nullptr;
     const SureLosses* losses_ = nullptr;
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc

@@ -7,7 +7,7 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr int kFrontsPerClock = 64;
+constexpr int kFrontsPerClock = 128;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -21,17 +21,18 @@ void FrontSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumb
     incumbent_ = &incumbent;
 }
 
-double FrontSearch::limit(double tolerance) const {
-    return incumbent_->cutoff() - tolerance + relaxation_->offset();
+double FrontSearch::limit() const {
+    return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
 }
 
-void FrontSearch::find_reach() {
+bool FrontSearch::find_reach(const std::function<bool()>& stopped) {
     reach_.assign(at(fronts_->size()) * words_, 0);
     changed_.assign(at(fronts_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = fronts_->size(); f-- > 0;) {
+            if (f % kFrontsPerClock == 0 && stopped()) return false;
             std::uint64_t* const mine = reach_.data() + at(f) * words_;
             std::uint64_t change = 0;
             for (const FrontGraph::Step& step : fronts_->steps(f)) {
@@ -52,6 +53,7 @@ void FrontSearch::find_reach() {
             again = true;
         }
     }
+    return true;
 }
 
 void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
@@ -69,10 +71,10 @@ void FrontSearch::wait(Label label) {
     labels_.push_back(label);
 }
 
-void FrontSearch::begin(double tolerance) {
+void FrontSearch::begin() {
     for (const int f : fronts_->starts()) {
         const double reduced = fronts_->start_cost(f);
-        if (!(reduced + fronts_->onward(f) < limit(tolerance))) continue;
+        if (!(reduced + fronts_->onward(f) < limit())) continue;
         Label label{-1, -1, f, 0, -1, 0.0, reduced};
         lost_.resize(lost_.size() + words_, 0);
         std::uint64_t* const lost = lost_.data() + lost_.size() - words_;
@@ -82,19 +84,19 @@ void FrontSearch::begin(double tolerance) {
     }
 }
 
-FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges, double tolerance,
-                                      std::size_t width, std::size_t most_labels,
+FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
                                       const std::function<bool()>& stopped) {
     fronts_ = &fronts;
     edges_ = &edges;
+    limits_ = limits;
     words_ = edges.words();
     labels_.clear();
     lost_.clear();
     waiting_.assign(at(fronts.size()), -1);
     open_.assign((at(fronts.size()) + 63) / 64, 0);
     wanted_.resize(words_);
-    find_reach();
-    begin(tolerance);
+    if (!find_reach(stopped)) return Outcome::stopped;
+    begin();
     bool narrow = false;
     int until_clock = kFrontsPerClock;
     again_ = true;
@@ -108,8 +110,8 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
                     if (stopped()) return Outcome::stopped;
                     until_clock = kFrontsPerClock;
                 }
-                narrow |= !settle(f, tolerance, width);
-                if (labels_.size() > most_labels) return Outcome::stopped;
+                narrow |= !settle(f);
+                if (labels_.size() > limits.most_labels) return Outcome::stopped;
             }
         }
     }
@@ -117,7 +119,7 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
 }
 
 /// Expands the labels that wait at a front; false where the width left one out.
-bool FrontSearch::settle(int f, double tolerance, std::size_t width) {
+bool FrontSearch::settle(int f) {
     here_.clear();
     for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = labels_[at(l)].next) here_.push_back(l);
     std::sort(here_.begin(), here_.end(),
@@ -127,17 +129,17 @@ bool FrontSearch::settle(int f, double tolerance, std::size_t width) {
     any_lost_.assign(words_, 0);
     for (const int l : here_) {
         const Label& label = labels_[at(l)];
-        if (!(label.reduced + fronts_->onward(f) < limit(tolerance))) continue;
+        if (!(label.reduced + fronts_->onward(f) < limit())) continue;
         if (dominated(f, label, lost(l))) continue;
-        if (kept_along_heading_.size() >= width) return false;
+        if (kept_along_heading_.size() >= limits_.width) return false;
         kept_along_heading_.push_back(label.along_heading);
         kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
         for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
         if (fronts_->is_last(f) && label.along_heading >= 2 &&
-            label.cost < incumbent_->cutoff() - tolerance) {
+            label.cost < incumbent_->cutoff() - limits_.tolerance) {
             offer(l);
         }
-        expand(l, tolerance);
+        expand(l);
     }
     return true;
 }
@@ -156,11 +158,11 @@ bool FrontSearch::dominated(int f, const Label& label, const std::uint64_t* lost
     return false;
 }
 
-void FrontSearch::expand(int l, double tolerance) {
+void FrontSearch::expand(int l) {
     const Label label = labels_[at(l)];
     for (const FrontGraph::Step& step : fronts_->steps(label.front)) {
         const double reduced = label.reduced + fronts_->cost(step);
-        if (!(reduced + fronts_->onward(step.to) < limit(tolerance))) continue;
+        if (!(reduced + fronts_->onward(step.to) < limit())) continue;
         if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
         Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
         lost_.resize(lost_.size() + words_);

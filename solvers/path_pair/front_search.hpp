@@ -31,10 +31,14 @@ class FrontSearch {
 
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
 
-    /// Offers the incumbent what costs less by more than `tolerance`, of each front only the `width` cheapest
-    /// labels. Precondition: the fronts' onward costs are found.
-    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, double tolerance, std::size_t width,
-                std::size_t most_labels, const std::function<bool()>& stopped);
+    struct Limits {
+        double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
+        std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
+        std::size_t most_labels;
+    };
+    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found.
+    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
+                const std::function<bool()>& stopped);
 
   private:
     struct Label {
@@ -47,15 +51,16 @@ class FrontSearch {
         double reduced;
     };
 
-    void find_reach();
-    void begin(double tolerance);
+    bool find_reach(const std::function<bool()>& stopped);
+    void begin();
     void take(int arc, Label& label, std::uint64_t* lost) const;
     void wait(Label label);
-    bool settle(int f, double tolerance, std::size_t width);
+    bool settle(int f);
     [[nodiscard]] bool dominated(int f, const Label& label, const std::uint64_t* lost);
-    void expand(int label, double tolerance);
+    void expand(int label);
     void offer(int label);
-    [[nodiscard]] double limit(double tolerance) const;
+    /// With offset.
+    [[nodiscard]] double limit() const;
     [[nodiscard]] std::uint64_t* lost(int label) {
         return lost_.data() + static_cast<std::size_t>(label) * words_;
     }
@@ -65,6 +70,7 @@ class FrontSearch {
     Incumbent* incumbent_ = nullptr;
     const FrontGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
+    Limits limits_{};
 
     std::size_t words_ = 0;
     std::vector<std::uint64_t> reach_;  ///< by front: edges on some walk on
