@@ -151,6 +151,7 @@ bool FrontGraph::build(const ResidualGraph& residual, const EdgeSets& edges, con
     open_.clear();
     std::ranges::fill(table_, -1);
     begin(limit);
+    until_clock_ = 0;
     is_stopped_ = false;
     for (bool again = true; again;) {
         again = false;
