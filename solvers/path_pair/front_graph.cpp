@@ -94,7 +94,7 @@ void FrontGraph::begin(double limit) {
                 continue;
             }
             const int f =
-                number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::int8_t>(second), false});
+                number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
             now_.forward[at(f)] = start;
             starts_.push_back(f);
             open_[at(f) / 64] |= std::uint64_t{1} << (at(f) % 64);
@@ -104,7 +104,7 @@ void FrontGraph::begin(double limit) {
 }
 
 FrontGraph::Front FrontGraph::after(const Front& front, int arc) const {
-    const auto other = static_cast<std::int8_t>(relaxation_->other(front.moving_kind));
+    const auto other = static_cast<std::uint8_t>(relaxation_->other(front.moving_kind));
     if (arc < 0) return {front.waiting, front.moving, other, true};
     if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
     return {front.waiting, arc, other, false};

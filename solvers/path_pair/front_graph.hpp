@@ -26,7 +26,7 @@ class FrontGraph {
     struct Front {
         int moving;   ///< last arc of the leg that moves, in the residual graph, ...
         int waiting;  ///< ... and of the other one, which waits or has ended
-        std::int8_t moving_kind;
+        std::uint8_t moving_kind;
         bool ended;
     };
     struct Step {
@@ -91,7 +91,7 @@ class FrontGraph {
     void begin(double limit);
     void add_steps(int f, double limit);
     [[nodiscard]] Front after(const Front& front, int arc) const;
-    int number(const Front& front);
+    int number(const Front& wanted);
     void grow_table();
     void order();
     void keep(std::span<const int> order);
