@@ -169,7 +169,7 @@ BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time
     // Prices alone have to carry the bound: nothing may be dropped by the incumbent.
     PathPairOptions options;
     options.fix_arcs = false;
-    options.search_pairs = false;
+    options.search_fronts = false;
     return PathPairSolver(options).certify(problem, time_limit_ms);
 }
 

@@ -10,12 +10,13 @@ namespace conelane {
 
 /// Stages of `path-pair`. The answer is the same with each of them off; it takes longer.
 struct PathPairOptions {
-    bool fix_arcs = true;        ///< drop arcs whose reduced-cost bound reaches the incumbent
-    bool clique_prices = true;   ///< price cliques of incompatible edges, not cones alone
-    bool complete_walks = true;  ///< look for incumbents around the relaxation's walks
-    bool search_pairs = true;    ///< end nodes by the tandem search, not by branching to the last edge
-    int root_steps = 150;        ///< most ascent steps at the root
-    int node_steps = 30;         ///< and at each other node
+    bool fix_arcs = true;          ///< drop arcs whose reduced-cost bound reaches the incumbent
+    bool clique_prices = true;     ///< price cliques of incompatible edges, not cones alone
+    bool complete_walks = true;    ///< look for incumbents around the relaxation's walks
+    bool search_fronts = true;     ///< end nodes by the search on fronts, not by branching to the last edge
+    bool drop_sure_losses = true;  ///< there, drop what every way up to it or on from it excludes
+    int root_steps = 150;          ///< most ascent steps at the root
+    int node_steps = 30;           ///< and at each other node
 };
 
 /// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its

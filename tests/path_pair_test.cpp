@@ -272,13 +272,14 @@ TEST(PathPair, AgreesWithCbc) {
 
 TEST(PathPair, EveryStageCanBeSwitchedOff) {
     const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
-    std::vector<PathPairOptions> ablations(5);
+    std::vector<PathPairOptions> ablations(6);
     ablations[0].fix_arcs = false;
     ablations[1].clique_prices = false;
     ablations[2].complete_walks = false;
-    ablations[3].search_pairs = false;
+    ablations[3].search_fronts = false;
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
+    ablations[5].drop_sure_losses = false;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);

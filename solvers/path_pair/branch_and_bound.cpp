@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,11 +17,19 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
-constexpr double kWorthwhile = 0.8;         ///< of the gap at which the tandem search failed, to try it again
-constexpr std::int64_t kFirstBudget = 500;  ///< labels
-constexpr std::int64_t kWorkPerLabel =
-    30;  ///< label updates of the ascent that a label may take the place of
-constexpr std::int64_t kMostLabels = 200000;  ///< before a node branches
+constexpr double kWorthwhile = 0.8;       ///< of the gap at which the fronts were too many, to try again
+constexpr std::int64_t kFewFronts = 400;  ///< of the first try
+constexpr std::int64_t kWorkPerFront =
+    30;  ///< label updates of the ascent that a front may take the place of
+static const std::size_t kMostFronts =
+    getenv("MF") ? atol(getenv("MF")) : 100000;     ///< before a node branches
+constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
+constexpr std::size_t kMostLabels = 500000;
+constexpr int kWideFronts = 500;    ///< from here on first a narrow search, for the incumbent
+constexpr std::size_t kNarrow = 2;  ///< labels a front
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+constexpr int kLargeGraph = 250;  ///< arcs
+constexpr int kNearArcs = 100;
 constexpr int kRestSteps = 2;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
@@ -43,6 +52,7 @@ BranchAndBound::Node& BranchAndBound::node(std::size_t depth) {
 BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
                                             std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
+    if (options_.search_fronts) begin_near();
     explore(0, graph_.share_bound(), options_.root_steps);
     return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
 }
@@ -61,7 +71,8 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     decisions_.reset(graph_);
     relaxation_.bind(graph_, system, cliques_, decisions_, stopped_);
     completion_.bind(graph_, relaxation_, incumbent_);
-    tandem_.bind(graph_, relaxation_, incumbent_);
+    fronts_.bind(relaxation_, stopped_);
+    front_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
     index_.assign(at(graph_.cone_count()), 0);
@@ -75,6 +86,22 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     root.prices.clique.clear();
     root.prices.heading = 0.0;
     open_bound_ = kUnreachable;
+}
+
+/// In a large graph first the arcs that a leg reaches first: their best pair is one of the whole.
+void BranchAndBound::begin_near() {
+    const ResidualGraph& whole = node(0).graph;
+    if (whole.size() < kLargeGraph) return;
+    order_.resize(at(kNearArcs));
+    std::iota(order_.begin(), order_.end(), 0);
+    keep_out_.assign(whole.out_arc.size(), 1);
+    Node& near = node(1);
+    near.graph.filter(whole, order_, keep_out_, index_);
+    near.prices = node(0).prices;
+    double bound = -kUnreachable;
+    ascend(1, bound, options_.node_steps);
+    std::ranges::fill(edge_use_, 0.0);
+    std::ranges::fill(end_use_, 0.0);
 }
 
 void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
@@ -117,8 +144,11 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     double scale = kStepScale;
     int since_best = 0;
     int next_try = 0;
+    // The root looks for an incumbent of its own, whatever its near part found.
+    const double first_cutoff = depth == 0 ? incumbent_.cutoff() : kUnreachable;
+    const auto has_incumbent = [&] { return incumbent_.found() && incumbent_.cutoff() < first_cutoff; };
     std::int64_t work = 0;             // label updates, about
-    double failed_gap = kUnreachable;  // at which the tandem search was given up
+    double failed_gap = kUnreachable;  // at which the fronts were too many
     for (int step = 0;; ++step) {
         if (stopped_()) return Verdict::stopped;
         const double value = relaxation_.evaluate(here.graph, prices_);
@@ -143,17 +173,24 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
                 const std::array<std::vector<int>, 2>& walks = relaxation_.walks(here.graph);
                 for (int leg = 0; leg < 2; ++leg) {
                     completion_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
-                                         tolerance_, incumbent_.found() ? kTries : kFirstTries);
+                                         tolerance_, has_incumbent() ? kTries : kFirstTries);
                 }
-                next_try = step + (!incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + step / 2);
+                next_try = step + (!has_incumbent() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + step / 2);
             }
         }
         if (value >= cutoff()) return Verdict::closed;
         const bool last = step + 1 >= most_steps || scale < kLeastScale;
-        if (options_.search_pairs && (step == 0 || step % 4 == 3 || last) &&
+        if (last) {
+            prices_ = here.prices;
+            prices_.clique.resize(at(cliques_.size()), 0.0);
+            if (relaxation_.evaluate(here.graph, prices_) == -kUnreachable) return Verdict::stopped;
+        }
+        if (options_.search_fronts && (step == 1 || step % 4 == 3 || last) &&
             (last || cutoff() - value < kWorthwhile * failed_gap)) {
-            const std::int64_t labels = last ? kMostLabels : std::max(kFirstBudget, work / kWorkPerLabel);
-            if (tandem_.exhaust(here.graph, tolerance_, labels, stopped_)) return Verdict::closed;
+            const std::size_t most_fronts =
+                last ? kMostFronts : static_cast<std::size_t>(std::max(kFewFronts, work / kWorkPerFront));
+            const Verdict verdict = search_fronts(here.graph, most_fronts, kMostLabels);
+            if (verdict != Verdict::open) return verdict;
             failed_gap = cutoff() - value;
             work = 0;
         }
@@ -175,8 +212,41 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     }
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
-    return tandem_.exhaust(here.graph, tolerance_, std::int64_t{1} << 60, stopped_) ? Verdict::closed
-                                                                                    : Verdict::stopped;
+    return search_fronts(here.graph, kAny, kAny);
+}
+
+BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
+                                                      std::size_t most_labels) {
+    const auto limit = [&] { return cutoff() + relaxation_.offset(); };
+    edge_sets_.assign(graph_, graph);
+    sure_losses_.find(graph, relaxation_, edge_sets_, options_.drop_sure_losses);
+    if (most_fronts != kAny) {
+        most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
+    }
+    if (!fronts_.build(graph, edge_sets_, sure_losses_, limit(), most_fronts)) {
+        return stopped_() ? Verdict::stopped : Verdict::open;
+    }
+    double bound = fronts_.find_onward(limit());
+    if (options_.drop_sure_losses && bound < limit()) {
+        fronts_.drop(limit());
+        fronts_.drop_sure_losses(edge_sets_);
+        fronts_.find_forward();
+        bound = fronts_.find_onward(limit());
+    }
+    if (stopped_()) return Verdict::stopped;
+    if (!(bound < limit())) return Verdict::closed;
+    fronts_.drop(limit());
+    for (const std::size_t width : {kNarrow, FrontSearch::kAnyWidth}) {
+        if (stopped_()) return Verdict::stopped;
+        if (width == kNarrow && fronts_.size() < kWideFronts) continue;
+        const double before = incumbent_.cutoff();
+        const FrontSearch::Outcome outcome =
+            front_search_.run(fronts_, edge_sets_, {tolerance_, width, most_labels}, stopped_);
+        if (outcome == FrontSearch::Outcome::exhausted) return Verdict::closed;
+        if (outcome == FrontSearch::Outcome::stopped) break;
+        if (incumbent_.cutoff() < before) fronts_.drop(limit());
+    }
+    return stopped_() ? Verdict::stopped : Verdict::open;
 }
 
 void BranchAndBound::count_usage(const ResidualGraph& graph) {

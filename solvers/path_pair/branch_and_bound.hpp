@@ -2,13 +2,17 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
+#include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/front_graph.hpp"
+#include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/prices.hpp"
-#include "solvers/path_pair/tandem_search.hpp"
+#include "solvers/path_pair/sure_losses.hpp"
 #include "solvers/path_pair_solver.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,9 +23,9 @@ namespace conelane::path_pair {
 
 /// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
 /// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and hands
-/// what is left to the tandem search, which ends nearly every node; else it branches on what the relaxation
-/// is least sure about: ends first, for with both of them free two halves of a pair may run along one
-/// boundary, and two halves of another along the other.
+/// what is left to the search on fronts, which ends nearly every node; else it branches on what the
+/// relaxation is least sure about: ends first, for with both of them free two halves of a pair may run along
+/// one boundary, and two halves of another along the other.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
@@ -52,9 +56,13 @@ class BranchAndBound {
     enum class Verdict { closed, open, stopped };
 
     void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
+    void begin_near();
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
+    /// All pairs of a node below `ceiling` and the cutoff on the fronts; open where there are more than
+    /// these. Precondition: the relaxation was evaluated on the node's graph.
+    Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
     bool fix(Node& here);
     struct Branching {
         enum class On { nothing, end, edge } on;
@@ -78,7 +86,10 @@ class BranchAndBound {
     Decisions decisions_;
     PairRelaxation relaxation_;
     PairCompletion completion_;
-    TandemSearch tandem_;
+    EdgeSets edge_sets_;
+    SureLosses sure_losses_;
+    FrontGraph fronts_;
+    FrontSearch front_search_;
     Ascent ascent_;
     Usage usage_;
     Prices prices_;                 ///< of the current step

@@ -1,0 +1,55 @@
+#include "solvers/path_pair/edge_sets.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace conelane::path_pair {
+namespace {
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual) {
+    number_of_edge_.assign(at(graph.edge_count()), -1);
+    number_.clear();
+    edges_.clear();
+    for (int a = 0; a < residual.size(); ++a) {
+        int& number = number_of_edge_[at(residual.edge(a))];
+        if (number < 0) {
+            number = static_cast<int>(edges_.size());
+            edges_.push_back(residual.edge(a));
+        }
+        number_.push_back(number);
+    }
+    words_ = (edges_.size() + 63) / 64;
+    const auto insert = [&](std::vector<std::uint64_t>& sets, std::size_t row, std::size_t number) {
+        sets[row * words_ + number / 64] |= std::uint64_t{1} << (number % 64);
+    };
+    at_cone_.assign(at(graph.cone_count()) * words_, 0);
+    for (std::size_t number = 0; number < edges_.size(); ++number) {
+        insert(at_cone_, at(graph.tail(2 * edges_[number])), number);
+        insert(at_cone_, at(graph.head(2 * edges_[number])), number);
+    }
+    after_.assign(residual.arc.size() * words_, 0);
+    before_.assign(residual.arc.size() * words_, 0);
+    for (int a = 0; a < residual.size(); ++a) {
+        const std::span<const std::uint64_t> row = graph.incompatible_row(residual.edge(a));
+        for (std::size_t w = 0; w < row.size(); ++w) {
+            for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+                const int other = number_of_edge_[w * 64 + at(std::countr_zero(bits))];
+                if (other >= 0) insert(after_, at(a), at(other));
+            }
+        }
+        std::copy_n(after_.data() + at(a) * words_, words_, before_.data() + at(a) * words_);
+        for (std::size_t w = 0; w < words_; ++w) {
+            after_[at(a) * words_ + w] |= at_cone_[at(residual.tail[at(a)]) * words_ + w];
+            before_[at(a) * words_ + w] |= at_cone_[at(residual.head[at(a)]) * words_ + w];
+        }
+    }
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,387 @@
+#include "solvers/path_pair/front_graph.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace conelane::path_pair {
+namespace {
+
+// Smaller gains are rounding.
+constexpr double kGain = 1e-12;
+constexpr std::size_t kFewSlots = 1024;
+constexpr int kFrontsPerClock = 1024;
+
+}  // namespace
+
+void FrontGraph::Arrays::clear() {
+    fronts.clear();
+    last.clear();
+    begin.clear();
+    end.clear();
+    steps.clear();
+    forward.clear();
+    onward.clear();
+}
+
+std::uint64_t FrontGraph::key(const Front& front) {
+    return (static_cast<std::uint64_t>(front.moving) << 32) +
+           (static_cast<std::uint64_t>(front.waiting) << 2) + (front.moving_kind == 1 ? 2U : 0U) +
+           (front.ended ? 1U : 0U);
+}
+
+bool FrontGraph::out_of_time() {
+    if (--until_clock_ < 0) {
+        until_clock_ = kFrontsPerClock;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
+double FrontGraph::start_cost(int f) const {
+    const Front& start = front(f);
+    const int kind = start.moving_kind;
+    const int other = relaxation_->other(kind);
+    return relaxation_->start(kind)[at(start.moving)] + relaxation_->reduced()[at(start.moving)] +
+           relaxation_->start(other)[at(start.waiting)] + relaxation_->reduced()[at(start.waiting)];
+}
+
+void FrontGraph::grow_table() {
+    table_.assign(std::max(kFewSlots, table_.size() * 2), -1);
+    for (int f = 0; f < size(); ++f) {
+        std::size_t slot = (key(front(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
+        while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
+        table_[slot] = f;
+    }
+}
+
+/// The front's number, a new one where it has none.
+int FrontGraph::number(const Front& wanted) {
+    if (2 * (now_.fronts.size() + 1) > table_.size()) grow_table();
+    // Fibonacci hashing: the upper half depends on all bits.
+    std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
+    for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
+        if (key(front(table_[slot])) == key(wanted)) return table_[slot];
+    }
+    table_[slot] = size();
+    now_.fronts.push_back(wanted);
+    now_.forward.push_back(kUnreachable);
+    now_.begin.push_back(0);
+    now_.end.push_back(0);  // no steps yet: the first one is at 1 or later
+    if (open_.size() * 64 < now_.fronts.size()) open_.push_back(0);
+    return size() - 1;
+}
+
+/// The first fronts below the limit.
+void FrontGraph::begin(double limit) {
+    const ResidualGraph& r = *residual_;
+    const bool symmetric = relaxation_->symmetric();
+    const int second = relaxation_->other(0);
+    const auto cost = [&](int kind, int a) {
+        return relaxation_->start(kind)[at(a)] + relaxation_->reduced()[at(a)];
+    };
+    stack_.clear();  // arcs that a leg of the second kind may start with
+    for (int b = 0; b < r.size(); ++b) {
+        if (cost(second, b) < kUnreachable) stack_.push_back(b);
+    }
+    for (int a = 0; a < r.size(); ++a) {
+        if (cost(0, a) == kUnreachable) continue;
+        for (const int b : stack_) {
+            const double start = cost(0, a) + cost(second, b);
+            if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
+            if ((symmetric && b <= a) || r.head[at(a)] == r.head[at(b)] ||
+                !losses_->may_pair(0, a, second, b, false)) {
+                continue;
+            }
+            const int f =
+                number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
+            now_.forward[at(f)] = start;
+            starts_.push_back(f);
+            open_[at(f) / 64] |= std::uint64_t{1} << (at(f) % 64);
+        }
+    }
+    stack_.clear();
+}
+
+FrontGraph::Front FrontGraph::after(const Front& front, int arc) const {
+    const auto other = static_cast<std::uint8_t>(relaxation_->other(front.moving_kind));
+    if (arc < 0) return {front.waiting, front.moving, other, true};
+    if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
+    return {front.waiting, arc, other, false};
+}
+
+/// All steps of a front, their next fronts still open.
+void FrontGraph::add_steps(int f, double limit) {
+    const ResidualGraph& r = *residual_;
+    const Front here = front(f);
+    const int kind = here.moving_kind;
+    const int other = relaxation_->other(kind);
+    const auto through = [&](int of_kind, int a) {
+        return relaxation_->forward(of_kind)[at(a)] + leg_onward_[at(of_kind)][at(a)];
+    };
+    const double waiting =
+        here.ended ? relaxation_->forward(other)[at(here.waiting)] : through(other, here.waiting);
+    now_.begin[at(f)] = now_.steps.size();
+    for (int p = r.out_start[at(here.moving)]; p < r.out_start[at(here.moving) + 1]; ++p) {
+        const int next = r.out_arc[at(p)];
+        const double moving = relaxation_->forward(kind)[at(here.moving)] + r.out_cost[at(p)] +
+                              relaxation_->reduced()[at(next)] + leg_onward_[at(kind)][at(next)];
+        if (!(moving + waiting < limit) || r.head[at(next)] == r.head[at(here.waiting)] ||
+            !losses_->may_follow(kind, here.moving, next) ||
+            !losses_->may_pair(kind, next, other, here.waiting, here.ended)) {
+            continue;
+        }
+        now_.steps.push_back({-1, next, r.out_cost[at(p)]});
+    }
+    if (!here.ended && relaxation_->may_end(r, kind, here.moving)) now_.steps.push_back({-1, -1, 0.0});
+    now_.end[at(f)] = now_.steps.size();
+}
+
+bool FrontGraph::build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses,
+                       double limit, std::size_t most_fronts) {
+    residual_ = &residual;
+    losses_ = &losses;
+    set_.resize(edges.words());
+    for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
+        relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
+    }
+    now_.clear();
+    now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
+    starts_.clear();
+    open_.clear();
+    std::ranges::fill(table_, -1);
+    begin(limit);
+    until_clock_ = 0;
+    is_stopped_ = false;
+    for (bool again = true; again;) {
+        again = false;
+        for (std::size_t word = 0; word < open_.size(); ++word) {
+            while (open_[word] != 0) {
+                const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
+                open_[word] &= open_[word] - 1;
+                if (out_of_time()) return false;
+                const Front here = front(f);
+                const std::vector<double>& leg_onward = leg_onward_[at(here.moving_kind)];
+                const double forward = now_.forward[at(f)];
+                const double waiting =
+                    here.ended ? 0.0
+                               : leg_onward_[at(relaxation_->other(here.moving_kind))][at(here.waiting)];
+                if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) continue;
+                if (now_.end[at(f)] == 0) add_steps(f, limit);
+                for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+                    const int arc = now_.steps[p].arc;
+                    const double label = forward + cost(now_.steps[p]);
+                    const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
+                    if (!(label + on + waiting < limit)) continue;
+                    if (now_.steps[p].to < 0) {
+                        now_.steps[p].to = number(after(here, arc));
+                        if (now_.fronts.size() > most_fronts) return false;
+                    }
+                    const std::size_t to = at(now_.steps[p].to);
+                    if (label < now_.forward[to] - kGain) {
+                        now_.forward[to] = label;
+                        open_[to / 64] |= std::uint64_t{1} << (to % 64);
+                        again |= to / 64 < word;
+                    }
+                }
+            }
+        }
+    }
+    order();
+    return true;
+}
+
+/// Renumbers the fronts that have steps, or are last, in reversed finishing order of a depth-first search:
+/// nearly every step leads to a later front.
+void FrontGraph::order() {
+    order_.clear();
+    index_.assign(now_.fronts.size(), -1);
+    next_step_.assign(now_.begin.begin(), now_.begin.end());
+    const auto enter = [&](int f) {
+        if (f < 0 || now_.end[at(f)] == 0 || index_[at(f)] >= 0) return;
+        index_[at(f)] = 0;
+        stack_.push_back(f);
+    };
+    for (const int start : starts_) {
+        enter(start);
+        while (!stack_.empty()) {
+            const int f = stack_.back();
+            if (next_step_[at(f)] == now_.end[at(f)]) {
+                order_.push_back(f);
+                stack_.pop_back();
+            } else {
+                enter(now_.steps[next_step_[at(f)]++].to);
+            }
+        }
+    }
+    std::ranges::reverse(order_);
+    const ResidualGraph& r = *residual_;
+    for (const Front& f : now_.fronts) {
+        const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
+                          relaxation_->ends_fit(r.head[at(f.moving)], r.head[at(f.waiting)]);
+        now_.last.push_back(last ? 1 : 0);
+    }
+    now_.onward.assign(now_.fronts.size(), kUnreachable);
+    keep_step_.assign(now_.steps.size(), 1);
+    keep(order_);
+}
+
+/// Renumbers: what is not in `order`, and steps that keep_step_ does not mark, are dropped.
+void FrontGraph::keep(std::span<const int> order) {
+    std::swap(now_, old_);
+    now_.clear();
+    index_.assign(old_.fronts.size(), -1);
+    for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
+    for (const int f : order) {
+        now_.fronts.push_back(old_.fronts[at(f)]);
+        now_.last.push_back(old_.last[at(f)]);
+        now_.forward.push_back(old_.forward[at(f)]);
+        now_.onward.push_back(old_.onward[at(f)]);
+        now_.begin.push_back(now_.steps.size());
+        for (std::size_t p = old_.begin[at(f)]; p < old_.end[at(f)]; ++p) {
+            const Step& step = old_.steps[p];
+            if (keep_step_[p] == 0 || step.to < 0 || index_[at(step.to)] < 0) continue;
+            now_.steps.push_back({index_[at(step.to)], step.arc, step.turn});
+        }
+        now_.end.push_back(now_.steps.size());
+    }
+    std::size_t kept = 0;
+    for (const int f : starts_) {
+        if (index_[at(f)] >= 0) starts_[kept++] = index_[at(f)];
+    }
+    starts_.resize(kept);
+}
+
+double FrontGraph::find_onward(double limit) {
+    now_.onward.assign(now_.fronts.size(), kUnreachable);
+    changed_.assign(now_.fronts.size(), 0);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return -kUnreachable;
+            const std::span<const Step> on = steps(f);
+            const auto changed = [&](const Step& step) { return changed_[at(step.to)] >= sweep - 1; };
+            if (sweep > 1 && std::none_of(on.begin(), on.end(), changed)) continue;
+            double value = is_last(f) ? 0.0 : kUnreachable;
+            for (const Step& step : on) value = std::min(value, cost(step) + onward(step.to));
+            if (!(value < onward(f) - kGain) || !(value + now_.forward[at(f)] < limit)) continue;
+            now_.onward[at(f)] = value;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+    double bound = kUnreachable;
+    for (const int f : starts_) bound = std::min(bound, start_cost(f) + now_.onward[at(f)]);
+    return bound;
+}
+
+void FrontGraph::find_forward() {
+    now_.forward.assign(now_.fronts.size(), kUnreachable);
+    changed_.assign(now_.fronts.size(), 0);
+    for (const int f : starts_) now_.forward[at(f)] = start_cost(f);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
+            const double value = now_.forward[at(f)];
+            if (value == kUnreachable || (sweep > 1 && changed_[at(f)] < sweep - 1)) continue;
+            for (const Step& step : steps(f)) {
+                const double label = value + cost(step);
+                if (!(label < now_.forward[at(step.to)] - kGain)) continue;
+                now_.forward[at(step.to)] = label;
+                changed_[at(step.to)] = sweep;
+                again |= step.to <= f;
+            }
+        }
+    }
+}
+
+void FrontGraph::drop(double limit) {
+    order_.clear();
+    keep_step_.assign(now_.steps.size(), 0);
+    for (int f = 0; f < size(); ++f) {
+        const double forward = now_.forward[at(f)];
+        if (!(forward + onward(f) < limit)) continue;
+        order_.push_back(f);
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            const Step& step = now_.steps[p];
+            if (forward + cost(step) + onward(step.to) < limit) keep_step_[p] = 1;
+        }
+    }
+    keep(order_);
+}
+
+void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
+    const std::size_t words = edges.words();
+    const auto row = [&](int f) { return sure_.data() + at(f) * words; };
+    const auto is_lost = [&](int f, int arc) {
+        return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
+    };
+    set_.assign(words, 0);
+    const std::uint64_t* const nothing = set_.data();
+    keep_step_.assign(now_.steps.size(), 1);
+    changed_.assign(now_.fronts.size(), 0);
+
+    // What every walk from a first front has lost.
+    sure_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    for (const int f : starts_) {
+        intersect_with_union(row(f), edges.lost_after(front(f).moving), edges.lost_after(front(f).waiting),
+                             words);
+    }
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
+            if (sweep > 1 && changed_[at(f)] < sweep - 1) continue;
+            for (const Step& step : steps(f)) {
+                if (is_lost(f, step.arc)) continue;
+                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
+                if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
+                changed_[at(step.to)] = sweep;
+                again |= step.to <= f;
+            }
+        }
+    }
+    for (int f = 0; f < size(); ++f) {
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            if (is_lost(f, now_.steps[p].arc)) keep_step_[p] = 0;
+        }
+    }
+
+    // What every walk on to a last front excludes.
+    sure_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    changed_.assign(now_.fronts.size(), 0);
+    again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return;
+            bool changed = false;
+            if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
+            for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+                const Step& step = now_.steps[p];
+                if (keep_step_[p] == 0 || changed_[at(step.to)] < sweep - 1 || is_lost(step.to, step.arc)) {
+                    continue;
+                }
+                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_before(step.arc);
+                changed |= intersect_with_union(row(f), row(step.to), own, words);
+            }
+            if (!changed) continue;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+    order_.clear();
+    for (int f = 0; f < size(); ++f) {
+        order_.push_back(f);
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            if (is_lost(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
+        }
+    }
+    keep(order_);
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,123 @@
+#pragma once
+
+#include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/pair_relaxation.hpp"
+#include "solvers/path_pair/residual_graph.hpp"
+#include "solvers/path_pair/sure_losses.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Both legs abreast as one walk. A front is the pair of their last arcs. Of the two, the one that stands
+/// earlier in the residual graph moves: its leg goes on or ends, and once it has ended the other one moves.
+/// So every pair of legs is exactly one walk from front to front, and with reduced costs
+///     forward(f)  = cheapest walk from a first front to f,
+///     onward(f)   = cheapest walk on from f to a last one, whose ends are partners,
+/// forward(f) + onward(f) - offset bounds every pair that passes f. Fronts and steps that reach a limit are
+/// dropped, and so are steps whose edge is lost on every walk up to them or excluded on every walk on.
+class FrontGraph {
+  public:
+    struct Front {
+        int moving;   ///< last arc of the leg that moves, in the residual graph, ...
+        int waiting;  ///< ... and of the other one, which waits or has ended
+        std::uint8_t moving_kind;
+        bool ended;
+    };
+    struct Step {
+        int to;       ///< the next front
+        int arc;      ///< by which; -1 where the moving leg ends
+        double turn;  ///< cost of the turn into it
+    };
+
+    /// Once `stopped` says so, everything below ends early and what it found is of no use.
+    void bind(PairRelaxation& relaxation, const std::function<bool()>& stopped) {
+        relaxation_ = &relaxation;
+        stopped_ = &stopped;
+    }
+
+    /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
+    /// forward(f). False where there are more than `most_fronts`, or stopped.
+    /// Precondition: the relaxation was evaluated on the residual graph. `limit`: with offset, here and
+    /// below.
+    bool build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses, double limit,
+               std::size_t most_fronts);
+
+    /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
+    double find_onward(double limit);
+    /// forward(f) anew, after steps were dropped.
+    void find_forward();
+    /// Precondition: forward and onward costs are found. They stay.
+    void drop(double limit);
+    /// Drops steps by sure losses of fronts, the same intersections as those of arcs. Neither cost stays.
+    void drop_sure_losses(const EdgeSets& edges);
+
+    [[nodiscard]] int size() const { return static_cast<int>(now_.fronts.size()); }
+    [[nodiscard]] const ResidualGraph& residual() const { return *residual_; }
+    [[nodiscard]] const Front& front(int f) const { return now_.fronts[at(f)]; }
+    [[nodiscard]] std::span<const int> starts() const { return starts_; }
+    [[nodiscard]] bool is_last(int f) const { return now_.last[at(f)] != 0; }
+    [[nodiscard]] std::span<const Step> steps(int f) const {
+        return {now_.steps.data() + now_.begin[at(f)], now_.steps.data() + now_.end[at(f)]};
+    }
+    [[nodiscard]] double onward(int f) const { return now_.onward[at(f)]; }
+    /// Reduced cost of the two arcs of a first front.
+    [[nodiscard]] double start_cost(int f) const;
+    [[nodiscard]] double cost(const Step& step) const {
+        return step.turn + (step.arc < 0 ? 0.0 : relaxation_->reduced()[at(step.arc)]);
+    }
+
+  private:
+    struct Arrays {
+        std::vector<Front> fronts;
+        std::vector<char> last;
+        std::vector<std::size_t> begin;  ///< of a front's steps
+        std::vector<std::size_t> end;
+        std::vector<Step> steps;
+        std::vector<double> forward;
+        std::vector<double> onward;
+
+        void clear();
+    };
+    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+    static std::uint64_t key(const Front& front);
+    bool out_of_time();
+
+    void begin(double limit);
+    void add_steps(int f, double limit);
+    [[nodiscard]] Front after(const Front& front, int arc) const;
+    int number(const Front& wanted);
+    void grow_table();
+    void order();
+    void keep(std::span<const int> order);
+
+    PairRelaxation* relaxation_ = nullptr;
+    const std::function<bool()>* stopped_ = nullptr;
+    int until_clock_ = 0;
+    bool is_stopped_ = false;
+    const ResidualGraph* residual_ = nullptr;
+    const SureLosses* losses_ = nullptr;
+    std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
+    Arrays now_;
+    std::vector<int> starts_;
+
+    // Scratch.
+    Arrays old_;
+    std::vector<int> table_;  ///< front by slot, linear probing
+    std::vector<std::uint64_t> open_;
+    std::vector<int> index_;
+    std::vector<int> order_;
+    std::vector<int> stack_;
+    std::vector<std::size_t> next_step_;
+    std::vector<char> keep_step_;  ///< of old_.steps
+    std::vector<int> changed_;     ///< by front, the sweep that changed it last
+    std::vector<std::uint64_t> sure_;
+    std::vector<std::uint64_t> set_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,195 @@
+#include "solvers/path_pair/front_search.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace conelane::path_pair {
+namespace {
+
+constexpr int kFrontsPerClock = 128;
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+void FrontSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+    graph_ = &graph;
+    relaxation_ = &relaxation;
+    incumbent_ = &incumbent;
+}
+
+double FrontSearch::limit() const {
+    return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
+}
+
+bool FrontSearch::find_reach(const std::function<bool()>& stopped) {
+    reach_.assign(at(fronts_->size()) * words_, 0);
+    changed_.assign(at(fronts_->size()), 0);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = fronts_->size(); f-- > 0;) {
+            if (f % kFrontsPerClock == 0 && stopped()) return false;
+            std::uint64_t* const mine = reach_.data() + at(f) * words_;
+            std::uint64_t change = 0;
+            for (const FrontGraph::Step& step : fronts_->steps(f)) {
+                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
+                const std::uint64_t* const theirs = reach_.data() + at(step.to) * words_;
+                for (std::size_t w = 0; w < words_; ++w) {
+                    change |= theirs[w] & ~mine[w];
+                    mine[w] |= theirs[w];
+                }
+                if (step.arc < 0) continue;
+                const std::size_t number = edges_->number(step.arc);
+                const std::uint64_t bit = std::uint64_t{1} << (number % 64);
+                change |= bit & ~mine[number / 64];
+                mine[number / 64] |= bit;
+            }
+            if (change == 0) continue;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+    return true;
+}
+
+void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
+    const std::uint64_t* const more = edges_->lost_after(arc);
+    for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
+    const int edge = fronts_->residual().edge(arc);
+    label.cost += graph_->cost(edge);
+    if (graph_->along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
+}
+
+void FrontSearch::wait(Label label) {
+    const std::size_t front = at(label.front);
+    label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
+    open_[front / 64] |= std::uint64_t{1} << (front % 64);
+    labels_.push_back(label);
+}
+
+void FrontSearch::begin() {
+    for (const int f : fronts_->starts()) {
+        const double reduced = fronts_->start_cost(f);
+        if (!(reduced + fronts_->onward(f) < limit())) continue;
+        Label label{-1, -1, f, 0, -1, 0.0, reduced};
+        lost_.resize(lost_.size() + words_, 0);
+        std::uint64_t* const lost = lost_.data() + lost_.size() - words_;
+        take(fronts_->front(f).moving, label, lost);
+        take(fronts_->front(f).waiting, label, lost);
+        wait(label);
+    }
+}
+
+FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
+                                      const std::function<bool()>& stopped) {
+    fronts_ = &fronts;
+    edges_ = &edges;
+    limits_ = limits;
+    words_ = edges.words();
+    labels_.clear();
+    lost_.clear();
+    waiting_.assign(at(fronts.size()), -1);
+    open_.assign((at(fronts.size()) + 63) / 64, 0);
+    wanted_.resize(words_);
+    if (!find_reach(stopped)) return Outcome::stopped;
+    begin();
+    bool narrow = false;
+    int until_clock = kFrontsPerClock;
+    again_ = true;
+    while (again_) {
+        again_ = false;
+        for (std::size_t word = 0; word < open_.size(); ++word) {
+            while (open_[word] != 0) {
+                const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
+                open_[word] &= open_[word] - 1;
+                if (--until_clock == 0) {
+                    if (stopped()) return Outcome::stopped;
+                    until_clock = kFrontsPerClock;
+                }
+                narrow |= !settle(f);
+                if (labels_.size() > limits.most_labels) return Outcome::stopped;
+            }
+        }
+    }
+    return narrow ? Outcome::narrow : Outcome::exhausted;
+}
+
+/// Expands the labels that wait at a front; false where the width left one out.
+bool FrontSearch::settle(int f) {
+    here_.clear();
+    for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = labels_[at(l)].next) here_.push_back(l);
+    std::sort(here_.begin(), here_.end(),
+              [&](int a, int b) { return labels_[at(a)].cost < labels_[at(b)].cost; });
+    kept_along_heading_.clear();
+    kept_lost_.clear();
+    any_lost_.assign(words_, 0);
+    for (const int l : here_) {
+        const Label& label = labels_[at(l)];
+        if (!(label.reduced + fronts_->onward(f) < limit())) continue;
+        if (dominated(f, label, lost(l))) continue;
+        if (kept_along_heading_.size() >= limits_.width) return false;
+        kept_along_heading_.push_back(label.along_heading);
+        kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
+        for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
+        if (fronts_->is_last(f) && label.along_heading >= 2 &&
+            label.cost < incumbent_->cutoff() - limits_.tolerance) {
+            offer(l);
+        }
+        expand(l);
+    }
+    return true;
+}
+
+/// By one that is kept. What is expanded costs no more.
+bool FrontSearch::dominated(int f, const Label& label, const std::uint64_t* lost) {
+    const std::uint64_t* const reach = reach_.data() + at(f) * words_;
+    for (std::size_t w = 0; w < words_; ++w) wanted_[w] = any_lost_[w] & reach[w] & ~lost[w];
+    const std::uint64_t* rival = kept_lost_.data();
+    for (const int along_heading : kept_along_heading_) {
+        std::uint64_t missing = 0;
+        for (std::size_t w = 0; w < words_; ++w) missing |= rival[w] & wanted_[w];
+        if (missing == 0 && along_heading >= label.along_heading) return true;
+        rival += words_;
+    }
+    return false;
+}
+
+void FrontSearch::expand(int l) {
+    const Label label = labels_[at(l)];
+    for (const FrontGraph::Step& step : fronts_->steps(label.front)) {
+        const double reduced = label.reduced + fronts_->cost(step);
+        if (!(reduced + fronts_->onward(step.to) < limit())) continue;
+        if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
+        Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
+        lost_.resize(lost_.size() + words_);
+        std::uint64_t* const lost_on = lost_.data() + lost_.size() - words_;
+        std::copy_n(lost(l), words_, lost_on);
+        if (step.arc >= 0) take(step.arc, on, lost_on);
+        wait(on);
+        again_ |= step.to / 64 < label.front / 64;
+    }
+}
+
+void FrontSearch::offer(int label) {
+    const ResidualGraph& residual = fronts_->residual();
+    chain_.clear();
+    for (int l = label; l >= 0; l = labels_[at(l)].before) chain_.push_back(l);
+    std::ranges::reverse(chain_);
+    const FrontGraph::Front& start = fronts_->front(labels_[at(chain_.front())].front);
+    std::array<int, 2> last{start.moving, start.waiting};
+    for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[at(last[leg])]);
+    for (std::size_t k = 1; k < chain_.size(); ++k) {
+        const int arc = labels_[at(chain_[k])].arc;
+        if (arc < 0) continue;
+        const std::size_t leg = last[0] == fronts_->front(labels_[at(chain_[k - 1])].front).moving ? 0 : 1;
+        last[leg] = arc;
+        legs_[leg].push_back(residual.arc[at(arc)]);
+    }
+    incumbent_->offer(legs_[0], legs_[1]);
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/front_graph.hpp"
+#include "solvers/path_pair/incumbent.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Pairs of legs by labels on the fronts. A label is the beginnings of both legs up to a front, with the
+/// edges that they have lost. Front by front, cheapest first; a label is dropped where
+///   - its reduced cost and the cheapest walk on reach the cutoff, or
+///   - another one of the front dominates it: costs no more (true costs, without prices), has as many edges
+///     along the heading, and has lost no edge on any walk on from the front that this one still has.
+/// What lies behind soon makes no difference, so that beginnings merge: the pairs are searched almost as if
+/// they were walks.
+class FrontSearch {
+  public:
+    enum class Outcome {
+        exhausted,  ///< nothing below the cutoff is left
+        narrow,     ///< some fronts had more than `width` labels
+        stopped     ///< by `most_labels` or the clock
+    };
+    static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
+
+    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
+
+    struct Limits {
+        double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
+        std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
+        std::size_t most_labels;
+    };
+    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found.
+    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
+                const std::function<bool()>& stopped);
+
+  private:
+    struct Label {
+        int before;  ///< the label that it continues, -1 for the first of a chain
+        int arc;     ///< by which; -1 where a leg ended
+        int front;
+        int along_heading;  ///< edges, at most 2
+        int next;           ///< of the labels that wait at the front
+        double cost;        ///< without prices
+        double reduced;
+    };
+
+    bool find_reach(const std::function<bool()>& stopped);
+    void begin();
+    void take(int arc, Label& label, std::uint64_t* lost) const;
+    void wait(Label label);
+    bool settle(int f);
+    [[nodiscard]] bool dominated(int f, const Label& label, const std::uint64_t* lost);
+    void expand(int label);
+    void offer(int label);
+    /// With offset.
+    [[nodiscard]] double limit() const;
+    [[nodiscard]] std::uint64_t* lost(int label) {
+        return lost_.data() + static_cast<std::size_t>(label) * words_;
+    }
+
+    const ArcGraph* graph_ = nullptr;
+    PairRelaxation* relaxation_ = nullptr;
+    Incumbent* incumbent_ = nullptr;
+    const FrontGraph* fronts_ = nullptr;
+    const EdgeSets* edges_ = nullptr;
+    Limits limits_{};
+
+    std::size_t words_ = 0;
+    std::vector<std::uint64_t> reach_;  ///< by front: edges on some walk on
+    std::vector<int> changed_;          ///< by front, the sweep that changed its reach last
+    std::vector<Label> labels_;
+    std::vector<std::uint64_t> lost_;  ///< by label
+    std::vector<int> waiting_;         ///< by front, the label that came last
+    std::vector<std::uint64_t> open_;  ///< fronts with labels that wait
+    bool again_ = false;               ///< there is one before the front that is settled
+
+    // Of the front that is settled.
+    std::vector<int> here_;
+    std::vector<int> kept_along_heading_;
+    std::vector<std::uint64_t> kept_lost_;
+    std::vector<std::uint64_t> any_lost_;  ///< by one that is kept
+    std::vector<std::uint64_t> wanted_;
+
+    std::vector<int> chain_;
+    std::array<std::vector<int>, 2> legs_;
+};
+
+}  // namespace conelane::path_pair

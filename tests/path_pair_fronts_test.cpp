@@ -1,0 +1,270 @@
+// What path-pair drops from the fronts of two legs is in no lane graph, and what it finds there is the best.
+
+#include "model/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/front_graph.hpp"
+#include "solvers/path_pair/front_search.hpp"
+#include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/pair_relaxation.hpp"
+#include "solvers/path_pair/sure_losses.hpp"
+#include "tests/random_scenes.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+
+/// The fronts of a problem at prices drawn at random.
+struct Fronts {
+    Fronts(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
+        graph.build(problem);
+        LegSystem::Kind& kind = system.kinds[0];
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            kind.start.push_back(graph.near(cone) ? 1 : 0);
+            kind.end.push_back(graph.near(cone) ? 0 : 1);
+        }
+        residual.assign(graph, kind.start);
+        decisions.reset(graph);
+        relaxation.bind(graph, system, cliques, decisions, stopped);
+        boost::random::mt19937_64 random(seed);
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            prices.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
+        }
+        leg_bound = relaxation.evaluate(residual, prices);
+        edges.assign(graph, residual);
+        losses.find(residual, relaxation, edges, true);
+        fronts.bind(relaxation, stopped);
+        search.bind(graph, relaxation, incumbent);
+        incumbent.reset(graph, 1e6);
+    }
+
+    bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
+        return fronts.build(residual, edges, losses, limit, most_fronts);
+    }
+
+    /// Every leg from a near to a far cone, by plain recursion.
+    [[nodiscard]] std::vector<std::vector<int>> legs() const {
+        std::vector<std::vector<int>> all;
+        std::vector<int> leg;
+        const std::function<void(int)> extend = [&](int a) {
+            for (const int other : leg) {
+                if (graph.incompatible(residual.edge(other), residual.edge(a)) ||
+                    residual.tail[at(other)] == residual.head[at(a)]) {
+                    return;
+                }
+            }
+            leg.push_back(a);
+            if (!graph.near(residual.head[at(a)])) all.push_back(leg);
+            for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
+                extend(residual.out_arc[at(p)]);
+            }
+            leg.pop_back();
+        };
+        for (int a = 0; a < residual.size(); ++a) {
+            if (graph.near(residual.tail[at(a)])) extend(a);
+        }
+        return all;
+    }
+
+    /// No cone and no incompatible edges in common.
+    [[nodiscard]] bool are_pair(const std::vector<int>& first, const std::vector<int>& second) const {
+        std::set<int> cones{residual.tail[at(first.front())]};
+        for (const int a : first) cones.insert(residual.head[at(a)]);
+        if (cones.contains(residual.tail[at(second.front())])) return false;
+        return std::ranges::all_of(second, [&](int b) {
+            return !cones.contains(residual.head[at(b)]) && std::ranges::none_of(first, [&](int a) {
+                return graph.incompatible(residual.edge(a), residual.edge(b));
+            });
+        });
+    }
+
+    [[nodiscard]] int arc(int from, int to) const {
+        const auto found = std::ranges::find(residual.arc, graph.arc(from, to));
+        return static_cast<int>(found - residual.arc.begin());
+    }
+
+    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+    LaneGraphProblem problem;
+    std::function<bool()> stopped = [this] { return is_stopped; };
+    bool is_stopped = false;
+    ArcGraph graph;
+    ResidualGraph residual;
+    LegSystem system;
+    CliquePool cliques;
+    Decisions decisions;
+    Prices prices;
+    PairRelaxation relaxation;
+    double leg_bound = 0.0;
+    EdgeSets edges;
+    SureLosses losses;
+    FrontGraph fronts;
+    Incumbent incumbent;
+    FrontSearch search;
+};
+
+LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
+    return make_problem(tests::random_scene(seed, cones), {});
+}
+
+/// A straight lane, cones 0, 2, 4, 6 on the left, 1, 3, 5, 7 on the right: each boundary can only be run
+/// along cone by cone.
+LaneGraphProblem straight_problem() {
+    Scene scene;
+    for (int row = 0; row < 4; ++row) {
+        for (const double side : {2.5, -2.5}) {
+            const auto id = static_cast<ConeId>(scene.cones.size());
+            scene.cones.push_back({id, Point(2.0 + 4.0 * row, side)});
+        }
+    }
+    return make_problem(scene, {});
+}
+
+// Whoever is on 4 -> 6 has come over 0, 2 and 4: the edge {0, 2} is lost to the other boundary, though it has
+// no cone in common with {4, 6} and is not too close to it.
+TEST(PathPairSureLosses, FollowedByHandOnAStraightLane) {
+    Fronts s(straight_problem(), 1);
+    const int late = s.arc(4, 6);
+    const int early = s.arc(0, 2);
+    const int opposite = s.arc(1, 3);
+    EXPECT_FALSE(s.losses.may_pair(0, late, 0, early, true));
+    EXPECT_TRUE(s.losses.may_pair(0, late, 0, opposite, true));
+    s.losses.find(s.residual, s.relaxation, s.edges, false);
+    EXPECT_TRUE(s.losses.may_pair(0, late, 0, early, true));
+}
+
+TEST(PathPairSureLosses, LetEveryPairOfLegsPass) {
+    std::size_t pairs = 0;
+    int dropped = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Fronts s(random_problem(seed), seed);
+        const std::vector<std::vector<int>> legs = s.legs();
+        for (const std::vector<int>& first : legs) {
+            for (const std::vector<int>& second : legs) {
+                if (!s.are_pair(first, second)) continue;
+                ++pairs;
+                for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+                    ASSERT_TRUE(s.losses.may_follow(0, first[k], first[k + 1]));
+                }
+                for (const int a : first) {
+                    for (const int b : second) ASSERT_TRUE(s.losses.may_pair(0, a, 0, b, false));
+                }
+            }
+        }
+        SureLosses alone;
+        alone.find(s.residual, s.relaxation, s.edges, false);
+        for (int a = 0; a < s.residual.size(); ++a) {
+            for (int b = 0; b < s.residual.size(); ++b) {
+                const bool passes = s.losses.may_pair(0, a, 0, b, false);
+                dropped += alone.may_pair(0, a, 0, b, false) && !passes ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(pairs, 1000u);
+    EXPECT_GT(dropped, 1000);
+}
+
+/// Between the bound of single legs and the optimum, with sure losses and without.
+TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int higher = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        const double optimum = best.objective.value_or(kUnreachable);
+        with_lane += best.objective ? 1 : 0;
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        EXPECT_GE(bound, s.leg_bound - 1e-9);
+        EXPECT_LE(bound, optimum + 1e-9);
+        s.fronts.drop_sure_losses(s.edges);
+        s.fronts.find_forward();
+        const double thinned = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        EXPECT_GE(thinned, bound - 1e-9);
+        EXPECT_LE(thinned, optimum + 1e-9);
+        higher += thinned > s.leg_bound + 1e-6 ? 1 : 0;
+    }
+    EXPECT_GT(with_lane, 30);
+    EXPECT_GT(higher, 30);
+}
+
+TEST(PathPairFrontGraph, WhatIsDroppedByALimitReachesIt) {
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 14), seed);
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable);
+        if (bound == kUnreachable) continue;
+        const int all = s.fronts.size();
+        s.fronts.drop(bound + 0.5);
+        EXPECT_LT(s.fronts.size(), all);
+        EXPECT_NEAR(s.fronts.find_onward(kUnreachable), bound, 1e-9);
+        EXPECT_EQ(s.fronts.find_onward(bound), kUnreachable);
+    }
+}
+
+TEST(PathPairFrontGraph, GivesUpWhereToldTo) {
+    Fronts s(random_problem(3, 20), 3);
+    EXPECT_FALSE(s.build(kUnreachable, 2));
+    EXPECT_TRUE(s.build());
+    s.is_stopped = true;
+    EXPECT_FALSE(s.build());
+}
+
+TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        ASSERT_TRUE(s.build());
+        if (s.fronts.find_onward(kUnreachable) == kUnreachable) {
+            EXPECT_FALSE(best.objective);
+            continue;
+        }
+        // Of each front the cheapest beginning alone: a lane graph, but not always the best.
+        const FrontSearch::Outcome narrow = s.search.run(s.fronts, s.edges, {1e-9, 1, kAny}, s.stopped);
+        EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
+        EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
+        ASSERT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
+                  FrontSearch::Outcome::exhausted);
+        ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
+        if (!best.objective) continue;
+        ++with_lane;
+        EXPECT_NEAR(s.incumbent.cutoff(), *best.objective, 1e-6);
+    }
+    EXPECT_GT(with_lane, 50);
+}
+
+TEST(PathPairFrontSearch, StopsWhereToldTo) {
+    Fronts s(random_problem(3, 20), 3);
+    ASSERT_TRUE(s.build());
+    s.fronts.find_onward(kUnreachable);
+    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, 5}, s.stopped),
+              FrontSearch::Outcome::stopped);
+    s.is_stopped = true;
+    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
+              FrontSearch::Outcome::stopped);
+}
+
+}  // namespace
+}  // namespace conelane::path_pair
