@@ -7,15 +7,13 @@
 // Scenes are of generated tracks with three false positives among ten points, or those of the file that the
 // environment variable CONELANE_SCENES names.
 
-#include "experiments/files/scene_file.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/tracks/generated_tracks.hpp"
+#include "experiments/benchmarks/benchmark_scenes.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
 #include "model/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -50,20 +48,6 @@ std::vector<Ablation> ablations() {
 }
 
 using Problems = std::vector<LaneGraphProblem>;
-
-std::vector<AnnotatedScene> make_scenes() {
-    if (const char* file = std::getenv("CONELANE_SCENES")) return read_scenes(file);
-    SceneOptions options;
-    options.false_positive_rates = {0.3};
-    options.ranges_m = {30.0};
-    options.every_m = 15.0;
-    std::vector<AnnotatedScene> all;
-    for (const std::string& name : generated_track_names()) {
-        std::vector<AnnotatedScene> scenes = generate_scenes(generate_track(name, 0), options);
-        std::move(scenes.begin(), scenes.end(), std::back_inserter(all));
-    }
-    return all;
-}
 
 std::shared_ptr<const Problems> problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
     auto problems = std::make_shared<Problems>();
@@ -118,7 +102,7 @@ void run_memory(benchmark::State& state, const Problems& problems) {
 }
 
 void register_all() {
-    const std::vector<AnnotatedScene> scenes = make_scenes();
+    const std::vector<AnnotatedScene> scenes = benchmark_scenes(0.3);
     for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
         const std::shared_ptr<const Problems> problems = problems_of(scenes, size);
         for (const Ablation& ablation : ablations()) {

@@ -3,14 +3,12 @@
 // among five points, or those of the file that the environment variable CONELANE_SCENES names. An iteration
 // is one scene; the scenes take turns.
 
-#include "experiments/files/scene_file.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/tracks/generated_tracks.hpp"
+#include "experiments/benchmarks/benchmark_scenes.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 
 #include <array>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -25,20 +23,6 @@ namespace {
 constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
 /// The paper formulation takes seconds beyond.
 constexpr std::int64_t kLargestPaperSize = 12;
-
-std::vector<AnnotatedScene> make_scenes() {
-    if (const char* file = std::getenv("CONELANE_SCENES")) return read_scenes(file);
-    SceneOptions options;
-    options.false_positive_rates = {0.2};
-    options.ranges_m = {30.0};
-    options.every_m = 15.0;
-    std::vector<AnnotatedScene> all;
-    for (const std::string& name : generated_track_names()) {
-        std::vector<AnnotatedScene> scenes = generate_scenes(generate_track(name, 0), options);
-        std::move(scenes.begin(), scenes.end(), std::back_inserter(all));
-    }
-    return all;
-}
 
 std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size) {
     std::vector<Scene> scenes;
@@ -137,8 +121,8 @@ int main(int argument_count, char** arguments) {
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
         namespace experiments = conelane::experiments;
-        experiments::register_all(
-            std::make_shared<const std::vector<experiments::AnnotatedScene>>(experiments::make_scenes()));
+        experiments::register_all(std::make_shared<const std::vector<experiments::AnnotatedScene>>(
+            experiments::benchmark_scenes(0.2)));
     } catch (const std::exception& failure) {
         std::cerr << "conelane_benchmarks: " << failure.what() << '\n';
         return 2;
