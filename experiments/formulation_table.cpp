@@ -1,9 +1,7 @@
 #include "experiments/formulation_table.hpp"
 
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/json_node.hpp"
+#include "experiments/files/figure_file.hpp"
 #include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
@@ -15,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -152,8 +151,7 @@ std::string formulation_table(std::span<const FormulationRow> rows) {
 }
 
 void write_formulation_rows(const std::filesystem::path& file, std::span<const FormulationRow> rows) {
-    const Provenance origin = provenance();
-    AtomicFile output(file);
+    FigureFile output(file);
     for (const FormulationRow& row : rows) {
         nlohmann::ordered_json json{{"cones", row.cones},     {"formulation", to_string(row.formulation)},
                                     {"solver", row.solver},   {"scenes", row.scenes},
@@ -166,10 +164,7 @@ void write_formulation_rows(const std::filesystem::path& file, std::span<const F
         json["median_build_ms"] = row.median_build_ms;
         json["median_ms"] = row.median_ms;
         json["p95_ms"] = row.p95_ms;
-        json["commit"] = origin.commit;
-        json["compiler"] = origin.compiler;
-        json["machine"] = origin.machine;
-        output.stream() << to_line(json) << '\n';
+        output.add(std::move(json));
     }
     output.commit();
 }

@@ -1,9 +1,7 @@
 #include "experiments/relaxation_table.hpp"
 
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/json_node.hpp"
+#include "experiments/files/figure_file.hpp"
 #include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/statistics.hpp"
@@ -151,8 +149,7 @@ std::string relaxation_table(std::span<const RelaxationRow> rows) {
 }
 
 void write_relaxation_rows(const std::filesystem::path& file, std::span<const RelaxationRow> rows) {
-    const Provenance origin = provenance();
-    AtomicFile output(file);
+    FigureFile output(file);
     for (const RelaxationRow& row : rows) {
         nlohmann::ordered_json json{{"cones", row.cones},       {"solver", row.solver},
                                     {"scenes", row.scenes},     {"feasible", row.feasible},
@@ -163,10 +160,7 @@ void write_relaxation_rows(const std::filesystem::path& file, std::span<const Re
         json["median_ms"] = row.median_ms;
         json["p95_ms"] = row.p95_ms;
         json["worst_ms"] = row.worst_ms;
-        json["commit"] = origin.commit;
-        json["compiler"] = origin.compiler;
-        json["machine"] = origin.machine;
-        output.stream() << to_line(json) << '\n';
+        output.add(std::move(json));
     }
     output.commit();
 }

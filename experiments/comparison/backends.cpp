@@ -2,10 +2,8 @@
 
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/json_node.hpp"
+#include "experiments/files/figure_file.hpp"
 #include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "model/check.hpp"
 #include "model/invalid_input.hpp"
@@ -166,8 +164,7 @@ std::string backend_table(std::span<const BackendRow> rows) {
 }
 
 void write_backend_rows(const std::filesystem::path& file, std::span<const BackendRow> rows) {
-    const Provenance origin = provenance();
-    AtomicFile output(file);
+    FigureFile output(file);
     for (const BackendRow& row : rows) {
         nlohmann::ordered_json json{{"scene", row.scene->scene.id},
                                     {"track", row.scene->track},
@@ -178,9 +175,7 @@ void write_backend_rows(const std::filesystem::path& file, std::span<const Backe
         if (row.objective) json["objective"] = *row.objective;
         json["nodes"] = row.nodes;
         json["latency_ms"] = row.latency_ms;
-        json["commit"] = origin.commit;
-        json["machine"] = origin.machine;
-        output.stream() << to_line(json) << '\n';
+        output.add(std::move(json));
     }
     output.commit();
 }

@@ -2,11 +2,10 @@
 
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/figure_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "model/check.hpp"
 #include "model/invalid_input.hpp"
@@ -18,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -219,8 +219,7 @@ std::string optimality_table(std::span<const OptimalityRow> rows) {
 
 void write_optimality_rows(const std::filesystem::path& file, std::span<const OptimalityRow> rows,
                            const OptimalityOptions& options) {
-    const Provenance origin = provenance();
-    AtomicFile output(file);
+    FigureFile output(file);
     for (const OptimalityRow& row : rows) {
         const AnnotatedScene& scene = *row.scene;
         nlohmann::ordered_json json{{"scene", scene.scene.id}, {"track", scene.track}};
@@ -239,8 +238,7 @@ void write_optimality_rows(const std::filesystem::path& file, std::span<const Op
             json["gap"] = *gap;
             json["equal"] = row.is_optimal();
         }
-        json["commit"] = origin.commit;
-        output.stream() << to_line(json) << '\n';
+        output.add(std::move(json));
     }
     output.commit();
 }

@@ -1,4 +1,4 @@
-// Private to the readers and writers of experiments/: the one header that includes nlohmann's.
+// Private to the readers and writers of experiments/: the one header that includes all of nlohmann's.
 #pragma once
 
 #include "model/invalid_input.hpp"
