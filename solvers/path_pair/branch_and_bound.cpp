@@ -17,7 +17,7 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
-constexpr double kWorthwhile = 0.8;       ///< of the gap at which the fronts were too many, to try again
+constexpr double kWorthwhile = 0.8;        ///< of the gap at which the fronts were too many, to try again
 constexpr std::int64_t kFewFronts = 2000;  ///< of the first try
 constexpr std::int64_t kWorkPerFront =
     30;  ///< label updates of the ascent that a front may take the place of
