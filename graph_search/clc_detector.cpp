@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -25,6 +26,7 @@ class ClcDetector final : public LaneDetector {
         CandidateSearch::Request request;
         request.time_limit_ms = limits.time_limit_ms;
         request.with_features = ranking_ != nullptr;
+        request.ranking = ranking_.get();
         if (last_lane_) request.last_lane = &*last_lane_;
         const CandidateSearch::Report report = search_.run(scene, request);
         const std::vector<PathPair>& found = search_.pairs().found();
@@ -53,16 +55,14 @@ class ClcDetector final : public LaneDetector {
     const PathPair& best() {
         const std::vector<PathPair>& found = search_.pairs().found();
         if (!ranking_) return *std::ranges::max_element(found, {}, &PathPair::length_m);
-        scores_.resize(found.size());
-        ranking_->score(search_.pairs().features(), scores_);
-        return found[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
+        const std::span<const double> scores = search_.scores();
+        return found[static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin())];
     }
 
     std::shared_ptr<const LaneRanking> ranking_;
     bool warm_start_;
     CandidateSearch search_;
     std::optional<Lane> last_lane_;
-    std::vector<double> scores_;
 };
 
 }  // namespace
@@ -77,6 +77,7 @@ CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
     options.second_search_discrepancies = kSecondSearchDiscrepancies;
+    options.neighbourhoods = 2;
     return options;
 }
 
