@@ -153,8 +153,7 @@ void CandidateSearch::search_around_best(const LaneRanking& ranking, const Scene
     score_new();
     searched_around_.clear();
     const PathPairVertices starts = possible_starts(scene, options_.start);
-    while (!scores_.empty() &&
-           static_cast<std::int64_t>(searched_around_.size()) < options_.neighbourhoods) {
+    while (!scores_.empty() && static_cast<std::int64_t>(searched_around_.size()) < options_.neighbourhoods) {
         const auto best = static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin());
         if (std::ranges::find(searched_around_, best) != searched_around_.end()) break;
         budget_.out_of_time = SearchBudget::Clock::now() >= budget_.deadline;
@@ -162,8 +161,8 @@ void CandidateSearch::search_around_best(const LaneRanking& ranking, const Scene
         searched_around_.push_back(best);
         budget_.iteration_limit = budget_.iterations + options_.neighbourhood_iterations;
         const std::size_t first = pairs_.found().size();
-        neighbourhood_.run(graph_, pairs_.vertices(pairs_.found()[best]), starts, scene.pose.heading(), rules_,
-                           budget_, pairs_);
+        neighbourhood_.run(graph_, pairs_.vertices(pairs_.found()[best]), starts, scene.pose.heading(),
+                           rules_, budget_, pairs_);
         add_scene_features(scene, first);
         score_new();
     }

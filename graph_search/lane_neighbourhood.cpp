@@ -78,7 +78,7 @@ void LaneNeighbourhood::complete(Tips tips, Rest rest, PathPairs& pairs) {
     bool goes_on = true;
     while (goes_on && !(rest[kLeft].empty() && rest[kRight].empty())) {
         const Side side = next_side(tips, rest);
-        goes_on = push(tips, side, rest[side].front());
+        goes_on = !budget_->spent() && push(tips, side, rest[side].front());
         rest[side] = rest[side].subspan(1);
     }
     if (goes_on && constraints_.state().feasible) {
@@ -94,7 +94,8 @@ void LaneNeighbourhood::try_detours(const Tips& tips, Side side, std::size_t at,
                                     PathPairs& pairs) {
     const std::vector<Vertex>& boundary = (*lane_)[side];
     const Vertex from = boundary[at];
-    // Over `via`, or straight where there is none, to the vertex in place `to`; past the last one: to the end.
+    // Over `via`, or straight where there is none, to the vertex in place `to`; past the last one: to the
+    // end.
     const auto try_detour = [&](std::optional<Vertex> via, std::size_t to) {
         if (budget_->spent()) return;
         const Vertex last = via.value_or(from);
@@ -123,7 +124,8 @@ void LaneNeighbourhood::try_detours(const Tips& tips, Side side, std::size_t at,
         vias_.push_back(via);
     }
     // By what they are like and not by how they are numbered.
-    std::ranges::sort(vias_, {}, [&](Vertex via) { return std::pair(segment(from, via).squaredNorm(), via); });
+    std::ranges::sort(vias_, {},
+                      [&](Vertex via) { return std::pair(segment(from, via).squaredNorm(), via); });
     for (const Vertex via : vias_) {
         for (std::size_t to = at + 1; to <= last_to; ++to) try_detour(via, to);
     }

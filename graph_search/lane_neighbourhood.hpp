@@ -71,9 +71,9 @@ class LaneNeighbourhood {
     double phi_max_ = 0.0;  ///< as turning_measure
     Point heading_{0.0, 0.0};
     LaneConstraints constraints_;
-    std::vector<Pushed> pushed_;     ///< the lane, in the order in which it grew
-    std::vector<Vertex> vias_;       ///< the vertices that a detour may lead over
-    std::vector<Vertex> detoured_;   ///< the rest of a boundary with a detour
+    std::vector<Pushed> pushed_;    ///< the lane, in the order in which it grew
+    std::vector<Vertex> vias_;      ///< the vertices that a detour may lead over
+    std::vector<Vertex> detoured_;  ///< the rest of a boundary with a detour
 };
 
 }  // namespace conelane

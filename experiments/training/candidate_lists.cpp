@@ -96,9 +96,8 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             list.false_positive_rate = scene.false_positive_rate.value_or(0.0);
             list.range_m = scene.range_m.value_or(0.0);
             const std::size_t leaders = options.ranking ? options.leaders_per_scene : 0;
-            const std::vector<std::size_t> kept =
-                draw(ranked(pairs.found().size(), search.scores()), leaders, options.most_per_scene,
-                     scene.scene.id, options.seed);
+            const std::vector<std::size_t> kept = draw(ranked(pairs.found().size(), search.scores()), leaders,
+                                                       options.most_per_scene, scene.scene.id, options.seed);
             for (const std::size_t k : kept) {
                 list.lanes.push_back(pairs.features()[k]);
                 const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), scene.scene);
