@@ -91,12 +91,8 @@ void add_train_command(CLI::App& program) {
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
     command.add_option("--policy", options->policy,
-                       "weights (JSON) of an earlier training: the candidates around the lanes that it ranks "
-                       "first are there too, and its leaders are kept");
-    command
-        .add_option("--leaders", run.candidates.leaders_per_scene,
-                    "of a scene, kept beside those drawn; needs --policy")
-        ->capture_default_str();
+                       "weights (JSON) of an earlier training: the search around the lanes that it ranks "
+                       "first gives candidates too");
     command.add_flag("--extended", options->extended,
                      "the network of clc, on its search, by all features and the quality of its choice; "
                      "without it that of clc-paper");

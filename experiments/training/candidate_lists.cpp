@@ -6,10 +6,8 @@
 #include "experiments/scoring/score.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -25,38 +23,29 @@ namespace {
 
 constexpr double kNever_m = std::numeric_limits<double>::infinity();
 
-/// The first `leaders` of `order` and `count` of the others, each set of them as likely as any other; all of
-/// them where count is 0.
-std::vector<std::size_t> draw(std::vector<std::size_t> order, std::size_t leaders, std::size_t count,
-                              const std::string& scene_id, std::uint64_t seed) {
-    if (count == 0 || order.size() <= leaders + count) return order;
+/// `count` of the numbers below `size`, ascending, each set of them as likely as any other.
+std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::string& scene_id,
+                              std::uint64_t seed) {
+    std::vector<std::size_t> numbers(size);
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    if (count == 0 || count >= size) return numbers;
     std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
                                      static_cast<std::uint32_t>(seed >> 32U)};
     for (const char letter : scene_id) words.push_back(static_cast<unsigned char>(letter));
     boost::random::seed_seq sequence(words.begin(), words.end());
     boost::random::mt19937_64 random(sequence);
-    for (std::size_t i = leaders; i < leaders + count; ++i) {
-        boost::random::uniform_int_distribution<std::size_t> rest(i, order.size() - 1);
-        std::swap(order[i], order[rest(random)]);
+    for (std::size_t i = 0; i < count; ++i) {
+        boost::random::uniform_int_distribution<std::size_t> rest(i, size - 1);
+        std::swap(numbers[i], numbers[rest(random)]);
     }
-    order.resize(leaders + count);
-    std::ranges::sort(order);
-    return order;
+    numbers.resize(count);
+    std::ranges::sort(numbers);
+    return numbers;
 }
 
-/// The numbers of the candidates, best score first; in their own order where there are no scores.
-std::vector<std::size_t> ranked(std::size_t count, std::span<const double> scores) {
-    std::vector<std::size_t> order(count);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    if (!scores.empty()) {
-        std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t k) { return scores[k]; });
-    }
-    return order;
-}
+using Positions = std::unordered_map<ConeId, Point>;  // for look-up only
 
-LaneOutline outline(const Lane& lane, const Scene& scene) {
-    std::unordered_map<ConeId, Point> position_of;  // for look-up only
-    for (const Cone& cone : scene.cones) position_of.emplace(cone.id, cone.position);
+LaneOutline outline(const Lane& lane, const Positions& position_of) {
     LaneOutline result;
     for (const ConeId id : lane.left) result.left.push_back(position_of.at(id));
     for (const ConeId id : lane.right) result.right.push_back(position_of.at(id));
@@ -89,19 +78,20 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             request.ranking = options.ranking.get();
             (void)search.run(scene.scene, request);
             const PathPairs& pairs = search.pairs();
-            const LaneOutline ground_truth = outline(*scene.ground_truth, scene.scene);
+            Positions position_of;
+            for (const Cone& cone : scene.scene.cones) position_of.emplace(cone.id, cone.position);
+            const LaneOutline ground_truth = outline(*scene.ground_truth, position_of);
             const TrackBoundaries& annotated = set.tracks.at(scene.track);
             CandidateList& list = lists[i];
             list.track = scene.track;
             list.false_positive_rate = scene.false_positive_rate.value_or(0.0);
             list.range_m = scene.range_m.value_or(0.0);
-            const std::size_t leaders = options.ranking ? options.leaders_per_scene : 0;
-            const std::vector<std::size_t> kept = draw(ranked(pairs.found().size(), search.scores()), leaders,
-                                                       options.most_per_scene, scene.scene.id, options.seed);
-            for (const std::size_t k : kept) {
+            for (const std::size_t k :
+                 draw(options.most_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
                 list.lanes.push_back(pairs.features()[k]);
-                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), scene.scene);
-                list.iou.push_back(intersection_over_union(lane, ground_truth));
+                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), position_of);
+                // Candidates satisfy the constraints.
+                list.iou.push_back(intersection_over_union_of_simple(lane, ground_truth));
                 list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
             }
             progress.advance();

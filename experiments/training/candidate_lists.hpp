@@ -29,9 +29,7 @@ struct CandidateListOptions {
     CandidateSearchOptions search;
     /// Leads the search around the best ones, as the detector's ranking does; may be null.
     std::shared_ptr<const LaneRanking> ranking;
-    /// The first ones of that ranking are kept, ...
-    std::size_t leaders_per_scene = 0;
-    /// ... and at most so many others of a scene, drawn without replacement; 0 keeps all.
+    /// At most so many candidates of a scene are kept, drawn without replacement; 0 keeps all.
     std::size_t most_per_scene = 0;
     std::uint64_t seed = 0;  ///< of that draw, together with the id of the scene
     unsigned threads = 1;    ///< same lists with any number

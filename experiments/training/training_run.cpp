@@ -84,7 +84,6 @@ TrainingRun run_training(const TrainingRunOptions& options) {
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
-                      {"leaders_per_scene", options.candidates.leaders_per_scene},
                       {"policy", Json::parse(options.policy_record)},
                       {"network", describe(options.training)},
                       {"figures_of_training", describe(run.trained)},
