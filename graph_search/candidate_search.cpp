@@ -60,7 +60,7 @@ void validate(const CandidateSearchOptions& options) {
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
     require(options.neighbourhoods >= 0, "neighbourhoods", "must not be negative");
     require(options.neighbourhood_iterations > 0, "neighbourhood_iterations", "must be positive");
-    require(options.neighbourhoods < (options.iteration_limit - 1) / options.neighbourhood_iterations + 1,
+    require(options.neighbourhoods <= (options.iteration_limit - 1) / options.neighbourhood_iterations,
             "neighbourhoods", "must leave iterations to the search before them");
     require(positive(options.d_max_m), "d_max", "must be positive");
     require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
@@ -92,7 +92,7 @@ CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : option
 
 CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& request) {
     Report report;
-    rules_.with_features = request.with_features;
+    rules_.with_features = request.with_features || request.ranking != nullptr;
     budget_ = SearchBudget{};
     main_iterations_ = options_.iteration_limit;
     if (request.ranking != nullptr) {
@@ -118,7 +118,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     }
     longest_m_ = 0.0;
     for (const LaneFeatures& lane : pairs_.features()) longest_m_ = std::max(longest_m_, lane[0]);
-    if (request.with_features) add_scene_features(scene, 0);
+    if (rules_.with_features) add_scene_features(scene, 0);
     scores_.clear();
     if (request.ranking != nullptr) search_around_best(*request.ranking, scene);
     report.iterations = budget_.iterations;

@@ -53,7 +53,7 @@ class CandidateSearch {
     struct Request {
         double time_limit_ms = std::numeric_limits<double>::infinity();
         bool with_features = false;
-        /// Scores the pairs and leads the search around the best ones; may be null. Needs `with_features`.
+        /// Scores the pairs, features and all, and leads the search around the best ones; may be null.
         const LaneRanking* ranking = nullptr;
         /// Where the search begins (warm start, section IV-F): the lane of the scene before, by cone id; may
         /// be null. What the car has passed and what is no longer seen drops out of it.
@@ -76,7 +76,6 @@ class CandidateSearch {
   private:
     void run_from(StartPair start, const PathPairVertices& guide, bool is_last, const Scene& scene,
                   Report& report);
-
     void search_around_best(const LaneRanking& ranking, const Scene& scene);
     /// Sets the features that belong to the scene, of the pairs from number `first` on.
     void add_scene_features(const Scene& scene, std::size_t first);

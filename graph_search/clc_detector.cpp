@@ -17,6 +17,9 @@ constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
 
+/// A second time mends a second fault; more times take too much from the search before them.
+constexpr std::int64_t kNeighbourhoods = 2;
+
 class ClcDetector final : public LaneDetector {
   public:
     explicit ClcDetector(const ClcOptions& options)
@@ -25,7 +28,6 @@ class ClcDetector final : public LaneDetector {
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
         CandidateSearch::Request request;
         request.time_limit_ms = limits.time_limit_ms;
-        request.with_features = ranking_ != nullptr;
         request.ranking = ranking_.get();
         if (last_lane_) request.last_lane = &*last_lane_;
         const CandidateSearch::Report report = search_.run(scene, request);
@@ -77,7 +79,7 @@ CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
     options.second_search_discrepancies = kSecondSearchDiscrepancies;
-    options.neighbourhoods = 2;
+    options.neighbourhoods = kNeighbourhoods;
     return options;
 }
 
