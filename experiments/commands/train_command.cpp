@@ -98,6 +98,10 @@ void add_train_command(CLI::App& program) {
                      "without it that of clc-paper");
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
+    command
+        .add_option("--scenes-a-step", run.training.scenes_a_step,
+                    "scenes to a step of Adam, with --extended")
+        ->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
     command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
         ->capture_default_str();
