@@ -60,8 +60,6 @@ void validate(const CandidateSearchOptions& options) {
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
     require(options.neighbourhoods >= 0, "neighbourhoods", "must not be negative");
     require(options.neighbourhood_iterations > 0, "neighbourhood_iterations", "must be positive");
-    require(options.neighbourhoods <= (options.iteration_limit - 1) / options.neighbourhood_iterations,
-            "neighbourhoods", "must leave iterations to the search before them");
     require(positive(options.d_max_m), "d_max", "must be positive");
     require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
             "must be in (0, pi]");
@@ -94,10 +92,6 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     Report report;
     rules_.with_features = request.with_features || request.ranking != nullptr;
     budget_ = SearchBudget{};
-    main_iterations_ = options_.iteration_limit;
-    if (request.ranking != nullptr) {
-        main_iterations_ -= options_.neighbourhoods * options_.neighbourhood_iterations;
-    }
     budget_.deadline = deadline(request.time_limit_ms);
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
@@ -128,7 +122,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
 
 void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, bool is_last,
                                const Scene& scene, Report& report) {
-    const std::int64_t left = main_iterations_ - budget_.iterations;
+    const std::int64_t left = options_.iteration_limit - budget_.iterations;
     budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
     const std::int64_t limit = budget_.iteration_limit;
     const bool twice = options_.second_search_discrepancies > 0;

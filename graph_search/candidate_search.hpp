@@ -18,7 +18,7 @@
 namespace conelane {
 
 struct CandidateSearchOptions {
-    std::int64_t iteration_limit = 2500;  ///< it_max, of all starting pairs together
+    std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, of all starting pairs
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
     SearchGraphKind graph = SearchGraphKind::all_pairs;
     LaneBounds bounds;
@@ -34,7 +34,7 @@ struct CandidateSearchOptions {
     std::uint32_t second_search_discrepancies = 0;
     /// Where a ranking is at hand, the lane that it puts first is searched around (see LaneNeighbourhood) so
     /// many times; it ends early where the first has been searched around already. Each time may use
-    /// `neighbourhood_iterations`, which together are taken off `iteration_limit`. 0: never, as in the paper.
+    /// `neighbourhood_iterations`, beyond `iteration_limit`. 0: never, as in the paper.
     std::int64_t neighbourhoods = 0;
     std::int64_t neighbourhood_iterations = 400;
 };
@@ -46,8 +46,8 @@ void validate(const CandidateSearchOptions& options);
 class CandidateSearch {
   public:
     struct Report {
-        std::int64_t iterations = 0;
-        bool complete = true;  ///< every starting pair tried was searched to its end
+        std::int64_t iterations = 0;  ///< those around the best lanes included
+        bool complete = true;         ///< every starting pair tried was searched to its end
         bool out_of_time = false;
     };
     struct Request {
@@ -90,8 +90,7 @@ class CandidateSearch {
     std::vector<double> scores_;
     std::vector<std::size_t> searched_around_;
     std::vector<Point> points_;
-    std::int64_t main_iterations_ = 0;  ///< of all starting pairs together
-    double longest_m_ = 0.0;            ///< of the pairs that these gave
+    double longest_m_ = 0.0;  ///< of the pairs that the starting pairs gave
 };
 
 }  // namespace conelane

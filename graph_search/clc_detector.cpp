@@ -17,7 +17,7 @@ constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
 
-/// A second time mends a second fault; more times take too much from the search before them.
+/// A second time mends a second fault; more gain little.
 constexpr std::int64_t kNeighbourhoods = 2;
 
 class ClcDetector final : public LaneDetector {

@@ -308,12 +308,12 @@ TEST(ClcDetector, SearchesAroundTheLaneRankedFirst) {
     options.iteration_limit = 60;
     options.neighbourhoods = 0;
     EXPECT_THAT(detect(scene, options).lane.left, ::testing::Contains(1000));
-    options.iteration_limit += 400;
     options.neighbourhoods = 1;
     const LaneAnswer answer = detect(scene, options);
     EXPECT_THAT(answer.lane.left, ::testing::Not(::testing::Contains(1000)));
     EXPECT_EQ(answer.lane.left.size(), 14u);
-    EXPECT_LE(answer.enumeration->iterations, options.iteration_limit);
+    EXPECT_GT(answer.enumeration->iterations, 60);
+    EXPECT_LE(answer.enumeration->iterations, 60 + options.neighbourhood_iterations);
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
@@ -383,12 +383,6 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhoods = -1; }), "neighbourhoods");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhood_iterations = 0; }), "neighbourhood_iterations");
-    EXPECT_EQ(key_of([](ClcOptions& o) {
-                  o.neighbourhoods = 5;
-                  o.neighbourhood_iterations = 500;
-              }),
-              "neighbourhoods")
-        << "2500 iterations would all go there";
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");
 }

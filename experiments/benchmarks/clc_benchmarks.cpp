@@ -9,9 +9,9 @@
 #include "graph_search/search_graph.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
-#include <span>
 #include <vector>
 
 #include <benchmark/benchmark.h>
