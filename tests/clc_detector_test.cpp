@@ -225,16 +225,18 @@ TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
 }
 
 TEST(ClcDetector, AnswersTheSameOnEachCallAndInAnyOrderOfTheCones) {
-    const std::unique_ptr<LaneDetector> detector = make_clc_detector({});
-    for (unsigned seed = 0; seed < 20; ++seed) {
-        SCOPED_TRACE(seed);
-        Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
-        const LaneAnswer first = detector->detect(scene, {});
-        EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
-        std::ranges::reverse(scene.cones);
-        const LaneAnswer reversed = detector->detect(scene, {});
-        EXPECT_EQ(reversed.lane, first.lane);
-        EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
+    for (const ClcOptions& options : {ClcOptions{}, extended_clc_options()}) {
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            SCOPED_TRACE(seed);
+            Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
+            const LaneAnswer first = detector->detect(scene, {});
+            EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
+            std::ranges::reverse(scene.cones);
+            const LaneAnswer reversed = detector->detect(scene, {});
+            EXPECT_EQ(reversed.lane, first.lane);
+            EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
+        }
     }
 }
 
