@@ -47,7 +47,7 @@ std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOption
     return cut_to(make_clc_detector(clc), options.nearest);
 }
 
-constexpr std::array<MethodEntry, 8> kMethods{{
+constexpr std::array<MethodEntry, 9> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, true,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
@@ -59,12 +59,19 @@ constexpr std::array<MethodEntry, 8> kMethods{{
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
-    {"clc", "CLC; NVD weighs distances, a second search, the network ranks by all features", std::nullopt,
-     false, [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
+    {"clc", "CLC; NVD weighs distances, a second search, one around the best, a network on all features",
+     std::nullopt, false,
+     [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.warm_start = true;
+         return make_clc(clc, options);
+     }},
+    {"clc-no-detours", "clc without the search around the lane that it ranks first", std::nullopt, false,
+     [](const MethodOptions& options) {
+         ClcOptions clc = extended_clc_options();
+         clc.neighbourhoods = 0;
          return make_clc(clc, options);
      }},
     {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, false,

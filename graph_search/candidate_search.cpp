@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -57,6 +58,8 @@ void validate(const CandidateSearchOptions& options) {
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     require(options.iteration_limit > 0, "iteration_limit", "must be positive");
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
+    require(options.neighbourhoods >= 0, "neighbourhoods", "must not be negative");
+    require(options.neighbourhood_iterations > 0, "neighbourhood_iterations", "must be positive");
     require(positive(options.d_max_m), "d_max", "must be positive");
     require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
             "must be in (0, pi]");
@@ -87,7 +90,7 @@ CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : option
 
 CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& request) {
     Report report;
-    rules_.with_features = request.with_features;
+    rules_.with_features = request.with_features || request.ranking != nullptr;
     budget_ = SearchBudget{};
     budget_.deadline = deadline(request.time_limit_ms);
     points_.clear();
@@ -107,11 +110,11 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
         const bool met = warm && starts[i] == StartPair{(*warm)[kLeft].front(), (*warm)[kRight].front()};
         if (!met) run_from(starts[i], {}, i + 1 == starts.size(), scene, report);
     }
-    if (request.with_features) {
-        double longest_m = 0.0;
-        for (const LaneFeatures& lane : pairs_.features()) longest_m = std::max(longest_m, lane[0]);
-        for (LaneFeatures& lane : pairs_.features()) lane[kLongestShareFeature] = lane[0] / longest_m;
-    }
+    longest_m_ = 0.0;
+    for (const LaneFeatures& lane : pairs_.features()) longest_m_ = std::max(longest_m_, lane[0]);
+    if (rules_.with_features) add_scene_features(scene, 0);
+    scores_.clear();
+    if (request.ranking != nullptr) search_around_best(*request.ranking, scene);
     report.iterations = budget_.iterations;
     report.out_of_time = budget_.out_of_time;
     return report;
@@ -121,7 +124,6 @@ void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, b
                                const Scene& scene, Report& report) {
     const std::int64_t left = options_.iteration_limit - budget_.iterations;
     budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
-    const std::size_t before = pairs_.found().size();
     const std::int64_t limit = budget_.iteration_limit;
     const bool twice = options_.second_search_discrepancies > 0;
     if (twice) budget_.iteration_limit -= (limit - budget_.iterations) / 2;
@@ -134,9 +136,37 @@ void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, b
         (void)enumeration_.run(graph_, start, scene.pose.heading(), narrow, budget_, pairs_, guide);
     }
     report.complete &= complete;
-    if (!rules_.with_features) return;
-    const StartPairMeasures measures = start_pair_measures(scene, start);
-    for (LaneFeatures& lane : pairs_.features().subspan(before)) {
+}
+
+void CandidateSearch::search_around_best(const LaneRanking& ranking, const Scene& scene) {
+    const auto score_new = [&] {
+        const std::size_t scored = scores_.size();
+        scores_.resize(pairs_.found().size());
+        ranking.score(std::as_const(pairs_).features().subspan(scored), std::span(scores_).subspan(scored));
+    };
+    score_new();
+    searched_around_.clear();
+    const PathPairVertices starts = possible_starts(scene, options_.start);
+    while (!scores_.empty() && static_cast<std::int64_t>(searched_around_.size()) < options_.neighbourhoods) {
+        const auto best = static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin());
+        if (std::ranges::find(searched_around_, best) != searched_around_.end()) break;
+        budget_.out_of_time = SearchBudget::Clock::now() >= budget_.deadline;
+        if (budget_.out_of_time) break;
+        searched_around_.push_back(best);
+        budget_.iteration_limit = budget_.iterations + options_.neighbourhood_iterations;
+        const std::size_t first = pairs_.found().size();
+        neighbourhood_.run(graph_, pairs_.vertices(pairs_.found()[best]), starts, scene.pose.heading(),
+                           rules_, budget_, pairs_);
+        add_scene_features(scene, first);
+        score_new();
+    }
+}
+
+void CandidateSearch::add_scene_features(const Scene& scene, std::size_t first) {
+    for (std::size_t i = first; i < pairs_.found().size(); ++i) {
+        LaneFeatures& lane = pairs_.features()[i];
+        const StartPairMeasures measures = start_pair_measures(scene, pairs_.start(pairs_.found()[i]));
+        lane[kLongestShareFeature] = lane[0] / longest_m_;
         lane[kStartAsymmetryFeature] = measures.asymmetry_m;
         lane[kStartDistanceFeature] = measures.distance_m;
         lane[kConesFeature] = static_cast<double>(scene.cones.size());

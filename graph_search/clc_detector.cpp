@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -16,6 +17,9 @@ constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
 
+/// A second time mends a second fault; more gain little.
+constexpr std::int64_t kNeighbourhoods = 2;
+
 class ClcDetector final : public LaneDetector {
   public:
     explicit ClcDetector(const ClcOptions& options)
@@ -24,7 +28,7 @@ class ClcDetector final : public LaneDetector {
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
         CandidateSearch::Request request;
         request.time_limit_ms = limits.time_limit_ms;
-        request.with_features = ranking_ != nullptr;
+        request.ranking = ranking_.get();
         if (last_lane_) request.last_lane = &*last_lane_;
         const CandidateSearch::Report report = search_.run(scene, request);
         const std::vector<PathPair>& found = search_.pairs().found();
@@ -53,16 +57,14 @@ class ClcDetector final : public LaneDetector {
     const PathPair& best() {
         const std::vector<PathPair>& found = search_.pairs().found();
         if (!ranking_) return *std::ranges::max_element(found, {}, &PathPair::length_m);
-        scores_.resize(found.size());
-        ranking_->score(search_.pairs().features(), scores_);
-        return found[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
+        const std::span<const double> scores = search_.scores();
+        return found[static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin())];
     }
 
     std::shared_ptr<const LaneRanking> ranking_;
     bool warm_start_;
     CandidateSearch search_;
     std::optional<Lane> last_lane_;
-    std::vector<double> scores_;
 };
 
 }  // namespace
@@ -77,6 +79,7 @@ CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
     options.second_search_discrepancies = kSecondSearchDiscrepancies;
+    options.neighbourhoods = kNeighbourhoods;
     return options;
 }
 

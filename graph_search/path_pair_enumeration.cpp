@@ -36,6 +36,46 @@ PathPairVertices PathPairs::vertices(const PathPair& pair) const {
     return vertices;
 }
 
+StartPair PathPairs::start(const PathPair& pair) const {
+    std::uint32_t right = pair.last_step;
+    std::uint32_t left = steps_[right].before;
+    while (steps_[left].before != kNone) {
+        right = left;
+        left = steps_[right].before;
+    }
+    return {steps_[left].vertex, steps_[right].vertex};
+}
+
+void PathPairs::add_lane(const PathPair& pair, const LaneConstraints& boundaries, const LaneGrowth& growth,
+                         const EnumerationRules& rules) {
+    const BoundaryArrays& left = boundaries.width().boundary(kLeft);
+    const BoundaryArrays& right = boundaries.width().boundary(kRight);
+    if (left.size < 2 || right.size < 2) return;
+    found_.push_back(pair);
+    if (rules.with_features) {
+        features_.push_back(growth.features());
+        add_width_features(boundaries.width(), growth.near_vertices(), features_.back());
+    }
+
+    const double left_gap_m = (left.vertex(left.size - 1) - left.vertex(0)).norm();
+    const double right_gap_m = (right.vertex(right.size - 1) - right.vertex(0)).norm();
+    if (left_gap_m > rules.d_max_m || right_gap_m > rules.d_max_m) return;
+    for (const Side side : {kLeft, kRight}) {
+        const BoundaryArrays& boundary = boundaries.width().boundary(side);
+        closing_points_[side].clear();
+        for (std::size_t i = 0; i < boundary.size; ++i) closing_points_[side].push_back(boundary.vertex(i));
+    }
+    if (!can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules.d_max_m, rules.bounds)) return;
+    found_.push_back(
+        {pair.last_step, true, pair.iteration, pair.length_m + (left_gap_m + right_gap_m) / 2.0});
+    if (rules.with_features) {
+        LaneFeatures features = features_.back();
+        const PaperFeatures closed = paper_features(closing_points_[kLeft], closing_points_[kRight], true);
+        std::ranges::copy(closed, features.begin());
+        features_.push_back(features);
+    }
+}
+
 bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const Point& heading,
                               const EnumerationRules& rules, SearchBudget& budget, PathPairs& pairs,
                               const PathPairVertices& guide) {
@@ -129,7 +169,11 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         if (rules_.with_features) below.growth.push(graph, side, next.vertex);
         below.step = pairs.add_step(call.step, side, next.vertex);
         below.pushed = side;
-        if (extended.feasible) record(below, budget.iterations, pairs);
+        if (extended.feasible) {
+            const double length_m = (below.length_m[kLeft] + below.length_m[kRight]) / 2.0;
+            pairs.add_lane({below.step, false, budget.iterations, length_m}, constraints_, below.growth,
+                           rules_);
+        }
         below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
         below.visited_early[side] = kNoVertex;
         on_path_[side][next.vertex] = 1;
@@ -175,38 +219,6 @@ Side PathPairEnumeration::choose_side(const Call& call, const NextOptions& optio
         tips[side] = {graph_->position(call.last[side]), call.direction[side], graph_->position(next[side])};
     }
     return left_right_decision(tips, next[kLeft] < next[kRight] ? kLeft : kRight);
-}
-
-void PathPairEnumeration::record(const Call& call, std::int64_t iteration, PathPairs& pairs) {
-    const BoundaryArrays& left = constraints_.width().boundary(kLeft);
-    const BoundaryArrays& right = constraints_.width().boundary(kRight);
-    if (left.size < 2 || right.size < 2) return;
-    const double length_m = (call.length_m[kLeft] + call.length_m[kRight]) / 2.0;
-    pairs.add_found({call.step, false, iteration, length_m});
-    if (rules_.with_features) {
-        LaneFeatures features = call.growth.features();
-        add_width_features(constraints_.width(), call.growth.near_vertices(), features);
-        pairs.add_features(features);
-    }
-
-    const double left_gap_m = (left.vertex(left.size - 1) - left.vertex(0)).norm();
-    const double right_gap_m = (right.vertex(right.size - 1) - right.vertex(0)).norm();
-    if (left_gap_m > rules_.d_max_m || right_gap_m > rules_.d_max_m) return;
-    for (const Side side : {kLeft, kRight}) {
-        const BoundaryArrays& boundary = constraints_.width().boundary(side);
-        closing_points_[side].clear();
-        for (std::size_t i = 0; i < boundary.size; ++i) closing_points_[side].push_back(boundary.vertex(i));
-    }
-    if (can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules_.d_max_m, rules_.bounds)) {
-        pairs.add_found({call.step, true, iteration, length_m + (left_gap_m + right_gap_m) / 2.0});
-        if (rules_.with_features) {
-            LaneFeatures features = pairs.features().back();
-            const PaperFeatures closed =
-                paper_features(closing_points_[kLeft], closing_points_[kRight], true);
-            std::ranges::copy(closed, features.begin());
-            pairs.add_features(features);
-        }
-    }
 }
 
 }  // namespace conelane

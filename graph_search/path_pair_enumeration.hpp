@@ -65,14 +65,18 @@ class PathPairs {
     void clear();
     [[nodiscard]] const std::vector<PathPair>& found() const { return found_; }
     /// One entry for each pair found, where they were asked for.
-    [[nodiscard]] const std::vector<LaneFeatures>& features() const { return features_; }
+    [[nodiscard]] std::span<const LaneFeatures> features() const { return features_; }
     [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
+    [[nodiscard]] StartPair start(const PathPair& pair) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-    /// Returns the number of the new step.
+    /// Returns the number of the new step. The first two of a pair are its start, left and right.
     std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
-    void add_found(const PathPair& pair) { found_.push_back(pair); }
-    void add_features(const LaneFeatures& features) { features_.push_back(features); }
+    /// Adds a feasible lane, unless a side has a single vertex; where it can be closed (section IV-E) it is
+    /// followed by itself, closed. `boundaries` and `growth` are those of `pair`, which is open; `growth` is
+    /// read only where rules.with_features.
+    void add_lane(const PathPair& pair, const LaneConstraints& boundaries, const LaneGrowth& growth,
+                  const EnumerationRules& rules);
     /// To fill in what belongs to the scene.
     [[nodiscard]] std::span<LaneFeatures> features() { return features_; }
 
@@ -85,6 +89,7 @@ class PathPairs {
     std::vector<Step> steps_;
     std::vector<PathPair> found_;
     std::vector<LaneFeatures> features_;
+    std::array<std::vector<Point>, 2> closing_points_;
 };
 
 /// Algorithm 2 of the CLC paper: depth-first search over pairs of simple paths, both growing at once.
@@ -134,7 +139,6 @@ class PathPairEnumeration {
     /// Where the guide goes on, for the sides where it does; both sides' options keep kNoOption otherwise.
     [[nodiscard]] NextOptions guided_options(const Call& call);
     [[nodiscard]] Side choose_side(const Call& call, const NextOptions& options) const;
-    void record(const Call& call, std::int64_t iteration, PathPairs& pairs);
 
     const SearchGraph* graph_ = nullptr;
     EnumerationRules rules_;
@@ -142,7 +146,6 @@ class PathPairEnumeration {
     LaneConstraints constraints_;
     std::array<std::vector<std::uint8_t>, 2> on_path_;
     std::vector<Call> calls_;
-    std::array<std::vector<Point>, 2> closing_points_;
     PathPairVertices guide_;
     std::array<std::size_t, 2> guide_position_{0, 0};  ///< next vertex of each side of the guide
 };

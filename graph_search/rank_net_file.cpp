@@ -81,15 +81,24 @@ Json numbers(const Values& values) {
     return result;
 }
 
-}  // namespace
-
-RankNetWeights parse_rank_net(std::string_view json) {
-    const Json file = Json::parse(json, nullptr, false);
+Json parse_file(std::string_view json) {
+    Json file = Json::parse(json, nullptr, false);
     if (!file.is_object()) throw InvalidInput("weights", "must be a JSON object");
     const Json& version = member(file, "version");
     if (!version.is_number_integer() || version.get<std::int64_t>() != kVersion) {
         throw InvalidInput("version", "must be " + std::to_string(kVersion));
     }
+    return file;
+}
+
+}  // namespace
+
+std::string rank_net_training(std::string_view json) {
+    return member(parse_file(json), "training").dump();
+}
+
+RankNetWeights parse_rank_net(std::string_view json) {
+    const Json file = parse_file(json);
     const Json& features = member(file, "features");
     require_known_features(features);
     RankNetWeights weights;

@@ -1,6 +1,7 @@
 #include "graph_search/start_vertices.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -13,6 +14,20 @@ struct Candidate {
     double left_m;
     double distance_m;
 };
+
+/// By side, those within the largest radius.
+std::array<std::vector<Candidate>, 2> candidates(const Scene& scene, const StartVertexRules& rules) {
+    std::array<std::vector<Candidate>, 2> by_side;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        const Point& position = scene.cones[i].position;
+        const Candidate candidate{static_cast<Vertex>(i), scene.pose.ahead_m(position),
+                                  scene.pose.left_m(position), (position - scene.pose.position).norm()};
+        if (candidate.distance_m > rules.largest_radius_m) continue;
+        if (candidate.left_m > 0.0) by_side[kLeft].push_back(candidate);
+        if (candidate.left_m < 0.0) by_side[kRight].push_back(candidate);
+    }
+    return by_side;
+}
 
 struct RankedPair {
     double cost_m;
@@ -31,16 +46,7 @@ StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair) {
 }
 
 std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const StartVertexRules& rules) {
-    std::vector<Candidate> left;
-    std::vector<Candidate> right;
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
-        const Point& position = scene.cones[i].position;
-        const Candidate candidate{static_cast<Vertex>(i), scene.pose.ahead_m(position),
-                                  scene.pose.left_m(position), (position - scene.pose.position).norm()};
-        if (candidate.distance_m > rules.largest_radius_m) continue;
-        if (candidate.left_m > 0.0) left.push_back(candidate);
-        if (candidate.left_m < 0.0) right.push_back(candidate);
-    }
+    const auto [left, right] = candidates(scene, rules);
     std::vector<RankedPair> pairs;
     for (const Candidate& l : left) {
         for (const Candidate& r : right) {
@@ -69,6 +75,16 @@ std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const 
         best.push_back(ranked.pair);
     }
     return best;
+}
+
+PathPairVertices possible_starts(const Scene& scene, const StartVertexRules& rules) {
+    PathPairVertices starts;
+    std::array<std::vector<Candidate>, 2> by_side = candidates(scene, rules);
+    for (const Side side : {kLeft, kRight}) {
+        std::ranges::stable_sort(by_side[side], {}, &Candidate::distance_m);
+        for (const Candidate& candidate : by_side[side]) starts[side].push_back(candidate.vertex);
+    }
+    return starts;
 }
 
 }  // namespace conelane

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <set>
+#include <span>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -222,16 +225,18 @@ TEST(ClcDetector, AnExactlySymmetricSceneIsSearchedAlikeFromBothSides) {
 }
 
 TEST(ClcDetector, AnswersTheSameOnEachCallAndInAnyOrderOfTheCones) {
-    const std::unique_ptr<LaneDetector> detector = make_clc_detector({});
-    for (unsigned seed = 0; seed < 20; ++seed) {
-        SCOPED_TRACE(seed);
-        Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
-        const LaneAnswer first = detector->detect(scene, {});
-        EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
-        std::ranges::reverse(scene.cones);
-        const LaneAnswer reversed = detector->detect(scene, {});
-        EXPECT_EQ(reversed.lane, first.lane);
-        EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
+    for (const ClcOptions& options : {ClcOptions{}, extended_clc_options()}) {
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        for (unsigned seed = 0; seed < 20; ++seed) {
+            SCOPED_TRACE(seed);
+            Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
+            const LaneAnswer first = detector->detect(scene, {});
+            EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
+            std::ranges::reverse(scene.cones);
+            const LaneAnswer reversed = detector->detect(scene, {});
+            EXPECT_EQ(reversed.lane, first.lane);
+            EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
+        }
     }
 }
 
@@ -277,6 +282,40 @@ TEST(ClcDetector, SearchesASecondTimeOnlyWhereTheFirstSearchIsNotComplete) {
         for (const auto& lane : candidates(hard, twice)) more += of_one.contains(lane) ? 0 : 1;
     }
     EXPECT_GT(more, 100u);
+}
+
+/// Long lanes without sharp turns.
+class StraightestRanking final : public LaneRanking {
+  public:
+    void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const override {
+        const std::span<const std::string_view> names = lane_feature_names();
+        const auto turn =
+            static_cast<std::size_t>(std::ranges::find(names, "sharpest_turn_rad") - names.begin());
+        for (std::size_t i = 0; i < lanes.size(); ++i) scores[i] = lanes[i][0] - 100.0 * lanes[i][turn];
+    }
+};
+
+TEST(ClcDetector, SearchesAroundTheLaneRankedFirst) {
+    // A straight lane of 3.5 m steps and a false positive (1000) 0.3 m beside its left boundary, between the
+    // second and the third cone; the search takes it and spends its iterations beyond.
+    Scene scene;
+    for (int i = 0; i < 14; ++i) {
+        scene.cones.push_back({2 * i, {1.0 + 3.5 * i, 1.8}});
+        scene.cones.push_back({2 * i + 1, {1.0 + 3.5 * i, -1.8}});
+    }
+    scene.cones.push_back({1000, {6.2, 2.1}});
+    ClcOptions options = extended_clc_options();
+    options.ranking = std::make_shared<StraightestRanking>();
+    options.starting_pairs = 1;
+    options.iteration_limit = 60;
+    options.neighbourhoods = 0;
+    EXPECT_THAT(detect(scene, options).lane.left, ::testing::Contains(1000));
+    options.neighbourhoods = 1;
+    const LaneAnswer answer = detect(scene, options);
+    EXPECT_THAT(answer.lane.left, ::testing::Not(::testing::Contains(1000)));
+    EXPECT_EQ(answer.lane.left.size(), 14u);
+    EXPECT_GT(answer.enumeration->iterations, 60);
+    EXPECT_LE(answer.enumeration->iterations, 60 + options.neighbourhood_iterations);
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
@@ -344,6 +383,8 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.largest_radius_m = 1.0; }), "largest_radius");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhoods = -1; }), "neighbourhoods");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhood_iterations = 0; }), "neighbourhood_iterations");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");
 }

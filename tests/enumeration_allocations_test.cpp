@@ -1,3 +1,4 @@
+#include "graph_search/lane_neighbourhood.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
 
 #include <cstdlib>
@@ -69,6 +70,28 @@ TEST_P(EnumerationAllocations, NoneOnceTheMemoryIsThere) {
     EXPECT_GT(pairs.found().size(), 1000u);
     EXPECT_EQ(search(20000), 0u);
     EXPECT_EQ(search(2500), 0u);
+}
+
+TEST_P(EnumerationAllocations, NoneAroundALaneEither) {
+    EnumerationRules rules;
+    rules.with_features = GetParam();
+    SearchGraph graph;
+    graph.build(points(), rules.d_max_m);
+    PathPairVertices lane;
+    for (Vertex vertex = 0; vertex < 30; ++vertex) lane[vertex % 2].push_back(vertex);
+    LaneNeighbourhood neighbourhood;
+    PathPairs pairs;
+    const auto search = [&] {
+        pairs.clear();
+        SearchBudget budget;
+        budget.iteration_limit = 100'000;
+        const std::size_t before = allocations;
+        neighbourhood.run(graph, lane, {}, {1.0, 0.0}, rules, budget, pairs);
+        return allocations - before;
+    };
+    EXPECT_GT(search(), 0u) << "allocations are counted";
+    EXPECT_GT(pairs.found().size(), 10u);
+    EXPECT_EQ(search(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutFeatures, EnumerationAllocations, ::testing::Bool());

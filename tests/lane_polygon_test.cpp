@@ -190,6 +190,35 @@ TEST(IntersectionOverUnionProperty, SymmetricBoundedAndTheSameWhereverTheLanesLi
     }
 }
 
+TEST(IntersectionOverUnionOfSimple, IsThatOfAnyLanes) {
+    const LaneOutline circuit{kOuterClockwise, kInnerClockwise, true};
+    EXPECT_NEAR(intersection_over_union_of_simple(circuit, circuit), 1.0, 1e-12);
+    EXPECT_NEAR(intersection_over_union_of_simple(straight(10), straight(10, 1.0)), 3.0 / 5.0, 1e-12);
+    EXPECT_EQ(intersection_over_union_of_simple(straight(10), with_swapped_sides(straight(10))), 0.0);
+    EXPECT_EQ(intersection_over_union_of_simple(straight(10), straight(10, 9.0)), 0.0);
+    EXPECT_EQ(intersection_over_union_of_simple(straight(10), {{{0, 0}}, {{0, 1}, {1, 1}}}), 0.0);
+    boost::random::uniform_real_distribution<double> jitter_m(-0.9, 0.9);
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Random random(seed);
+        // Boundaries that stay on their side of the x axis, so that no outline crosses itself.
+        const auto lane = [&] {
+            LaneOutline outline;
+            for (int i = 0; i < 8; ++i) {
+                const double left_m = 2.0 + jitter_m(random);
+                outline.left.emplace_back(3.0 * i + jitter_m(random), left_m);
+                const double right_m = -2.0 + jitter_m(random);
+                outline.right.emplace_back(3.0 * i + jitter_m(random), right_m);
+            }
+            return outline;
+        };
+        const LaneOutline a = lane();
+        const LaneOutline b = lane();
+        EXPECT_NEAR(intersection_over_union_of_simple(a, b), intersection_over_union(a, b), 1e-6);
+        EXPECT_NEAR(intersection_over_union_of_simple(b, circuit), intersection_over_union(b, circuit), 1e-6);
+    }
+}
+
 /// Turns of closed loops about a point, counter-clockwise positive.
 int winding(const std::vector<Point>& loop, const Point& about) {
     int turns = 0;

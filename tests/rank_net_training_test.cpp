@@ -1,6 +1,7 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "experiments/training/training_run.hpp"
+#include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 
@@ -217,6 +218,27 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
               "late_divergence_penalty");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
     EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
+}
+
+TEST(CandidateLists, HoldTheLanesAroundTheBestWhereThereIsARanking) {
+    SceneOptions scenes;
+    scenes.false_positive_rates = {0.3};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 30.0;
+    const SceneSet set = make_scene_set({"generated:kidney@2"}, scenes);
+    CandidateListOptions options;
+    options.search = extended_search_options();
+    options.show_progress = false;
+    const std::vector<CandidateList> without = enumerate_candidates(set, options);
+    options.ranking = extended_rank_net();
+    const std::vector<CandidateList> with = enumerate_candidates(set, options);
+    ASSERT_EQ(with.size(), without.size());
+    ASSERT_FALSE(with.empty());
+    for (std::size_t i = 0; i < with.size(); ++i) {
+        EXPECT_GT(with[i].lanes.size(), without[i].lanes.size());
+        EXPECT_EQ(with[i].iou.size(), with[i].lanes.size());
+        EXPECT_GE(with[i].best_iou(), without[i].best_iou());
+    }
 }
 
 TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {

@@ -9,6 +9,7 @@
 #include "graph_search/search_graph.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,7 +82,7 @@ void rank(benchmark::State& state, const ClcOptions& options) {
     std::vector<LaneFeatures> candidates;
     for (const Scene& scene : scenes()) {
         (void)search.run(scene, request);
-        const std::vector<LaneFeatures>& found = std::as_const(search).pairs().features();
+        const std::span<const LaneFeatures> found = std::as_const(search).pairs().features();
         candidates.insert(candidates.end(), found.begin(), found.end());
         if (candidates.size() > 5000) break;
     }

@@ -1,11 +1,15 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"
+#include "model/invalid_input.hpp"
 
+#include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,6 +26,7 @@ struct Options {
     }
     TrainingRunOptions run;
     bool extended = false;
+    std::string policy;
     unsigned threads = 1;
     std::string out;
 };
@@ -36,6 +41,19 @@ void print(const char* of, const RankingFigures& figures) {
         100.0 * figures.least_critical_share);
 }
 
+void read_policy(const std::string& path, TrainingRunOptions& run) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) throw InputError(path, 0, "--policy", "cannot be read");
+    try {
+        run.candidates.ranking = make_rank_net(parse_rank_net(text.str()));
+        run.policy_record = rank_net_training(text.str());
+    } catch (const InvalidInput& error) {
+        throw InputError(path, 0, "", error.what());
+    }
+}
+
 void train(Options& options) {
     TrainingRunOptions& run = options.run;
     run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
@@ -43,6 +61,7 @@ void train(Options& options) {
         run.candidates.search = extended_search_options();
         run.training.loss = RankLoss::choice;
     }
+    if (!options.policy.empty()) read_policy(options.policy, run);
     run.training.seed = run.scenes.seed;
     run.candidates.seed = run.scenes.seed;
     run.scenes.threads = options.threads;
@@ -71,11 +90,18 @@ void add_train_command(CLI::App& program) {
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
+    command.add_option("--policy", options->policy,
+                       "weights (JSON) of an earlier training: the search around the lanes that it ranks "
+                       "first gives candidates too");
     command.add_flag("--extended", options->extended,
                      "the network of clc, on its search, by all features and the quality of its choice; "
                      "without it that of clc-paper");
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
+    command
+        .add_option("--scenes-a-step", run.training.scenes_a_step,
+                    "scenes to a step of Adam, with --extended")
+        ->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
     command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
         ->capture_default_str();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <boost/polygon/polygon.hpp>
 
@@ -80,6 +81,70 @@ Region region_of(const LaneOutline& lane, const Grid& grid) {
     return region;
 }
 
+/// An edge of an outline, from its left end to its right one.
+struct Edge {
+    Point begin;
+    double end_x;
+    double slope;
+    double sign;  ///< 1 where the outline goes to the right
+
+    [[nodiscard]] double at(double x) const { return begin.y() + slope * (x - begin.x()); }
+};
+
+void add_loop(std::span<const Point> loop, std::vector<Edge>& edges) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point& from = loop[i];
+        const Point& to = loop[(i + 1) % loop.size()];
+        if (from.x() == to.x()) continue;
+        const bool to_the_right = from.x() < to.x();
+        const double slope = (to.y() - from.y()) / (to.x() - from.x());
+        edges.push_back(
+            {to_the_right ? from : to, std::max(from.x(), to.x()), slope, to_the_right ? 1.0 : -1.0});
+    }
+}
+
+std::vector<Edge> edges_of(const LaneOutline& lane) {
+    std::vector<Point> left = lane.left;
+    std::vector<Point> right(lane.right.rbegin(), lane.right.rend());
+    std::vector<Edge> edges;
+    if (lane.closed) {
+        add_loop(left, edges);
+        add_loop(right, edges);
+    } else {
+        left.insert(left.end(), right.begin(), right.end());
+        add_loop(left, edges);
+    }
+    return edges;
+}
+
+/// Integral of the product of the clockwise turns of both about a point. How often an outline turns about a
+/// point is the sum of the signs of the edges above it, so the product is a sum over pairs of edges, each
+/// counting what lies below both. `floor_m`: a height below everything.
+double shared_area_m2(std::span<const Edge> a, std::span<const Edge> b, double floor_m) {
+    double area_m2 = 0.0;
+    for (const Edge& e : a) {
+        for (const Edge& f : b) {
+            const double from = std::max(e.begin.x(), f.begin.x());
+            const double to = std::min(e.end_x, f.end_x);
+            if (from >= to) continue;
+            // Trapezoids below the lower one, two where they cross.
+            const double e_from = e.at(from) - floor_m;
+            const double e_to = e.at(to) - floor_m;
+            const double above_from = e_from - (f.at(from) - floor_m);
+            const double above_to = e_to - (f.at(to) - floor_m);
+            double below = (e_from + e_to) / 2.0 * (to - from);
+            if (above_from > 0.0 && above_to > 0.0) {
+                below -= (above_from + above_to) / 2.0 * (to - from);
+            } else if (above_from > 0.0 || above_to > 0.0) {
+                const double above = std::max(above_from, above_to);
+                below -= above / 2.0 * (to - from) * above / std::abs(above_from - above_to);
+            }
+            area_m2 += e.sign * f.sign * below;
+        }
+    }
+    return area_m2;
+}
+
 double area_units(const Region& region) {
     return static_cast<double>(bp::area(region));
 }
@@ -113,6 +178,27 @@ double intersection_over_union(const LaneOutline& a, const LaneOutline& b) {
     Region either;
     either = region_a | region_b;
     return std::min(1.0, intersection / area_units(either));
+}
+
+double intersection_over_union_of_simple(const LaneOutline& a, const LaneOutline& b) {
+    if (!has_region(a) || !has_region(b)) return 0.0;
+    double floor_m = std::numeric_limits<double>::infinity();
+    for (const std::vector<Point>* side : {&a.left, &a.right, &b.left, &b.right}) {
+        for (const Point& vertex : *side) floor_m = std::min(floor_m, vertex.y());
+    }
+    const std::vector<Edge> edges_a = edges_of(a);
+    const std::vector<Edge> edges_b = edges_of(b);
+    const double shared_m2 = shared_area_m2(edges_a, edges_b, floor_m);
+    if (!(shared_m2 > 0.0)) return 0.0;
+    const auto area_m2 = [&](const std::vector<Edge>& edges) {
+        double sum_m2 = 0.0;
+        for (const Edge& edge : edges) {
+            const double mean_height_m = (edge.begin.y() + edge.at(edge.end_x)) / 2.0 - floor_m;
+            sum_m2 += edge.sign * mean_height_m * (edge.end_x - edge.begin.x());
+        }
+        return sum_m2;
+    };
+    return std::min(1.0, shared_m2 / (area_m2(edges_a) + area_m2(edges_b) - shared_m2));
 }
 
 }  // namespace conelane::experiments

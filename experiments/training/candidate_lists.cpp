@@ -43,9 +43,9 @@ std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::st
     return numbers;
 }
 
-LaneOutline outline(const Lane& lane, const Scene& scene) {
-    std::unordered_map<ConeId, Point> position_of;  // for look-up only
-    for (const Cone& cone : scene.cones) position_of.emplace(cone.id, cone.position);
+using Positions = std::unordered_map<ConeId, Point>;  // for look-up only
+
+LaneOutline outline(const Lane& lane, const Positions& position_of) {
     LaneOutline result;
     for (const ConeId id : lane.left) result.left.push_back(position_of.at(id));
     for (const ConeId id : lane.right) result.right.push_back(position_of.at(id));
@@ -75,9 +75,12 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             CandidateSearch& search = searches.local();
             CandidateSearch::Request request;
             request.with_features = true;
+            request.ranking = options.ranking.get();
             (void)search.run(scene.scene, request);
             const PathPairs& pairs = search.pairs();
-            const LaneOutline ground_truth = outline(*scene.ground_truth, scene.scene);
+            Positions position_of;
+            for (const Cone& cone : scene.scene.cones) position_of.emplace(cone.id, cone.position);
+            const LaneOutline ground_truth = outline(*scene.ground_truth, position_of);
             const TrackBoundaries& annotated = set.tracks.at(scene.track);
             CandidateList& list = lists[i];
             list.track = scene.track;
@@ -86,8 +89,9 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             for (const std::size_t k :
                  draw(options.most_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
                 list.lanes.push_back(pairs.features()[k]);
-                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), scene.scene);
-                list.iou.push_back(intersection_over_union(lane, ground_truth));
+                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), position_of);
+                // Candidates satisfy the constraints.
+                list.iou.push_back(intersection_over_union_of_simple(lane, ground_truth));
                 list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
             }
             progress.advance();

@@ -76,6 +76,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     run.trained = ranking_figures(lists, *ranking);
     CandidateListOptions all_candidates = options.candidates;
     all_candidates.most_per_scene = 0;
+    all_candidates.ranking = ranking;
     run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
 
     const Json record{{"tracks", track_names(set)},
@@ -83,6 +84,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
+                      {"policy", Json::parse(options.policy_record)},
                       {"network", describe(options.training)},
                       {"figures_of_training", describe(run.trained)},
                       {"figures_of_hold_out", describe(run.held_out)},

@@ -14,8 +14,9 @@ struct TrainingRunOptions {
     std::vector<std::string> tracks;    ///< SPECs of load_tracks
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
     SceneOptions scenes;
-    double hold_out_every_m = 10.0;  ///< travel between poses there: all candidates of a scene are scored
-    CandidateListOptions candidates;
+    double hold_out_every_m = 10.0;      ///< travel between poses there: all candidates of a scene are scored
+    CandidateListOptions candidates;     ///< those of the hold-out are led by the network that was trained
+    std::string policy_record = "null";  ///< of the training of candidates.ranking; JSON
     RankNetTrainingOptions training;
 };
 
