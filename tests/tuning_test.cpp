@@ -163,7 +163,7 @@ TEST(Losses, NameTheConstraintThatTheGroundTruthBreaks) {
     const auto loss = [&](auto change) {
         RldParameters parameters;
         change(parameters);
-        return loss_on(scene, parameters, 12, 1e5);
+        return loss_on(scene, parameters, {.nearest = 12, .time_limit_ms = 1e5}).cause;
     };
     EXPECT_EQ(loss([](RldParameters&) {}), Loss::accurate);
     EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::breaks_spacing);
@@ -188,11 +188,11 @@ TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
     scene.ground_truth = Lane{{0, 1, 2}, {10, 11, 12}};
     RldParameters parameters;
     parameters.d_e = 2.0;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_benefit);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_benefit);
     parameters.w_s = 0.6;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_spacing);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_spacing);
     parameters.d_e = 4.0;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::accurate);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::accurate);
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {
