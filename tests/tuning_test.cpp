@@ -195,6 +195,45 @@ TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
     EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::accurate);
 }
 
+TEST(Losses, SayWhereWrongConesAre) {
+    const Lane truth{{1, 2, 3, 4}, {11, 12, 13}};
+    EXPECT_EQ(wrong_cones(truth, truth), WrongCones{});
+    // Left: 9 before 2 instead of 1, 8 instead of 3 inside; right: ends one too early.
+    EXPECT_EQ(wrong_cones({{9, 2, 8, 4}, {11, 12}}, truth),
+              (WrongCones{.near_end = 2, .inside = 2, .far_end = 1}));
+    EXPECT_EQ(wrong_cones({{1, 2, 3, 4, 5, 6}, {7, 8}}, truth),
+              (WrongCones{.far_end = 2, .on_lost_boundary = 5}));
+}
+
+/// The last cones of the cone set are false, in line with both boundaries and nearer than the true ones
+/// behind.
+TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
+    AnnotatedScene scene;
+    scene.scene.id = "false_cone_at_the_end";
+    scene.scene.pose.position = {-1, 0};
+    for (int i = 0; i < 8; ++i) {
+        scene.scene.cones.push_back({.id = 1 + i, .position = {3.2 * i, 1.6}});
+        scene.scene.cones.push_back({.id = 101 + i, .position = {3.2 * i, -1.6}});
+    }
+    scene.scene.cones.push_back({.id = 200, .position = {8.6, 2.9}});
+    scene.scene.cones.push_back({.id = 201, .position = {8.6, -2.9}});
+    scene.ground_truth = Lane{{1, 2, 3, 4, 5, 6, 7, 8}, {101, 102, 103, 104, 105, 106, 107, 108}};
+    EvaluationOptions options;
+    options.nearest = 8;
+    options.time_limit_ms = 1e5;
+    const RldParameters parameters;
+    const SceneLoss without = loss_on(scene, parameters, options);
+    EXPECT_NE(without.cause, Loss::accurate);
+    ASSERT_TRUE(without.wrong);
+    EXPECT_EQ(without.wrong->far_end, 2U);
+    options.context = 18;
+    EXPECT_EQ(loss_on(scene, parameters, options).cause, Loss::accurate);
+    SceneSet set;
+    set.scenes = {scene};
+    set.tracks[""] = {{{-20, 1.6}, {80, 1.6}}, {{-20, -1.6}, {80, -1.6}}, false};
+    EXPECT_EQ(mean_over_scenes(Evaluation(set, options)(parameters)), 1.0);
+}
+
 TEST(ShippedParameters, AreValidAndFoundByName) {
     for (const std::string_view name : shipped_rld_parameter_names()) {
         EXPECT_NO_THROW(validate(shipped_rld_parameters(name).value())) << name;
