@@ -17,6 +17,7 @@
 namespace conelane::experiments {
 namespace {
 
+using testing::AnyOf;
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -32,6 +33,7 @@ ExtrasOptions two_folds() {
     options.folds = {{{"straight"}, {}}, {{"circle"}, {}}};
     options.color_errors = {0.0, 1.0};
     options.color_weights = {0.0, 1.0};
+    options.benefits = {1.0, 2.0};
     return options;
 }
 
@@ -42,13 +44,14 @@ TEST(Extras, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
     EXPECT_EQ(geometry.knowledge, ExtraKnowledge{});
     EXPECT_GT(geometry.scenes, 30U);
     EXPECT_GT(geometry.accurate, 0.3);
-    EXPECT_TRUE(geometry.color_weights.empty());
+    EXPECT_TRUE(geometry.weights.empty());
     EXPECT_GT(rows[1].accurate, geometry.accurate + 0.05);  // confidences
     EXPECT_GT(rows[1].success, geometry.success);
+    EXPECT_THAT(rows[1].weights, Each(AnyOf(1.0, 2.0)));
     EXPECT_GT(rows[2].accurate, geometry.accurate);  // right colours
-    EXPECT_THAT(rows[2].color_weights, ElementsAre(1.0, 1.0));
+    EXPECT_THAT(rows[2].weights, ElementsAre(1.0, 1.0));
     EXPECT_EQ(rows[3].knowledge.color_error, 1.0);  // every colour wrong: each fold keeps to geometry
-    EXPECT_THAT(rows[3].color_weights, ElementsAre(0.0, 0.0));
+    EXPECT_THAT(rows[3].weights, ElementsAre(0.0, 0.0));
     EXPECT_EQ(rows[3].accurate, geometry.accurate);
 }
 

@@ -80,24 +80,36 @@ void require_held_out_tracks(const SceneSet& set, const ExtrasOptions& options) 
     }
 }
 
+/// The fold's parameters under each weight of what is known.
+std::vector<RldParameters> choices(const ExtraKnowledge& knowledge, const HeldOut& fold,
+                                   const ExtrasOptions& options) {
+    std::vector<RldParameters> choices;
+    const auto add = [&](const std::vector<double>& weights, double RldParameters::*weight) {
+        for (const double value : weights) {
+            choices.push_back(fold.parameters);
+            choices.back().use_confidence = knowledge.confidence;
+            choices.back().*weight = value;
+        }
+    };
+    if (knowledge.confidence) add(options.benefits, &RldParameters::w_b);
+    if (knowledge.color_error) add(options.color_weights, &RldParameters::w_color);
+    if (choices.empty()) choices.push_back(fold.parameters);
+    return choices;
+}
+
 std::vector<ExtrasRow> rows_with(const ExtraKnowledge& knowledge, const ExtrasOptions& options,
                                  Progress& progress) {
     const SceneSet set = scenes_with(knowledge, options);
     require_held_out_tracks(set, options);
     const Evaluation accuracy = evaluation_of(set, TuningObjective::accuracy, options);
     const Evaluation success = evaluation_of(set, TuningObjective::success, options);
-    const std::vector<double> weights =
-        knowledge.color_error ? options.color_weights : std::vector<double>{0.0};
     ByRate accurate;
     ByRate successful;
     std::vector<double> chosen;
     for (const HeldOut& fold : options.folds) {
-        RldParameters parameters = fold.parameters;
-        parameters.use_confidence = knowledge.confidence;
-        RldParameters best = parameters;
+        RldParameters best;
         std::vector<LapFigure> laps_of_best;
-        for (const double weight : weights) {
-            parameters.w_color = weight;
+        for (const RldParameters& parameters : choices(knowledge, fold, options)) {
             std::vector<LapFigure> laps = accuracy(parameters);
             progress.advance();
             if (!laps_of_best.empty() && mean_of_others(fold, laps) <= mean_of_others(fold, laps_of_best)) {
@@ -108,6 +120,7 @@ std::vector<ExtrasRow> rows_with(const ExtraKnowledge& knowledge, const ExtrasOp
         }
         add_held_out(accurate, fold, laps_of_best);
         add_held_out(successful, fold, success(best));
+        if (knowledge.confidence) chosen.push_back(best.w_b);
         if (knowledge.color_error) chosen.push_back(best.w_color);
     }
     std::vector<ExtrasRow> rows;
@@ -172,7 +185,8 @@ std::vector<ExtrasRow> extras_rows(const ExtrasOptions& options) {
     std::vector<ExtraKnowledge> all{{}, {.confidence = true, .color_error = {}}};
     for (const double error : options.color_errors)
         all.push_back({.confidence = false, .color_error = error});
-    const std::size_t evaluations = 2 + options.color_errors.size() * options.color_weights.size();
+    const std::size_t evaluations =
+        1 + options.benefits.size() + options.color_errors.size() * options.color_weights.size();
     Progress progress("extras", options.folds.size() * evaluations);
     std::vector<ExtrasRow> rows;
     for (const ExtraKnowledge& knowledge : all) {
@@ -183,12 +197,12 @@ std::vector<ExtrasRow> extras_rows(const ExtrasOptions& options) {
 
 std::string extras_table(std::span<const ExtrasRow> rows) {
     std::string table = fmt::format("{:<20} {:>5} {:>7} {:>10} {:>9}  {}\n", "known", "fp %", "scenes",
-                                    "accurate %", "success %", "w_color by fold");
+                                    "accurate %", "success %", "w_b or w_color by fold");
     for (const ExtrasRow& row : rows) {
-        table += fmt::format(
-            "{:<20} {:>5.1f} {:>7} {:>10.1f} {:>9.1f}  {}\n", to_string(row.knowledge),
-            100.0 * row.false_positive_rate, row.scenes, 100.0 * row.accurate, 100.0 * row.success,
-            row.color_weights.empty() ? "-" : fmt::format("{}", fmt::join(row.color_weights, " ")));
+        table += fmt::format("{:<20} {:>5.1f} {:>7} {:>10.1f} {:>9.1f}  {}\n", to_string(row.knowledge),
+                             100.0 * row.false_positive_rate, row.scenes, 100.0 * row.accurate,
+                             100.0 * row.success,
+                             row.weights.empty() ? "-" : fmt::format("{}", fmt::join(row.weights, " ")));
     }
     return table;
 }
@@ -205,7 +219,7 @@ void write_extras_rows(const std::filesystem::path& file, std::span<const Extras
         json["scenes"] = row.scenes;
         json["accurate"] = row.accurate;
         json["success"] = row.success;
-        if (!row.color_weights.empty()) json["color_weights"] = row.color_weights;
+        if (!row.weights.empty()) json["weights"] = row.weights;
         if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
         if (options.evaluation.context) json["context"] = *options.evaluation.context;
         json["commit"] = origin.commit;
