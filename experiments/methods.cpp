@@ -14,8 +14,8 @@ namespace {
 
 /// Cone-set size of the RLD paper's on-board runs.
 constexpr std::size_t kRldConeSet = 12;
-/// As much as the exact search solves within a millisecond.
-constexpr std::size_t kRldContext = 30;
+/// More do not make lanes more accurate.
+constexpr std::size_t kRldContext = 24;
 
 std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
                                        std::optional<std::size_t> nearest, const MethodOptions& options,
