@@ -36,7 +36,7 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
 
 TEST(ParameterBox, LeadsToThePointAndBack) {
     RldParameters start;
-    start.s_crit = 5.0;
+    start.s_crit = 8.0;
     const RldParameters back = from_unit_cube(to_unit_cube(start), start);
     for (const TunedParameter& tuned : tuned_parameters()) {
         EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
@@ -49,7 +49,7 @@ TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {
     start.s_crit = 1.0;
     start.d_min = 3.5;
     const RldParameters back = from_unit_cube(to_unit_cube(start), start);
-    EXPECT_EQ(back.s_crit, 4.0);
+    EXPECT_EQ(back.s_crit, 7.0);
     EXPECT_EQ(back.d_min, 2.8);
 }
 
