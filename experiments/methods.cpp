@@ -14,12 +14,15 @@ namespace {
 
 /// Cone-set size of the RLD paper's on-board runs.
 constexpr std::size_t kRldConeSet = 12;
+/// More do not make lanes more accurate.
+constexpr std::size_t kRldContext = 24;
 
 std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
-                                       std::optional<std::size_t> nearest, const MethodOptions& options) {
+                                       std::optional<std::size_t> nearest, const MethodOptions& options,
+                                       std::optional<std::size_t> context = std::nullopt) {
     if (options.nearest) nearest = options.nearest;
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {rld_parameters(options), nearest, 1e-9});
+                             {.parameters = rld_parameters(options), .nearest = nearest, .context = context});
 }
 
 /// Shows its detector the nearest cones only.
@@ -47,43 +50,51 @@ std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOption
     return cut_to(make_clc_detector(clc), options.nearest);
 }
 
-constexpr std::array<MethodEntry, 9> kMethods{{
-    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, true,
+constexpr std::array<MethodEntry, 10> kMethods{{
+    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, std::nullopt, true,
      [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
-     true,
+     std::nullopt, true,
      [](const MethodOptions& options) {
          return make_rld("cbc-main", Formulation::paper, kRldConeSet, options);
      }},
-    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt, true,
+    {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt, std::nullopt, true,
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, std::nullopt, options);
      }},
+    {"rld-context", "RLD by the exact search among more cones, then cut to the nearest", kRldConeSet,
+     kRldContext, true,
+     [](const MethodOptions& options) {
+         return make_rld("path-pair", Formulation::tight, kRldConeSet, options, kRldContext);
+     }},
     {"clc", "CLC; NVD weighs distances, a second search, one around the best, a network on all features",
-     std::nullopt, false,
+     std::nullopt, std::nullopt, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
-    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, false,
+    {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, std::nullopt,
+     false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.warm_start = true;
          return make_clc(clc, options);
      }},
-    {"clc-no-detours", "clc without the search around the lane that it ranks first", std::nullopt, false,
+    {"clc-no-detours", "clc without the search around the lane that it ranks first", std::nullopt,
+     std::nullopt, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.neighbourhoods = 0;
          return make_clc(clc, options);
      }},
-    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, false,
-     [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
-    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt, false,
+    {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, std::nullopt,
+     false, [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
+    {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt, std::nullopt,
+     false,
      [](const MethodOptions& options) {
          ClcOptions clc = paper_clc_options();
          clc.graph = SearchGraphKind::delaunay;
          return make_clc(clc, options);
      }},
-    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt, false,
-     [](const MethodOptions& options) { return make_clc({}, options); }},
+    {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt, std::nullopt,
+     false, [](const MethodOptions& options) { return make_clc({}, options); }},
 }};
 
 }  // namespace
@@ -103,6 +114,11 @@ const MethodEntry& find_method(std::string_view name) {
 
 std::optional<std::size_t> cone_set_size(const MethodEntry& method, const MethodOptions& options) {
     return options.nearest ? options.nearest : method.nearest;
+}
+
+Scene seen_by(const MethodEntry& method, const MethodOptions& options, const Scene& scene) {
+    const std::optional<std::size_t> nearest = cone_set_size(method, options);
+    return nearest ? nearest_ahead(scene, std::max(*nearest, method.context.value_or(0))) : scene;
 }
 
 RldParameters rld_parameters(const MethodOptions& options) {

@@ -2,6 +2,7 @@
 
 #include "model/lane.hpp"
 #include "model/rld_parameters.hpp"
+#include "model/scene.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -23,6 +24,9 @@ struct MethodEntry {
     std::string_view meaning;
     std::optional<std::size_t>
         nearest;  ///< cone-set size of its own: the nearest ahead; all cones where absent
+    /// The nearest cones that it finds its lane among before it cuts it to the cone set, where these are
+    /// more.
+    std::optional<std::size_t> context;
     bool is_rld;  ///< uses RLD parameters
     std::unique_ptr<LaneDetector> (*make)(const MethodOptions& options);
 };
@@ -36,6 +40,9 @@ struct MethodEntry {
 /// The cone-set size that the method gets under these options.
 [[nodiscard]] std::optional<std::size_t> cone_set_size(const MethodEntry& method,
                                                        const MethodOptions& options);
+
+/// What of a scene the method finds its lane among: its cone set, or the context where that is larger.
+[[nodiscard]] Scene seen_by(const MethodEntry& method, const MethodOptions& options, const Scene& scene);
 
 /// The parameters that an RLD method gets under these options.
 [[nodiscard]] RldParameters rld_parameters(const MethodOptions& options);

@@ -201,9 +201,12 @@ class Checker {
     [[nodiscard]] int color_faults(const Edge& edge, bool along_the_heading) const {
         std::set<ConeColor> colors{scene_.cones[edge.i].color, scene_.cones[edge.j].color};
         int faults = colors.contains(ConeColor::blue) && colors.contains(ConeColor::yellow) ? 1 : 0;
-        const Real left = wedge(heading_, along(position(edge.i), position(edge.j), 0.5L) - car_);
-        if (along_the_heading && left < -kTie && colors.contains(ConeColor::blue)) ++faults;
-        if (along_the_heading && left > kTie && colors.contains(ConeColor::yellow)) ++faults;
+        const Vector v = position(edge.j) - position(edge.i);
+        if (!along_the_heading || std::abs(dot(v, heading_)) <= kTie) return faults;
+        const Real of_axis = wedge(heading_, along(position(edge.i), position(edge.j), 0.5L) - car_);
+        const Real of_car = wedge(v, position(edge.i) - car_) * (dot(v, heading_) > 0 ? 1 : -1);
+        if (of_axis < -kTie && of_car < -kTie && colors.contains(ConeColor::blue)) ++faults;
+        if (of_axis > kTie && of_car > kTie && colors.contains(ConeColor::yellow)) ++faults;
         return faults;
     }
 

@@ -2,6 +2,7 @@
 
 #include "model/scene.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -19,6 +20,19 @@ struct Lane {
 
     bool operator==(const Lane&) const = default;
 };
+
+/// Widest lane [m]: beyond it one side has gone on alone.
+inline constexpr double kWidestLane_m = 6.5;
+
+/// Drops far ends until the last cone of each side is within kWidestLane_m of the polyline of the other side;
+/// where both ends are too far, the left one goes first. A closed lane stays as it is, and so does a lane
+/// with an empty side. Precondition: every id of the lane is a cone of the scene.
+void even_far_ends(Lane& lane, const Scene& scene);
+
+/// What of a lane lies among the scene's `nearest` cones ahead: each boundary is cut at its first cone that
+/// is none of them, then the far ends are evened. A boundary may be left with one cone or none, and only a
+/// lane that was not cut stays closed. Precondition: every id of the lane is a cone of the scene.
+[[nodiscard]] Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest);
 
 enum class LaneStatus {
     found,
@@ -47,14 +61,21 @@ struct Enumeration {
     std::vector<LaneCandidate> candidates;  ///< in the order met; empty unless asked for
 };
 
+/// The lane that was found among more cones than it is answered for, before it was cut to those.
+struct UncutLane {
+    Lane lane;
+    std::optional<Optimality> optimality;
+};
+
 /// A detector's answer. `lane` is empty unless status is found. What a method does not know stays absent.
 struct LaneAnswer {
     LaneStatus status = LaneStatus::none;
     Lane lane;
     std::string message;
-    std::optional<double> confidence;  ///< probability that the lane is right
-    std::optional<double> trusted_m;   ///< distance up to which the lane can be trusted
-    std::optional<Optimality> optimality;
+    std::optional<double> confidence;      ///< probability that the lane is right
+    std::optional<double> trusted_m;       ///< distance up to which the lane can be trusted
+    std::optional<Optimality> optimality;  ///< of `lane` itself; absent where it was cut
+    std::optional<UncutLane> uncut;        ///< where `lane` was cut; no file holds it
     std::optional<Enumeration> enumeration;
 };
 

@@ -27,8 +27,16 @@ double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool alon
     const bool yellow = either_is(ConeColor::yellow);
     double cost = blue && yellow ? 1.0 : 0.0;
     if (along_heading) {
-        const double left_m = scene.pose.left_m(0.5 * (scene.cones[i].position + scene.cones[j].position));
-        if ((blue && left_m < -kTieTolerance) || (yellow && left_m > kTieTolerance)) cost += 1.0;
+        const Point& from = scene.cones[i].position;
+        const Point v = scene.cones[j].position - from;
+        const double ahead = v.dot(scene.pose.heading());
+        const double midpoint_left = scene.pose.left_m(from + 0.5 * v);
+        // In a bend the outer boundary crosses the car's axis, and the inner one turns its line on the car.
+        const double car_left = std::copysign(1.0, ahead) * cross(v, scene.pose.position - from);
+        const bool left_of_car = std::min(midpoint_left, -car_left) > kTieTolerance;
+        const bool right_of_car = std::max(midpoint_left, -car_left) < -kTieTolerance;
+        if (std::abs(ahead) > kTieTolerance && ((blue && right_of_car) || (yellow && left_of_car)))
+            cost += 1.0;
     }
     return cost;
 }

@@ -21,8 +21,10 @@ struct ProblemEdge {
     double spacing_cost;  ///< s_ij (18), without weight
     double heading_cost;  ///< p_ij (25), without weight
     /// One where one cone is blue and the other yellow, and one where an edge along the heading, the only
-    /// place where the car's axis tells sides, is on the wrong side: its midpoint to the right of the axis
-    /// with a blue cone, or to the left with a yellow one.
+    /// place where the car's axis tells sides, is on the wrong side: to the right of the car with a blue
+    /// cone, or to the left with a yellow one. An edge is to the right where its midpoint is to the right of
+    /// the axis and the car to the left of the edge's line, taken along the heading; in a bend one of the two
+    /// may be wrong. Where they differ it is on no side.
     double color_cost;
     double cost;  ///< w_s s_ij + w_p p_ij + w_color color_ij - w_b (29), with use_confidence - w_b q_i q_j
     bool along_heading;  ///< h_ij of (9)

@@ -3,6 +3,7 @@
 #include "model/lane_graph_problem.hpp"
 #include "solvers/deadline.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace conelane {
@@ -29,8 +30,12 @@ class RldDetector : public LaneDetector {
         : solver_(std::move(solver)), options_(options) {}
 
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
-        return options_.nearest ? solve(nearest_ahead(scene, *options_.nearest), limits)
-                                : solve(scene, limits);
+        if (!options_.nearest) return solve(scene, limits);
+        const std::size_t nearest = *options_.nearest;
+        const std::size_t seen = std::max(nearest, options_.context.value_or(nearest));
+        LaneAnswer answer = solve(nearest_ahead(scene, seen), limits);
+        if (seen > nearest) cut(answer, scene, nearest);
+        return answer;
     }
 
     void reset() override { previous_.reset(); }
@@ -65,6 +70,17 @@ class RldDetector : public LaneDetector {
                 Optimality{*report.objective, *report.bound, report.status == SolveStatus::optimal};
         }
         return answer;
+    }
+
+    static void cut(LaneAnswer& answer, const Scene& scene, std::size_t nearest) {
+        if (answer.status != LaneStatus::found) return;
+        Lane part = cut_to_nearest(answer.lane, scene, nearest);
+        answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
+        answer.optimality.reset();
+        answer.lane = std::move(part);
+        if (!answer.lane.left.empty() && !answer.lane.right.empty()) return;
+        answer.lane = {};
+        answer.status = LaneStatus::none;
     }
 
     std::unique_ptr<RldSolver> solver_;

@@ -13,6 +13,10 @@ namespace conelane {
 struct RldDetectorOptions {
     RldParameters parameters;
     std::optional<std::size_t> nearest;  ///< cone-set size: the nearest ahead; all cones where absent
+    /// The lane is found among this many nearest cones, then cut to the cone set (see cut_to_nearest): so it
+    /// goes on beyond the cones that it is answered for, as the real one does, and no false cone gains from
+    /// being the last one in line. Without effect unless it is larger than `nearest`.
+    std::optional<std::size_t> context;
     double absolute_gap = 1e-9;
     bool warm_start = false;  ///< start from the previous scene's lane graph, its cones found again by id
 };

@@ -82,6 +82,31 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
     expect_rejected(unseen, scene);
 }
 
+TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
+    const AnnotatedScene scene = straight_scene();
+    const MethodEntry& method = find_method("rld-context");
+    LaneRecord right{scene.scene.id, "rld-context", method.make({})->detect(scene.scene, {}), 1.0,
+                     method.nearest};
+    ASSERT_TRUE(right.answer.uncut);
+    LaneRecord record = right;
+    check_answer(record, seen_by(method, {}, scene.scene), {});
+    EXPECT_TRUE(record.checked) << record.answer.message;
+
+    LaneRecord longer = right;  // not what the cut leaves
+    longer.answer.lane = longer.answer.uncut->lane;
+    expect_rejected(longer, scene);
+
+    LaneRecord cheaper = right;
+    cheaper.answer.uncut->optimality->objective -= 1.0;
+    cheaper.answer.uncut->optimality->bound -= 1.0;
+    expect_rejected(cheaper, scene);
+
+    LaneRecord leaping = right;  // a cone left out beyond the cut, so the cut leaves the same
+    leaping.answer.uncut->lane.left.erase(leaping.answer.uncut->lane.left.begin() + 8);
+    leaping.answer.uncut->optimality.reset();
+    expect_rejected(leaping, scene);
+}
+
 TEST(CheckAnswer, LeavesWhatHasNoLane) {
     const AnnotatedScene scene = straight_scene();
     LaneRecord none{"a", "rld-pair", {}, 1.0, {}};
@@ -96,7 +121,7 @@ TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
     options.ranges_m = {30.0};
     options.every_m = 15.0;
     const SceneSet set = make_scene_set({"generated:kidney"}, options);
-    for (const char* method : {"rld-cbc", "rld-pair", "clc"}) {
+    for (const char* method : {"rld-cbc", "rld-pair", "rld-context", "clc"}) {
         SCOPED_TRACE(method);
         const MethodEntry& entry = find_method(method);
         std::size_t found = 0;

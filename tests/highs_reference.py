@@ -105,8 +105,11 @@ class Model:
                 benefit *= cones[i].get("confidence", 1.0) * cones[j].get("confidence", 1.0)
             colors = {cones[i].get("color"), cones[j].get("color")}
             color = int({"blue", "yellow"} <= colors)
-            left = cross(self.heading, middle - self.car)
-            if along and (("blue" in colors and left < -TIE) or ("yellow" in colors and left > TIE)):
+            # Left of the car by its axis and by the edge's own line, taken along the heading; or right by both.
+            forward = float(np.dot(v, self.heading))
+            lefts = (cross(self.heading, middle - self.car), math.copysign(1, forward) * cross(v, middle - self.car))
+            if along and abs(forward) > TIE and (("blue" in colors and max(lefts) < -TIE)
+                                                 or ("yellow" in colors and min(lefts) > TIE)):
                 color += 1
             self.cost[column] = p["w_s"] * s + p["w_p"] * heading + p.get("w_color", 0.0) * color - benefit
             if s > p["s_crit"] + TIE or self.length(i, j) == 0.0:

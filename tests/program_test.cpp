@@ -66,7 +66,7 @@ TEST_F(Program, HelpIsEverywhere) {
     EXPECT_EQ(run("--help").exit_code, 0);
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
-          "formulations", "optimality", "backends", "report"}) {
+          "formulations", "optimality", "backends", "report", "tune", "extras"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -91,6 +91,7 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("solve --formulation loose --scenes a.scenes.jsonl --out l.solutions.jsonl",
                    {"--formulation"});
     expect_refused("compare --methods magic --out results", {"method", "magic"});
+    expect_refused("tune --tracks generated:circle --context 24 --out p.json", {"--context", "--nearest"});
 }
 
 TEST_F(Program, BadScenesAreNamedByFileLineAndKey) {
@@ -267,6 +268,37 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/rld-pair.lanes.jsonl results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+}
+
+TEST_F(Program, TuneWithContextLeavesARecordThatExtrasGoesBy) {
+    const std::string tune =
+        "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
+        "--folds 2 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
+    const Outcome tuned = run(tune);
+    ASSERT_EQ(tuned.exit_code, 0) << tuned.errors;
+    EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
+    const nlohmann::json record = nlohmann::json::parse(text_of(path("p.record.json")));
+    EXPECT_EQ(record["nearest"], 8);
+    EXPECT_EQ(record["context"], 16);
+    std::size_t counted = 0;
+    for (const auto& [cause, scenes] : record["losses"]["0.3"].items()) counted += scenes.get<std::size_t>();
+    EXPECT_GT(counted, 5U);
+    EXPECT_TRUE(record.contains("wrong_cones"));
+    EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
+
+    const Outcome extras = run("extras --record p.record.json --out extras.jsonl");
+    ASSERT_EQ(extras.exit_code, 0) << extras.errors;
+    EXPECT_THAT(extras.output, HasSubstr("colours, 20 % wrong"));
+    // Geometry alone, on the held-out tracks: what the tuning says.
+    std::ifstream lines(path("extras.jsonl"));
+    std::string first;
+    std::getline(lines, first);
+    const nlohmann::json geometry = nlohmann::json::parse(first);
+    EXPECT_EQ(geometry["known"], "geometry alone");
+    EXPECT_EQ(geometry["context"], 16);
+    EXPECT_NEAR(geometry["accurate"].get<double>(), record["held_out_figures"]["mean"].get<double>(), 1e-12);
+    expect_refused("extras --record p.json", {"p.json"});
+    expect_refused("extras --record p.record.json --tracks generated:circle", {"--tracks", "straight"});
 }
 
 /// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a

@@ -35,12 +35,22 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
 }
 
 TEST(ParameterBox, LeadsToThePointAndBack) {
-    const RldParameters start;
+    RldParameters start;
+    start.s_crit = 8.0;
     const RldParameters back = from_unit_cube(to_unit_cube(start), start);
     for (const TunedParameter& tuned : tuned_parameters()) {
         EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
     }
     EXPECT_EQ(back.w_b, start.w_b);
+}
+
+TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {
+    RldParameters start;
+    start.s_crit = 1.0;
+    start.d_min = 3.5;
+    const RldParameters back = from_unit_cube(to_unit_cube(start), start);
+    EXPECT_EQ(back.s_crit, 7.0);
+    EXPECT_EQ(back.d_min, 2.8);
 }
 
 TEST(ParameterBox, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
@@ -163,7 +173,7 @@ TEST(Losses, NameTheConstraintThatTheGroundTruthBreaks) {
     const auto loss = [&](auto change) {
         RldParameters parameters;
         change(parameters);
-        return loss_on(scene, parameters, 12, 1e5);
+        return loss_on(scene, parameters, {.nearest = 12, .time_limit_ms = 1e5}).cause;
     };
     EXPECT_EQ(loss([](RldParameters&) {}), Loss::accurate);
     EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::breaks_spacing);
@@ -188,11 +198,50 @@ TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
     scene.ground_truth = Lane{{0, 1, 2}, {10, 11, 12}};
     RldParameters parameters;
     parameters.d_e = 2.0;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_benefit);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_benefit);
     parameters.w_s = 0.6;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::cheaper_spacing);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_spacing);
     parameters.d_e = 4.0;
-    EXPECT_EQ(loss_on(scene, parameters, std::nullopt, 1e5), Loss::accurate);
+    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::accurate);
+}
+
+TEST(Losses, SayWhereWrongConesAre) {
+    const Lane truth{{1, 2, 3, 4}, {11, 12, 13}};
+    EXPECT_EQ(wrong_cones(truth, truth), WrongCones{});
+    // Left: 9 before 2 instead of 1, 8 instead of 3 inside; right: ends one too early.
+    EXPECT_EQ(wrong_cones({{9, 2, 8, 4}, {11, 12}}, truth),
+              (WrongCones{.near_end = 2, .inside = 2, .far_end = 1}));
+    EXPECT_EQ(wrong_cones({{1, 2, 3, 4, 5, 6}, {7, 8}}, truth),
+              (WrongCones{.far_end = 2, .on_lost_boundary = 5}));
+}
+
+/// The last cones of the cone set are false, in line with both boundaries and nearer than the true ones
+/// behind.
+TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
+    AnnotatedScene scene;
+    scene.scene.id = "false_cone_at_the_end";
+    scene.scene.pose.position = {-1, 0};
+    for (int i = 0; i < 8; ++i) {
+        scene.scene.cones.push_back({.id = 1 + i, .position = {3.2 * i, 1.6}});
+        scene.scene.cones.push_back({.id = 101 + i, .position = {3.2 * i, -1.6}});
+    }
+    scene.scene.cones.push_back({.id = 200, .position = {8.6, 2.9}});
+    scene.scene.cones.push_back({.id = 201, .position = {8.6, -2.9}});
+    scene.ground_truth = Lane{{1, 2, 3, 4, 5, 6, 7, 8}, {101, 102, 103, 104, 105, 106, 107, 108}};
+    EvaluationOptions options;
+    options.nearest = 8;
+    options.time_limit_ms = 1e5;
+    const RldParameters parameters;
+    const SceneLoss without = loss_on(scene, parameters, options);
+    EXPECT_NE(without.cause, Loss::accurate);
+    ASSERT_TRUE(without.wrong);
+    EXPECT_EQ(without.wrong->far_end, 2U);
+    options.context = 18;
+    EXPECT_EQ(loss_on(scene, parameters, options).cause, Loss::accurate);
+    SceneSet set;
+    set.scenes = {scene};
+    set.tracks[""] = {{{-20, 1.6}, {80, 1.6}}, {{-20, -1.6}, {80, -1.6}}, false};
+    EXPECT_EQ(mean_over_scenes(Evaluation(set, options)(parameters)), 1.0);
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {

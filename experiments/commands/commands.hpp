@@ -25,5 +25,6 @@ void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
+void add_extras_command(CLI::App& program);
 
 }  // namespace conelane::experiments

@@ -34,8 +34,9 @@ void detect(Options& options) {
 void add_methods_command(CLI::App& program) {
     program.add_subcommand("methods", "the detection methods of this build")->callback([] {
         for (const MethodEntry& method : methods()) {
-            const std::string cones = method.nearest ? fmt::format("{} nearest", *method.nearest) : "all";
-            fmt::print("{:<16} cones: {:<12} {}\n", method.name, cones, method.meaning);
+            std::string cones = method.nearest ? fmt::format("{} nearest", *method.nearest) : "all";
+            if (method.context) cones += fmt::format(" of {}", *method.context);
+            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.meaning);
         }
     });
 }

@@ -60,6 +60,7 @@ ordered_json conditions(const Options& options, const RldParameters& start) {
                       {"use_confidence", start.use_confidence},
                       {"forbid_crossing", start.forbid_crossing}};
     if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
+    if (options.evaluation.context) json["context"] = *options.evaluation.context;
     return json;
 }
 
@@ -91,35 +92,53 @@ ordered_json to_json(const std::vector<LapFigure>& laps) {
     return json;
 }
 
-/// Scenes by why they are inaccurate, for each rate.
-ordered_json losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
-                    const EvaluationOptions& options) {
-    ordered_json json = ordered_json::object();
-    for (const AnnotatedScene& scene : scenes) {
-        const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
-        const Loss loss = loss_on(scene, parameters, options.nearest, options.time_limit_ms);
-        ordered_json& count = json[rate][std::string(to_string(loss))];
-        count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
-    }
-    return json;
+/// Of each rate: scenes by why they are inaccurate, and how many inaccurate ones have wrong cones where.
+struct Losses {
+    ordered_json causes = ordered_json::object();
+    ordered_json places = ordered_json::object();
+};
+
+void count_one(ordered_json& counts, std::string_view name) {
+    ordered_json& count = counts[std::string(name)];
+    count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
 }
 
-/// A line for each rate: shares of the scenes that count.
-void print_losses(const ordered_json& by_rate) {
+Losses losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
+              const EvaluationOptions& options) {
+    Losses losses;
+    for (const AnnotatedScene& scene : scenes) {
+        const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
+        const SceneLoss loss = loss_on(scene, parameters, options);
+        count_one(losses.causes[rate], to_string(loss.cause));
+        if (!loss.wrong) continue;
+        ordered_json& places = losses.places[rate];
+        if (loss.wrong->near_end > 0) count_one(places, "near_end");
+        if (loss.wrong->inside > 0) count_one(places, "inside");
+        if (loss.wrong->far_end > 0) count_one(places, "far_end");
+        if (loss.wrong->on_lost_boundary > 0) count_one(places, "lost_boundary");
+        if (*loss.wrong == WrongCones{}) count_one(places, "none");
+    }
+    return losses;
+}
+
+/// Two lines for each rate: shares of the scenes that count.
+void print_losses(const Losses& losses) {
     const std::string not_counted(to_string(Loss::no_ground_truth));
-    for (const auto& [rate, counts] : by_rate.items()) {
+    for (const auto& [rate, causes] : losses.causes.items()) {
         double scenes = 0.0;
-        for (const auto& [cause, count] : counts.items()) {
+        for (const auto& [cause, count] : causes.items()) {
             if (cause != not_counted) scenes += count.get<double>();
         }
-        std::string line = fmt::format("false positives {}:", rate);
-        for (const auto& [cause, count] : counts.items()) {
-            if (cause != not_counted) {
-                line += fmt::format(" {} {:.1f} %,", cause, 100.0 * count.get<double>() / scenes);
+        const auto shares = [&](const ordered_json& counts) {
+            std::vector<std::string> parts;
+            for (const auto& [name, count] : counts.items()) {
+                if (name != not_counted)
+                    parts.push_back(fmt::format("{} {:.1f} %", name, 100.0 * count.get<double>() / scenes));
             }
-        }
-        line.pop_back();
-        fmt::print("{}\n", line);
+            return fmt::format("{}", fmt::join(parts, ", "));
+        };
+        fmt::print("false positives {}: {}\n", rate, shares(causes));
+        if (losses.places.contains(rate)) fmt::print("    wrong cones at: {}\n", shares(losses.places[rate]));
     }
 }
 
@@ -172,7 +191,9 @@ void run(Options& options) {
     }
     write_rld_parameters(options.out, tuned.parameters);
     ordered_json record = record_of(options, start, tuned);
-    record["losses"] = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
+    const Losses lost = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
+    record["losses"] = lost.causes;
+    record["wrong_cones"] = lost.places;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
     file.commit();
@@ -185,7 +206,7 @@ void run(Options& options) {
                    100.0 * mean_over_scenes(fold.held_out_laps_of_start),
                    100.0 * mean_over_scenes(fold.held_out_laps));
     }
-    print_losses(record["losses"]);
+    print_losses(lost);
 }
 
 }  // namespace
@@ -211,6 +232,12 @@ void add_tune_command(CLI::App& program) {
             "mean over scenes that is made as large as possible [accuracy]")
         ->check(CLI::IsMember({"accuracy", "iou", "success"}));
     add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
+    command
+        .add_option_function<std::size_t>(
+            "--context", [options](std::size_t count) { options->evaluation.context = count; },
+            "find the lane among this many nearest cones, then cut it to --nearest")
+        ->needs("--nearest")
+        ->check(CLI::Range(1, 100'000));
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command

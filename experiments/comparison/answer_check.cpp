@@ -14,16 +14,21 @@ namespace conelane::experiments {
 namespace {
 
 /// What is wrong with a lane that was found; empty where nothing is.
-std::string objection(const LaneAnswer& answer, const Scene& cone_set, const RldParameters& parameters) {
-    const std::optional<LaneGraph> graph = lane_graph_of(answer.lane, cone_set);
+std::string objection(const LaneRecord& record, const Scene& seen, const RldParameters& parameters) {
+    const LaneAnswer& answer = record.answer;
+    const Lane& lane = answer.uncut ? answer.uncut->lane : answer.lane;
+    const std::optional<LaneGraph> graph = lane_graph_of(lane, seen);
     if (!graph) return "the lane has a cone that the method was not given, or one twice in a row";
+    if (answer.uncut && (!record.nearest || cut_to_nearest(lane, seen, *record.nearest) != answer.lane)) {
+        return "the lane is not what the cut to its cone set leaves";
+    }
     CheckReport report;
-    if (const auto& optimality = answer.optimality) {
+    if (const auto& optimality = answer.uncut ? answer.uncut->optimality : answer.optimality) {
         Claim claim{optimality->optimal, optimality->objective, {}};
         if (std::isfinite(optimality->bound)) claim.bound = optimality->bound;
-        report = check(cone_set, parameters, *graph, claim);
+        report = check(seen, parameters, *graph, claim);
     } else {
-        report = check(cone_set, parameters, *graph);
+        report = check(seen, parameters, *graph);
     }
     return report.violations.empty() ? "" : report.violations.front();
 }
@@ -51,9 +56,9 @@ std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene) {
     return graph;
 }
 
-void check_answer(LaneRecord& record, const Scene& cone_set, const RldParameters& parameters) {
+void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& parameters) {
     if (record.answer.status != LaneStatus::found) return;
-    const std::string found = objection(record.answer, cone_set, parameters);
+    const std::string found = objection(record, seen, parameters);
     if (found.empty()) {
         record.checked = true;
         return;

@@ -15,9 +15,10 @@ namespace conelane::experiments {
 [[nodiscard]] std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene);
 
 /// Holds what an RLD method found against the independent checker: every constraint, the stated objective,
-/// bound and optimality. `cone_set` is what the method saw. An answer that passes is marked as checked; one
+/// bound and optimality. `seen` is what the method found its lane among; a lane that was cut is held against
+/// them as it was before, and must be what the cut leaves. An answer that passes is marked as checked; one
 /// that does not becomes status error with the checker's first objection as its message. A record without a
 /// lane stays as it is.
-void check_answer(LaneRecord& record, const Scene& cone_set, const RldParameters& parameters);
+void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& parameters);
 
 }  // namespace conelane::experiments

@@ -55,7 +55,7 @@ std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const Ann
         LaneRecord record{scene.scene.id, std::string(method.name), std::move(answer), latency.count(),
                           nearest};
         if (method.is_rld) {
-            check_answer(record, nearest ? nearest_ahead(scene.scene, *nearest) : scene.scene, parameters);
+            check_answer(record, seen_by(method, options.method, scene.scene), parameters);
         }
         records.push_back(std::move(record));
         progress.advance();

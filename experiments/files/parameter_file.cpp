@@ -19,6 +19,8 @@ bool is_on(const JsonNode& flag) {
     return value == 1;
 }
 
+}  // namespace
+
 RldParameters rld_parameters_of(const JsonNode& json) {
     RldParameters parameters;
     for (const RldParameterField& field : rld_parameter_fields()) {
@@ -31,8 +33,6 @@ RldParameters rld_parameters_of(const JsonNode& json) {
     json.require_valid([&] { validate(parameters); });
     return parameters;
 }
-
-}  // namespace
 
 RldParameters read_rld_parameters(const std::filesystem::path& file) {
     RldParameters parameters;

@@ -15,6 +15,10 @@ namespace conelane::experiments {
 /// The same from a text; errors name `file`.
 [[nodiscard]] RldParameters parse_rld_parameters(std::string_view text, const std::filesystem::path& file);
 
+class JsonNode;
+/// The same from an object inside a file.
+[[nodiscard]] RldParameters rld_parameters_of(const JsonNode& json);
+
 /// Throws InvalidInput where a parameter is not valid, InputError where the file cannot be written; then an
 /// old file stays as it was.
 void write_rld_parameters(const std::filesystem::path& file, const RldParameters& parameters);

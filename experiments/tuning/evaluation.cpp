@@ -4,10 +4,10 @@
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "model/invalid_input.hpp"
-#include "model/lane_graph_problem.hpp"
 #include "solvers/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <utility>
@@ -27,19 +27,11 @@ struct SceneWorth {
 
 SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
                  const RldParameters& parameters, const EvaluationOptions& options) {
-    const Deadline deadline(options.time_limit_ms);
-    const Scene scene = options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
-    const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
-    const RldReport report = solver.solve(problem, {deadline.remaining_ms()});
-    if (report.status == SolveStatus::feasible || report.status == SolveStatus::time_limit)
+    const Trial trial = try_on(solver, annotated.scene, parameters, options);
+    if (trial.report.status == SolveStatus::feasible || trial.report.status == SolveStatus::time_limit)
         return {0.0, true};
-    if (!report.lane_graph || report.nodes > options.most_nodes) return {};
-    const std::optional<Lane> lane = to_lane(*report.lane_graph, scene);
-    if (!lane) return {};
-    LaneAnswer answer;
-    answer.status = LaneStatus::found;
-    answer.lane = *lane;
-    const SceneScore result = score(annotated, answer, 0.0, options.nearest, &boundaries);
+    if (trial.answer.status != LaneStatus::found || trial.report.nodes > options.most_nodes) return {};
+    const SceneScore result = score(annotated, trial.answer, 0.0, options.nearest, &boundaries);
     switch (options.objective) {
         case TuningObjective::accuracy:
             return {result.accurate() ? 1.0 : 0.0};
@@ -52,6 +44,30 @@ SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const Track
 }
 
 }  // namespace
+
+std::optional<std::size_t> seen_count(const EvaluationOptions& options) {
+    if (!options.nearest) return std::nullopt;
+    return std::max(*options.nearest, options.context.value_or(0));
+}
+
+Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+             const EvaluationOptions& options) {
+    const Deadline deadline(options.time_limit_ms);
+    const std::optional<std::size_t> count = seen_count(options);
+    Trial trial{count ? nearest_ahead(scene, *count) : scene, {}, {}, {}};
+    trial.problem = make_problem(trial.seen, parameters, solver.extent());
+    trial.report = solver.solve(trial.problem, {deadline.remaining_ms()});
+    if (!trial.report.lane_graph) return trial;
+    std::optional<Lane> lane = to_lane(*trial.report.lane_graph, trial.seen);
+    if (!lane) return trial;
+    if (count > options.nearest) {
+        *lane = cut_to_nearest(std::move(*lane), trial.seen, *options.nearest);
+        if (lane->left.empty() || lane->right.empty()) return trial;
+    }
+    trial.answer.status = LaneStatus::found;
+    trial.answer.lane = std::move(*lane);
+    return trial;
+}
 
 std::string_view to_string(TuningObjective objective) {
     switch (objective) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "experiments/scenes/scene_set.hpp"
+#include "model/lane.hpp"
+#include "model/lane_graph_problem.hpp"
 #include "model/rld_parameters.hpp"
+#include "solvers/rld_solver.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +25,8 @@ enum class TuningObjective {
 
 struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;
-    std::optional<std::size_t> nearest;  ///< cone-set size; all cones where absent
+    std::optional<std::size_t> nearest{};  ///< cone-set size; all cones where absent
+    std::optional<std::size_t> context{};  ///< as RldDetectorOptions::context
     /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, is worth nothing.
     double time_limit_ms = 20.0;
     std::int64_t most_nodes = 1000;
@@ -30,6 +34,19 @@ struct EvaluationOptions {
     double most_timed_out = 0.02;
     unsigned threads = 1;
 };
+
+/// What parameters answer on a scene, and how.
+struct Trial {
+    Scene seen;  ///< the cone set, or the context where that is larger
+    LaneGraphProblem problem;
+    RldReport report;
+    LaneAnswer answer;
+};
+[[nodiscard]] Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                           const EvaluationOptions& options);
+
+/// The number of nearest cones that a lane is found among; all cones where absent.
+[[nodiscard]] std::optional<std::size_t> seen_count(const EvaluationOptions& options);
 
 /// What parameters are worth on the scenes of one track, rate and range.
 struct LapFigure {

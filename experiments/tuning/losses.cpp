@@ -6,6 +6,7 @@
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -93,6 +94,10 @@ Loss dearest_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth
     return std::ranges::max(differences, {}, [](const auto& entry) { return entry.first; }).second;
 }
 
+bool contains(const std::vector<ConeId>& run, ConeId id) {
+    return std::ranges::find(run, id) != run.end();
+}
+
 }  // namespace
 
 std::string_view to_string(Loss loss) {
@@ -103,27 +108,53 @@ std::string_view to_string(Loss loss) {
     return kNames[static_cast<std::size_t>(loss)];
 }
 
-Loss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
-             std::optional<std::size_t> nearest, double time_limit_ms) {
-    const std::optional<Lane> ground_truth =
-        nearest ? ground_truth_of_nearest(annotated, *nearest) : annotated.ground_truth;
-    if (!ground_truth) return Loss::no_ground_truth;
-    const Scene scene = nearest ? nearest_ahead(annotated.scene, *nearest) : annotated.scene;
-    const auto solver = make_path_pair_solver();
-    const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
-    const RldReport report = solver->solve(problem, {time_limit_ms});
-    if (report.lane_graph) {
-        LaneAnswer answer;
-        if (const std::optional<Lane> lane = to_lane(*report.lane_graph, scene)) {
-            answer.status = LaneStatus::found;
-            answer.lane = *lane;
+WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth) {
+    WrongCones wrong;
+    const auto add = [&](const std::vector<ConeId>& ours, const std::vector<ConeId>& theirs) {
+        const auto shared = [&](ConeId id) { return contains(ours, id) && contains(theirs, id); };
+        if (std::ranges::none_of(ours, shared)) {
+            wrong.on_lost_boundary += ours.size() + theirs.size();
+            return;
         }
-        if (score(annotated, answer, 0.0, nearest, nullptr).accurate()) return Loss::accurate;
+        for (const std::vector<ConeId>* run : {&ours, &theirs}) {
+            const auto first = std::ranges::find_if(*run, shared);
+            const auto behind_last = std::find_if(run->rbegin(), run->rend(), shared).base();
+            wrong.near_end += static_cast<std::size_t>(first - run->begin());
+            wrong.far_end += static_cast<std::size_t>(run->end() - behind_last);
+            wrong.inside += static_cast<std::size_t>(std::count_if(first, behind_last, std::not_fn(shared)));
+        }
+    };
+    add(lane.left, ground_truth.left);
+    add(lane.right, ground_truth.right);
+    return wrong;
+}
+
+SceneLoss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
+                  const EvaluationOptions& options) {
+    const auto ground_truth_of = [&](std::optional<std::size_t> count) {
+        return count ? ground_truth_of_nearest(annotated, *count) : annotated.ground_truth;
+    };
+    const std::optional<Lane> ground_truth = ground_truth_of(options.nearest);
+    if (!ground_truth) return {};
+    const auto solver = make_path_pair_solver();
+    const Trial trial = try_on(*solver, annotated.scene, parameters, options);
+    SceneLoss loss;
+    if (trial.answer.status == LaneStatus::found) {
+        if (score(annotated, trial.answer, 0.0, options.nearest, nullptr).accurate())
+            return {Loss::accurate, std::nullopt};
+        loss.wrong = wrong_cones(trial.answer.lane, *ground_truth);
     }
-    const LaneGraph graph = graph_of(*ground_truth, scene);
-    if (!is_feasible(problem, graph)) return broken_constraint(problem, graph);
-    if (!report.lane_graph || *report.objective > objective(problem, graph)) return Loss::none_found;
-    return dearest_term(problem, graph, *report.lane_graph);
+    const LaneGraphProblem& problem = trial.problem;
+    const RldReport& report = trial.report;
+    const LaneGraph graph = graph_of(*ground_truth_of(seen_count(options)), trial.seen);
+    if (!is_feasible(problem, graph)) {
+        loss.cause = broken_constraint(problem, graph);
+    } else if (!report.lane_graph || *report.objective > objective(problem, graph)) {
+        loss.cause = Loss::none_found;
+    } else {
+        loss.cause = dearest_term(problem, graph, *report.lane_graph);
+    }
+    return loss;
 }
 
 }  // namespace conelane::experiments

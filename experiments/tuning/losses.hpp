@@ -1,6 +1,8 @@
 #pragma once
 
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "model/lane.hpp"
 #include "model/rld_parameters.hpp"
 
 #include <array>
@@ -32,8 +34,27 @@ enum class Loss {
 inline constexpr std::size_t kLossCount = 13;
 [[nodiscard]] std::string_view to_string(Loss loss);
 
-/// Solves one scene by path-pair. Precondition: counts(scene).
-[[nodiscard]] Loss loss_on(const AnnotatedScene& scene, const RldParameters& parameters,
-                           std::optional<std::size_t> nearest, double time_limit_ms);
+/// Cones that are chosen and not in the ground truth, or missed, by where on their boundary they are: before
+/// the first cone that it shares with the ground truth, behind the last, or between. A boundary that shares
+/// none is lost, with all cones of both.
+struct WrongCones {
+    std::size_t near_end = 0;
+    std::size_t inside = 0;
+    std::size_t far_end = 0;
+    std::size_t on_lost_boundary = 0;
+
+    bool operator==(const WrongCones&) const = default;
+};
+[[nodiscard]] WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth);
+
+struct SceneLoss {
+    Loss cause = Loss::no_ground_truth;
+    std::optional<WrongCones> wrong;  ///< of an inaccurate answer; absent where there is none
+};
+
+/// Solves one scene by path-pair, with the cone set, context and time limit of the options. With a context
+/// the cause refers to the ground truth of the context. Precondition: counts(scene).
+[[nodiscard]] SceneLoss loss_on(const AnnotatedScene& scene, const RldParameters& parameters,
+                                const EvaluationOptions& options);
 
 }  // namespace conelane::experiments
