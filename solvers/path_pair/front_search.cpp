@@ -7,7 +7,8 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr int kFrontsPerClock = 128;
+// Sets of edges that are looked at between two looks at the clock.
+constexpr std::size_t kWorkPerClock = 10000;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -25,14 +26,23 @@ double FrontSearch::limit() const {
     return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
 }
 
-bool FrontSearch::find_reach(const std::function<bool()>& stopped) {
+bool FrontSearch::out_of_time(std::size_t work) {
+    work_ += work;
+    if (work_ >= kWorkPerClock) {
+        work_ = 0;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
+void FrontSearch::find_reach() {
     reach_.assign(at(fronts_->size()) * words_, 0);
     changed_.assign(at(fronts_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = fronts_->size(); f-- > 0;) {
-            if (f % kFrontsPerClock == 0 && stopped()) return false;
+            if (out_of_time(1)) return;
             std::uint64_t* const mine = reach_.data() + at(f) * words_;
             std::uint64_t change = 0;
             for (const FrontGraph::Step& step : fronts_->steps(f)) {
@@ -53,7 +63,6 @@ bool FrontSearch::find_reach(const std::function<bool()>& stopped) {
             again = true;
         }
     }
-    return true;
 }
 
 void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
@@ -95,10 +104,12 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
     waiting_.assign(at(fronts.size()), -1);
     open_.assign((at(fronts.size()) + 63) / 64, 0);
     wanted_.resize(words_);
-    if (!find_reach(stopped)) return Outcome::stopped;
+    stopped_ = &stopped;
+    work_ = kWorkPerClock;
+    is_stopped_ = false;
+    is_narrow_ = false;
+    find_reach();
     begin();
-    bool narrow = false;
-    int until_clock = kFrontsPerClock;
     again_ = true;
     while (again_) {
         again_ = false;
@@ -106,20 +117,17 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
             while (open_[word] != 0) {
                 const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
                 open_[word] &= open_[word] - 1;
-                if (--until_clock == 0) {
-                    if (stopped()) return Outcome::stopped;
-                    until_clock = kFrontsPerClock;
-                }
-                narrow |= !settle(f);
+                settle(f);
+                if (is_stopped_) return Outcome::stopped;
                 if (labels_.size() > limits.most_labels) return Outcome::stopped;
             }
         }
     }
-    return narrow ? Outcome::narrow : Outcome::exhausted;
+    return is_narrow_ ? Outcome::narrow : Outcome::exhausted;
 }
 
-/// Expands the labels that wait at a front; false where the width left one out.
-bool FrontSearch::settle(int f) {
+/// Expands the labels that wait at a front.
+void FrontSearch::settle(int f) {
     here_.clear();
     for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = labels_[at(l)].next) here_.push_back(l);
     std::sort(here_.begin(), here_.end(),
@@ -130,8 +138,12 @@ bool FrontSearch::settle(int f) {
     for (const int l : here_) {
         const Label& label = labels_[at(l)];
         if (!(label.reduced + fronts_->onward(f) < limit())) continue;
+        if (out_of_time(1 + kept_along_heading_.size())) return;
         if (dominated(f, label, lost(l))) continue;
-        if (kept_along_heading_.size() >= limits_.width) return false;
+        if (kept_along_heading_.size() >= limits_.width) {
+            is_narrow_ = true;
+            return;
+        }
         kept_along_heading_.push_back(label.along_heading);
         kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
         for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
@@ -141,7 +153,6 @@ bool FrontSearch::settle(int f) {
         }
         expand(l);
     }
-    return true;
 }
 
 /// By one that is kept. What is expanded costs no more.

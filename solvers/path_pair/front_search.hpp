@@ -51,11 +51,12 @@ class FrontSearch {
         double reduced;
     };
 
-    bool find_reach(const std::function<bool()>& stopped);
+    void find_reach();
     void begin();
     void take(int arc, Label& label, std::uint64_t* lost) const;
     void wait(Label label);
-    bool settle(int f);
+    [[nodiscard]] bool out_of_time(std::size_t work);
+    void settle(int f);
     [[nodiscard]] bool dominated(int f, const Label& label, const std::uint64_t* lost);
     void expand(int label);
     void offer(int label);
@@ -71,6 +72,10 @@ class FrontSearch {
     const FrontGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     Limits limits_{};
+    const std::function<bool()>* stopped_ = nullptr;
+    std::size_t work_ = 0;  ///< since the clock was looked at
+    bool is_stopped_ = false;
+    bool is_narrow_ = false;  ///< the width left a label out
 
     std::size_t words_ = 0;
     std::vector<std::uint64_t> reach_;  ///< by front: edges on some walk on
