@@ -322,7 +322,7 @@ std::vector<Lane> lanes_in(const std::filesystem::path& file) {
 }
 
 constexpr const char* kTwoTracks =
-    "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 ";
+    "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
 
 TEST_F(Program, AStoppedComparisonGoesOn) {
     ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
