@@ -54,7 +54,7 @@ struct Fronts {
     }
 
     bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
-        return fronts.build(residual, edges, losses, limit, most_fronts);
+        return fronts.build(residual, losses, limit, most_fronts);
     }
 
     /// Every leg from a near to a far cone, by plain recursion.

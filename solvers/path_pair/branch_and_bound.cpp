@@ -21,8 +21,7 @@ constexpr double kWorthwhile = 0.8;        ///< of the gap at which the fronts w
 constexpr std::int64_t kFewFronts = 2000;  ///< of the first try
 constexpr std::int64_t kWorkPerFront =
     30;  ///< label updates of the ascent that a front may take the place of
-static const std::size_t kMostFronts =
-    getenv("MF") ? atol(getenv("MF")) : 100000;     ///< before a node branches
+constexpr std::size_t kMostFronts = 100000;         ///< before a node branches
 constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
 constexpr std::size_t kMostLabels = 500000;
 constexpr int kWideFronts = 500;    ///< from here on first a narrow search, for the incumbent
@@ -223,7 +222,7 @@ BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph
     if (most_fronts != kAny) {
         most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
     }
-    if (!fronts_.build(graph, edge_sets_, sure_losses_, limit(), most_fronts)) {
+    if (!fronts_.build(graph, sure_losses_, limit(), most_fronts)) {
         return stopped_() ? Verdict::stopped : Verdict::open;
     }
     double bound = fronts_.find_onward(limit());

@@ -60,8 +60,8 @@ class BranchAndBound {
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
-    /// All pairs of a node below `ceiling` and the cutoff on the fronts; open where there are more than
-    /// these. Precondition: the relaxation was evaluated on the node's graph.
+    /// All pairs of a node on the fronts; open where there are more fronts or labels than these.
+    /// Precondition: the relaxation was evaluated on the node's graph.
     Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
     bool fix(Node& here);
     struct Branching {

@@ -137,11 +137,10 @@ void FrontGraph::add_steps(int f, double limit) {
     now_.end[at(f)] = now_.steps.size();
 }
 
-bool FrontGraph::build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses,
-                       double limit, std::size_t most_fronts) {
+bool FrontGraph::build(const ResidualGraph& residual, const SureLosses& losses, double limit,
+                       std::size_t most_fronts) {
     residual_ = &residual;
     losses_ = &losses;
-    set_.resize(edges.words());
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
         relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
     }
@@ -319,8 +318,8 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     const auto is_lost = [&](int f, int arc) {
         return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
     };
-    set_.assign(words, 0);
-    const std::uint64_t* const nothing = set_.data();
+    nothing_.assign(words, 0);
+    const std::uint64_t* const nothing = nothing_.data();
     keep_step_.assign(now_.steps.size(), 1);
     changed_.assign(now_.fronts.size(), 0);
 

@@ -45,7 +45,7 @@ class FrontGraph {
     /// forward(f). False where there are more than `most_fronts`, or stopped.
     /// Precondition: the relaxation was evaluated on the residual graph. `limit`: with offset, here and
     /// below.
-    bool build(const ResidualGraph& residual, const EdgeSets& edges, const SureLosses& losses, double limit,
+    bool build(const ResidualGraph& residual, const SureLosses& losses, double limit,
                std::size_t most_fronts);
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
@@ -117,7 +117,7 @@ class FrontGraph {
     std::vector<char> keep_step_;  ///< of old_.steps
     std::vector<int> changed_;     ///< by front, the sweep that changed it last
     std::vector<std::uint64_t> sure_;
-    std::vector<std::uint64_t> set_;
+    std::vector<std::uint64_t> nothing_;  ///< the empty set
 };
 
 }  // namespace conelane::path_pair
