@@ -285,11 +285,11 @@ TEST(ClcDetector, SearchesASecondTimeOnlyWhereTheFirstSearchIsNotComplete) {
 }
 
 TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
-    // As many iterations as the lane has vertices to add: the search itself finds it in few of these scenes.
+    // Hardly more iterations than the lane has vertices.
     std::size_t found = 0;
     std::size_t found_without = 0;
     for (unsigned seed = 0; seed < 30; ++seed) {
-        const Scene scene = with_false_positives(winding_lane(9, 0.4, seed), 18, seed);
+        const Scene scene = with_false_positives(winding_lane(9, 0.4, seed), 30, seed);
         ClcOptions options;
         options.iteration_limit = 40;
         const auto has_lane = [&] {
@@ -305,8 +305,8 @@ TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
         options.step_scores = extended_search_options().step_scores;
         found += has_lane() ? 1 : 0;
     }
-    EXPECT_GE(found, 24u);
-    EXPECT_LE(found_without, 15u);
+    EXPECT_GE(found, 20u);
+    EXPECT_GE(found, found_without + 5);
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
