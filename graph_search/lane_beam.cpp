@@ -1,5 +1,6 @@
 #include "graph_search/lane_beam.hpp"
 
+#include "graph_search/next_vertex.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
@@ -121,6 +122,8 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     scene_ = &scene;
     scores_ = &scores;
     bounds_ = bounds;
+    turn_limit_ = turning_measure(bounds.phi_max_rad);
+    first_turn_limit_ = turning_measure(kLargestFirstTurn_rad);
     heading_ = scene.pose.heading();
     width_ = width;
     states_.clear();
@@ -206,13 +209,15 @@ std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
     const Point& tip = graph_->position(from.last[side]);
     const Point& facing_tip = graph_->position(from.last[facing]);
     const Point segment = point - tip;
-    const double turn_rad = turning_angle(from.direction[side], segment);
     const bool is_first = from.vertices[side] == 1;
-    if (std::abs(turn_rad) >= (is_first ? kLargestFirstTurn_rad : bounds_.phi_max_rad)) return kNone;
+    if (turning_measure(from.direction[side], segment) >= (is_first ? first_turn_limit_ : turn_limit_)) {
+        return kNone;
+    }
     const double width_m = foot_point(point, {graph_->position(from.before[facing]), facing_tip}).distance_m;
     if (width_m <= bounds_.w_min_m || is_on_lane(number, vertex)) return kNone;
 
     State state = from;
+    const double turn_rad = turning_angle(from.direction[side], segment);
     const double segment_m = segment.norm();
     state.before[side] = from.last[side];
     state.last[side] = vertex;

@@ -130,6 +130,8 @@ class LaneBeam {
     const Scene* scene_ = nullptr;
     const StepScores* scores_ = nullptr;
     LaneBounds bounds_;
+    double turn_limit_ = 0.0;  ///< as turning_measure
+    double first_turn_limit_ = 0.0;
     Point heading_{0.0, 0.0};
     std::size_t width_ = 0;
     std::vector<State> states_;
