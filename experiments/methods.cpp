@@ -67,7 +67,7 @@ constexpr std::array<MethodEntry, 10> kMethods{{
      [](const MethodOptions& options) {
          return make_rld("path-pair", Formulation::tight, kRldConeSet, options, kRldContext);
      }},
-    {"clc", "CLC; NVD weighs distances, a second search, one around the best, a network on all features",
+    {"clc", "CLC led by a beam search; NVD weighs distances, a second search, a network on all features",
      std::nullopt, std::nullopt, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, std::nullopt,
@@ -77,11 +77,11 @@ constexpr std::array<MethodEntry, 10> kMethods{{
          clc.warm_start = true;
          return make_clc(clc, options);
      }},
-    {"clc-no-detours", "clc without the search around the lane that it ranks first", std::nullopt,
-     std::nullopt, false,
+    {"clc-no-beam", "clc whose first search follows no lane of a beam search", std::nullopt, std::nullopt,
+     false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
-         clc.neighbourhoods = 0;
+         clc.step_scores = nullptr;
          return make_clc(clc, options);
      }},
     {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, std::nullopt,

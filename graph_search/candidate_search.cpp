@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
-#include <utility>
 
 namespace conelane {
 namespace {
@@ -58,8 +58,8 @@ void validate(const CandidateSearchOptions& options) {
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     require(options.iteration_limit > 0, "iteration_limit", "must be positive");
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
-    require(options.neighbourhoods >= 0, "neighbourhoods", "must not be negative");
-    require(options.neighbourhood_iterations > 0, "neighbourhood_iterations", "must be positive");
+    require(options.beam_width > 0, "beam_width", "must be positive");
+    if (options.step_scores) validate(*options.step_scores);
     require(positive(options.d_max_m), "d_max", "must be positive");
     require(options.bounds.phi_max_rad > 0.0 && options.bounds.phi_max_rad <= std::numbers::pi, "phi_max",
             "must be in (0, pi]");
@@ -90,7 +90,7 @@ CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : option
 
 CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& request) {
     Report report;
-    rules_.with_features = request.with_features || request.ranking != nullptr;
+    rules_.with_features = request.with_features;
     budget_ = SearchBudget{};
     budget_.deadline = deadline(request.time_limit_ms);
     points_.clear();
@@ -98,75 +98,68 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     graph_.build(points_, options_.d_max_m, options_.graph);
     pairs_.clear();
 
-    const std::vector<StartPair> starts = start_pairs(scene, options_.starting_pairs, options_.start);
-    std::optional<PathPairVertices> warm;
-    if (request.last_lane != nullptr) warm = still_ahead(*request.last_lane, scene);
-    if (warm) {
-        const StartPair start{(*warm)[kLeft].front(), (*warm)[kRight].front()};
-        const bool is_last = starts.empty() || (starts.size() == 1 && starts.front() == start);
-        run_from(start, *warm, is_last, scene, report);
+    find_seeds(scene, request.last_lane);
+    for (std::size_t i = 0; i < seeds_.size(); ++i) {
+        run_from(seeds_[i], i + 1 == seeds_.size(), scene, report);
     }
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-        const bool met = warm && starts[i] == StartPair{(*warm)[kLeft].front(), (*warm)[kRight].front()};
-        if (!met) run_from(starts[i], {}, i + 1 == starts.size(), scene, report);
-    }
-    longest_m_ = 0.0;
-    for (const LaneFeatures& lane : pairs_.features()) longest_m_ = std::max(longest_m_, lane[0]);
-    if (rules_.with_features) add_scene_features(scene, 0);
-    scores_.clear();
-    if (request.ranking != nullptr) search_around_best(*request.ranking, scene);
+    if (rules_.with_features) add_scene_features(scene);
     report.iterations = budget_.iterations;
     report.out_of_time = budget_.out_of_time;
     return report;
 }
 
-void CandidateSearch::run_from(StartPair start, const PathPairVertices& guide, bool is_last,
-                               const Scene& scene, Report& report) {
+void CandidateSearch::find_seeds(const Scene& scene, const Lane* last_lane) {
+    seeds_.clear();
+    const auto add_guide = [&](const std::optional<PathPairVertices>& guide) {
+        if (!guide) return;
+        const bool is_known =
+            std::ranges::any_of(seeds_, [&](const Seed& seed) { return seed.guide == *guide; });
+        if (!is_known) seeds_.push_back({{(*guide)[kLeft].front(), (*guide)[kRight].front()}, *guide});
+    };
+    if (last_lane != nullptr) add_guide(still_ahead(*last_lane, scene));
+    if (options_.step_scores) add_guide(beam_lane(scene));
+    const std::size_t guided = seeds_.size();
+    for (const StartPair& start : start_pairs(scene, options_.starting_pairs, options_.start)) {
+        const bool is_met = std::any_of(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(guided),
+                                        [&](const Seed& seed) { return seed.start == start; });
+        if (!is_met) seeds_.push_back({start, {}});
+    }
+}
+
+std::optional<PathPairVertices> CandidateSearch::beam_lane(const Scene& scene) {
+    const std::vector<StartPair> starts =
+        start_pairs(scene, std::numeric_limits<std::size_t>::max(), options_.start);
+    beam_.start(graph_, scene, starts, *options_.step_scores, options_.bounds, options_.beam_width);
+    const std::size_t best = beam_.run();
+    if (best == LaneBeam::kNone) return std::nullopt;
+    return beam_.vertices(best);
+}
+
+void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scene, Report& report) {
     const std::int64_t left = options_.iteration_limit - budget_.iterations;
     budget_.iteration_limit = budget_.iterations + (is_last ? left : left - left / 2);
     const std::int64_t limit = budget_.iteration_limit;
     const bool twice = options_.second_search_discrepancies > 0;
     if (twice) budget_.iteration_limit -= (limit - budget_.iterations) / 2;
     const bool complete =
-        enumeration_.run(graph_, start, scene.pose.heading(), rules_, budget_, pairs_, guide);
+        enumeration_.run(graph_, seed.start, scene.pose.heading(), rules_, budget_, pairs_, seed.guide);
     budget_.iteration_limit = limit;
     if (twice && !complete) {
         EnumerationRules narrow = rules_;
         narrow.most_discrepancies = options_.second_search_discrepancies;
-        (void)enumeration_.run(graph_, start, scene.pose.heading(), narrow, budget_, pairs_, guide);
+        (void)enumeration_.run(graph_, seed.start, scene.pose.heading(), narrow, budget_, pairs_, seed.guide);
     }
     report.complete &= complete;
 }
 
-void CandidateSearch::search_around_best(const LaneRanking& ranking, const Scene& scene) {
-    const auto score_new = [&] {
-        const std::size_t scored = scores_.size();
-        scores_.resize(pairs_.found().size());
-        ranking.score(std::as_const(pairs_).features().subspan(scored), std::span(scores_).subspan(scored));
-    };
-    score_new();
-    searched_around_.clear();
-    const PathPairVertices starts = possible_starts(scene, options_.start);
-    while (!scores_.empty() && static_cast<std::int64_t>(searched_around_.size()) < options_.neighbourhoods) {
-        const auto best = static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin());
-        if (std::ranges::find(searched_around_, best) != searched_around_.end()) break;
-        budget_.out_of_time = SearchBudget::Clock::now() >= budget_.deadline;
-        if (budget_.out_of_time) break;
-        searched_around_.push_back(best);
-        budget_.iteration_limit = budget_.iterations + options_.neighbourhood_iterations;
-        const std::size_t first = pairs_.found().size();
-        neighbourhood_.run(graph_, pairs_.vertices(pairs_.found()[best]), starts, scene.pose.heading(),
-                           rules_, budget_, pairs_);
-        add_scene_features(scene, first);
-        score_new();
-    }
-}
-
-void CandidateSearch::add_scene_features(const Scene& scene, std::size_t first) {
-    for (std::size_t i = first; i < pairs_.found().size(); ++i) {
-        LaneFeatures& lane = pairs_.features()[i];
+void CandidateSearch::add_scene_features(const Scene& scene) {
+    const std::span<LaneFeatures> features = pairs_.features();
+    double longest_m = 0.0;
+    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[0]);
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        LaneFeatures& lane = features[i];
         const StartPairMeasures measures = start_pair_measures(scene, pairs_.start(pairs_.found()[i]));
-        lane[kLongestShareFeature] = lane[0] / longest_m_;
+        lane[kLongestShareFeature] = lane[0] / longest_m;
         lane[kStartAsymmetryFeature] = measures.asymmetry_m;
         lane[kStartDistanceFeature] = measures.distance_m;
         lane[kConesFeature] = static_cast<double>(scene.cones.size());

@@ -1,24 +1,23 @@
 #include "graph_search/clc_detector.hpp"
 
 #include "graph_search/rank_net_file.hpp"
+#include "graph_search/step_score_file.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace conelane {
 namespace {
 
+/// Led by a beam search it gains nothing by more.
+constexpr std::int64_t kIterations = 1500;
 /// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
 /// positives.
 constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
-
-/// A second time mends a second fault; more gain little.
-constexpr std::int64_t kNeighbourhoods = 2;
 
 class ClcDetector final : public LaneDetector {
   public:
@@ -28,7 +27,7 @@ class ClcDetector final : public LaneDetector {
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
         CandidateSearch::Request request;
         request.time_limit_ms = limits.time_limit_ms;
-        request.ranking = ranking_.get();
+        request.with_features = ranking_ != nullptr;
         if (last_lane_) request.last_lane = &*last_lane_;
         const CandidateSearch::Report report = search_.run(scene, request);
         const std::vector<PathPair>& found = search_.pairs().found();
@@ -57,13 +56,15 @@ class ClcDetector final : public LaneDetector {
     const PathPair& best() {
         const std::vector<PathPair>& found = search_.pairs().found();
         if (!ranking_) return *std::ranges::max_element(found, {}, &PathPair::length_m);
-        const std::span<const double> scores = search_.scores();
-        return found[static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin())];
+        scores_.resize(found.size());
+        ranking_->score(search_.pairs().features(), scores_);
+        return found[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
     }
 
     std::shared_ptr<const LaneRanking> ranking_;
     bool warm_start_;
     CandidateSearch search_;
+    std::vector<double> scores_;
     std::optional<Lane> last_lane_;
 };
 
@@ -77,9 +78,10 @@ ClcOptions paper_clc_options() {
 
 CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
+    options.iteration_limit = kIterations;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
+    options.step_scores = shipped_step_scores();
     options.second_search_discrepancies = kSecondSearchDiscrepancies;
-    options.neighbourhoods = kNeighbourhoods;
     return options;
 }
 

@@ -16,21 +16,21 @@ struct ClcOptions : CandidateSearchOptions {
 
 /// The search and the ranking of the paper: equation (3), the network on eight features.
 [[nodiscard]] ClcOptions paper_clc_options();
-/// The same algorithm with four things more: the next-vertex decider weighs distances, a second search
-/// follows where the first is not complete, the lanes around the one ranked first are tried, and the network
-/// sees all features. It was trained to choose well among all of these: a lane that leaves the track within
-/// 20 m costs as much as several whole lanes, so where the scene is ambiguous before that, a shorter lane
-/// that is certain goes before a longer one that is not.
+/// The same algorithm with four things more: the first search follows a lane that a beam search by learned
+/// scores finds, the next-vertex decider weighs distances, a second search follows where one is not complete,
+/// and the network sees all features. It was trained to choose well among all of these: a lane that leaves
+/// the track within 20 m costs as much as several whole lanes, so where the scene is ambiguous before that, a
+/// shorter lane that is certain goes before a longer one that is not.
 [[nodiscard]] ClcOptions extended_clc_options();
-/// The first half of it; without a ranking nothing is ranked first.
+/// The first half of it.
 [[nodiscard]] CandidateSearchOptions extended_search_options();
 
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
 /// cones a side that has the highest score of the ranking, or without one the longest (mean length of both
 /// boundaries). Of equal ones, the one met first. LaneAnswer::enumeration is always there; `complete`: every
 /// starting pair tried was searched to its end, as far as width_backtracking follows lanes. With a second
-/// search or one around the best a candidate may be there twice. Throws InvalidInput where an option is out
-/// of its range.
+/// search or two guides from one start a candidate may be there twice. Throws InvalidInput where an option is
+/// out of its range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_clc_detector(const ClcOptions& options);
 
 }  // namespace conelane

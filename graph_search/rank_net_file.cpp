@@ -93,10 +93,6 @@ Json parse_file(std::string_view json) {
 
 }  // namespace
 
-std::string rank_net_training(std::string_view json) {
-    return member(parse_file(json), "training").dump();
-}
-
 RankNetWeights parse_rank_net(std::string_view json) {
     const Json file = parse_file(json);
     const Json& features = member(file, "features");

@@ -18,9 +18,6 @@ namespace conelane {
 /// Throws InvalidInput where the weights are none that make_rank_net takes or `training` is no JSON.
 [[nodiscard]] std::string rank_net_json(const RankNetWeights& weights, std::string_view training);
 
-/// The `training` of such a file. Throws as parse_rank_net, of which it reads no more.
-[[nodiscard]] std::string rank_net_training(std::string_view json);
-
 /// The networks that come with the library, trained by `conelane train`; their files in weights/ tell on
 /// what.
 [[nodiscard]] std::shared_ptr<const LaneRanking> paper_rank_net();     ///< on the paper's features

@@ -77,14 +77,4 @@ std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count, const 
     return best;
 }
 
-PathPairVertices possible_starts(const Scene& scene, const StartVertexRules& rules) {
-    PathPairVertices starts;
-    std::array<std::vector<Candidate>, 2> by_side = candidates(scene, rules);
-    for (const Side side : {kLeft, kRight}) {
-        std::ranges::stable_sort(by_side[side], {}, &Candidate::distance_m);
-        for (const Candidate& candidate : by_side[side]) starts[side].push_back(candidate.vertex);
-    }
-    return starts;
-}
-
 }  // namespace conelane

@@ -33,8 +33,4 @@ struct StartPairMeasures {
 [[nodiscard]] std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count,
                                                  const StartVertexRules& rules);
 
-/// By side, the vertices that a pair of start_pairs may have at its largest radius, nearest to the car first.
-/// Ties: the smaller vertex.
-[[nodiscard]] PathPairVertices possible_starts(const Scene& scene, const StartVertexRules& rules);
-
 }  // namespace conelane

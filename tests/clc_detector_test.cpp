@@ -284,38 +284,29 @@ TEST(ClcDetector, SearchesASecondTimeOnlyWhereTheFirstSearchIsNotComplete) {
     EXPECT_GT(more, 100u);
 }
 
-/// Long lanes without sharp turns.
-class StraightestRanking final : public LaneRanking {
-  public:
-    void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const override {
-        const std::span<const std::string_view> names = lane_feature_names();
-        const auto turn =
-            static_cast<std::size_t>(std::ranges::find(names, "sharpest_turn_rad") - names.begin());
-        for (std::size_t i = 0; i < lanes.size(); ++i) scores[i] = lanes[i][0] - 100.0 * lanes[i][turn];
+TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
+    // Hardly more iterations than the lane has vertices.
+    std::size_t found = 0;
+    std::size_t found_without = 0;
+    for (unsigned seed = 0; seed < 30; ++seed) {
+        const Scene scene = with_false_positives(winding_lane(9, 0.4, seed), 30, seed);
+        ClcOptions options;
+        options.iteration_limit = 40;
+        const auto has_lane = [&] {
+            for (const auto& [left, right] : candidates(scene, options)) {
+                if (left == std::vector<ConeId>{0, 2, 4, 6, 8, 10, 12, 14, 16} &&
+                    right == std::vector<ConeId>{1, 3, 5, 7, 9, 11, 13, 15, 17}) {
+                    return true;
+                }
+            }
+            return false;
+        };
+        found_without += has_lane() ? 1 : 0;
+        options.step_scores = extended_search_options().step_scores;
+        found += has_lane() ? 1 : 0;
     }
-};
-
-TEST(ClcDetector, SearchesAroundTheLaneRankedFirst) {
-    // A straight lane of 3.5 m steps and a false positive (1000) 0.3 m beside its left boundary, between the
-    // second and the third cone; the search takes it and spends its iterations beyond.
-    Scene scene;
-    for (int i = 0; i < 14; ++i) {
-        scene.cones.push_back({2 * i, {1.0 + 3.5 * i, 1.8}});
-        scene.cones.push_back({2 * i + 1, {1.0 + 3.5 * i, -1.8}});
-    }
-    scene.cones.push_back({1000, {6.2, 2.1}});
-    ClcOptions options = extended_clc_options();
-    options.ranking = std::make_shared<StraightestRanking>();
-    options.starting_pairs = 1;
-    options.iteration_limit = 60;
-    options.neighbourhoods = 0;
-    EXPECT_THAT(detect(scene, options).lane.left, ::testing::Contains(1000));
-    options.neighbourhoods = 1;
-    const LaneAnswer answer = detect(scene, options);
-    EXPECT_THAT(answer.lane.left, ::testing::Not(::testing::Contains(1000)));
-    EXPECT_EQ(answer.lane.left.size(), 14u);
-    EXPECT_GT(answer.enumeration->iterations, 60);
-    EXPECT_LE(answer.enumeration->iterations, 60 + options.neighbourhood_iterations);
+    EXPECT_GE(found, 20u);
+    EXPECT_GE(found, found_without + 5);
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {
@@ -383,8 +374,8 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.largest_radius_m = 1.0; }), "largest_radius");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
-    EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhoods = -1; }), "neighbourhoods");
-    EXPECT_EQ(key_of([](ClcOptions& o) { o.neighbourhood_iterations = 0; }), "neighbourhood_iterations");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.beam_width = 0; }), "beam_width");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.step_scores = std::make_shared<StepScores>(); }), "scores");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");
 }

@@ -1,5 +1,7 @@
-#include "graph_search/lane_neighbourhood.hpp"
+#include "graph_search/lane_beam.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/start_vertices.hpp"
+#include "graph_search/step_score_file.hpp"
 
 #include <cstdlib>
 #include <new>
@@ -72,25 +74,23 @@ TEST_P(EnumerationAllocations, NoneOnceTheMemoryIsThere) {
     EXPECT_EQ(search(2500), 0u);
 }
 
-TEST_P(EnumerationAllocations, NoneAroundALaneEither) {
-    EnumerationRules rules;
-    rules.with_features = GetParam();
+TEST(BeamAllocations, NoneOnceTheMemoryIsThere) {
+    Scene scene;
+    for (const Point& point : points()) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), point});
+    }
     SearchGraph graph;
-    graph.build(points(), rules.d_max_m);
-    PathPairVertices lane;
-    for (Vertex vertex = 0; vertex < 30; ++vertex) lane[vertex % 2].push_back(vertex);
-    LaneNeighbourhood neighbourhood;
-    PathPairs pairs;
+    graph.build(points(), 5.5);
+    const std::vector<StartPair> starts = start_pairs(scene, 100, {});
+    const std::shared_ptr<const StepScores> scores = shipped_step_scores();
+    LaneBeam beam;
     const auto search = [&] {
-        pairs.clear();
-        SearchBudget budget;
-        budget.iteration_limit = 100'000;
         const std::size_t before = allocations;
-        neighbourhood.run(graph, lane, {}, {1.0, 0.0}, rules, budget, pairs);
+        beam.start(graph, scene, starts, *scores, {}, 8);
+        EXPECT_NE(beam.run(), LaneBeam::kNone);
         return allocations - before;
     };
     EXPECT_GT(search(), 0u) << "allocations are counted";
-    EXPECT_GT(pairs.found().size(), 10u);
     EXPECT_EQ(search(), 0u);
 }
 

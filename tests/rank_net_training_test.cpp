@@ -220,25 +220,26 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
 }
 
-TEST(CandidateLists, HoldTheLanesAroundTheBestWhereThereIsARanking) {
+TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
     SceneOptions scenes;
-    scenes.false_positive_rates = {0.3};
-    scenes.ranges_m = {30.0};
-    scenes.every_m = 30.0;
-    const SceneSet set = make_scene_set({"generated:kidney@2"}, scenes);
+    scenes.false_positive_rates = {0.5};
+    scenes.ranges_m = {50.0};
+    scenes.every_m = 15.0;
+    const SceneSet set = make_scene_set({"generated:hairpins@99"}, scenes);
     CandidateListOptions options;
     options.search = extended_search_options();
     options.show_progress = false;
-    const std::vector<CandidateList> without = enumerate_candidates(set, options);
-    options.ranking = extended_rank_net();
     const std::vector<CandidateList> with = enumerate_candidates(set, options);
+    options.search.step_scores = nullptr;
+    const std::vector<CandidateList> without = enumerate_candidates(set, options);
     ASSERT_EQ(with.size(), without.size());
     ASSERT_FALSE(with.empty());
+    double gained = 0.0;
     for (std::size_t i = 0; i < with.size(); ++i) {
-        EXPECT_GT(with[i].lanes.size(), without[i].lanes.size());
         EXPECT_EQ(with[i].iou.size(), with[i].lanes.size());
-        EXPECT_GE(with[i].best_iou(), without[i].best_iou());
+        gained += with[i].best_iou() - without[i].best_iou();
     }
+    EXPECT_GT(gained / static_cast<double>(with.size()), 0.003);
 }
 
 TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {

@@ -62,13 +62,5 @@ TEST(StartPairs, OfAMirroredSceneAreMirrored) {
     }
 }
 
-TEST(PossibleStarts, AreTheConesOfEachSideNearTheCarNearestFirst) {
-    // One straight ahead belongs to no side, one is too far.
-    const Scene scene = scene_of({{3, 1.5}, {1, 1.5}, {2, -1.5}, {2, 0}, {7.9, 1.6}, {0.5, -1.5}});
-    const PathPairVertices starts = possible_starts(scene, {});
-    EXPECT_THAT(starts[kLeft], ElementsAre(1, 0));
-    EXPECT_THAT(starts[kRight], ElementsAre(5, 2));
-}
-
 }  // namespace
 }  // namespace conelane

@@ -5,6 +5,7 @@
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"
+#include "graph_search/step_score_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <fstream>
@@ -26,7 +27,9 @@ struct Options {
     }
     TrainingRunOptions run;
     bool extended = false;
-    std::string policy;
+    bool steps = false;
+    std::string step_scores;
+    StepScoreTrainingOptions step_training;
     unsigned threads = 1;
     std::string out;
 };
@@ -41,27 +44,64 @@ void print(const char* of, const RankingFigures& figures) {
         100.0 * figures.least_critical_share);
 }
 
-void read_policy(const std::string& path, TrainingRunOptions& run) {
+void print(const char* of, const StepScoreFigures& figures) {
+    if (figures.scenes == 0) return;
+    fmt::print(
+        "{:<9} {:>6} scenes  right start {:.1f} %, right lane kept for 20 m {:.1f} %, whole {:.1f} %\n", of,
+        figures.scenes, 100.0 * figures.start_share, 100.0 * figures.near_kept_share,
+        100.0 * figures.kept_share);
+}
+
+/// Gives the file's text to `use`, whose InvalidInput comes out as an error in that file.
+template <typename Use>
+void read_file(const std::string& path, const char* option, const Use& use) {
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
-    if (!stream) throw InputError(path, 0, "--policy", "cannot be read");
+    if (!stream) throw InputError(path, 0, option, "cannot be read");
     try {
-        run.candidates.ranking = make_rank_net(parse_rank_net(text.str()));
-        run.policy_record = rank_net_training(text.str());
+        use(text.str());
     } catch (const InvalidInput& error) {
         throw InputError(path, 0, "", error.what());
     }
 }
 
+void train_steps(Options& options) {
+    StepTrainingRunOptions run;
+    run.tracks = options.run.tracks;
+    run.hold_out = options.run.hold_out;
+    run.scenes = options.run.scenes;
+    run.scenes.threads = options.threads;
+    run.hold_out_every_m = options.run.hold_out_every_m;
+    run.training = options.step_training;
+    run.training.search = extended_search_options();
+    run.training.seed = run.scenes.seed;
+    AtomicFile output(options.out);
+    const StepTrainingRun result = run_step_training(run);
+    output.stream() << step_scores_json(result.scores, result.record);
+    output.commit();
+    print("training", result.trained);
+    print("hold-out", result.held_out);
+}
+
 void train(Options& options) {
+    if (options.steps) {
+        train_steps(options);
+        return;
+    }
     TrainingRunOptions& run = options.run;
     run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
     if (options.extended) {
         run.candidates.search = extended_search_options();
+        run.steps_record = step_scores_training(shipped_step_scores_json());
         run.training.loss = RankLoss::choice;
     }
-    if (!options.policy.empty()) read_policy(options.policy, run);
+    if (!options.step_scores.empty()) {
+        read_file(options.step_scores, "--step-scores", [&](const std::string& text) {
+            run.candidates.search.step_scores = std::make_shared<StepScores>(parse_step_scores(text));
+            run.steps_record = step_scores_training(text);
+        });
+    }
     run.training.seed = run.scenes.seed;
     run.candidates.seed = run.scenes.seed;
     run.scenes.threads = options.threads;
@@ -77,7 +117,7 @@ void train(Options& options) {
 }  // namespace
 
 void add_train_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("train", "the ranking network of clc");
+    CLI::App& command = *program.add_subcommand("train", "the ranking network of clc, or its step scores");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     command
@@ -90,12 +130,25 @@ void add_train_command(CLI::App& program) {
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
         ->capture_default_str();
-    command.add_option("--policy", options->policy,
-                       "weights (JSON) of an earlier training: the search around the lanes that it ranks "
-                       "first gives candidates too");
     command.add_flag("--extended", options->extended,
                      "the network of clc, on its search, by all features and the quality of its choice; "
                      "without it that of clc-paper");
+    command.add_flag("--steps", options->steps,
+                     "not a network, but the step scores that the beam search of clc goes by");
+    command.add_option("--step-scores", options->step_scores,
+                       "step scores (JSON) of the beam search that finds candidates, with --extended; "
+                       "without it those of clc");
+    command
+        .add_option("--step-epochs", options->step_training.epochs, "rounds over the scenes, with --steps")
+        ->capture_default_str();
+    command
+        .add_option("--step-rate", options->step_training.learning_rate,
+                    "learning rate of Adam, with --steps")
+        ->capture_default_str();
+    command
+        .add_option("--step-decay", options->step_training.weight_decay,
+                    "decay of a score by each step, times the rate, with --steps")
+        ->capture_default_str();
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
     command

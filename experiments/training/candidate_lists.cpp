@@ -75,7 +75,6 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             CandidateSearch& search = searches.local();
             CandidateSearch::Request request;
             request.with_features = true;
-            request.ranking = options.ranking.get();
             (void)search.run(scene.scene, request);
             const PathPairs& pairs = search.pairs();
             Positions position_of;

@@ -3,11 +3,9 @@
 #include "experiments/scenes/scene_set.hpp"
 #include "graph_search/candidate_search.hpp"
 #include "graph_search/lane_features.hpp"
-#include "graph_search/ranking.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,8 +25,6 @@ struct CandidateList {
 
 struct CandidateListOptions {
     CandidateSearchOptions search;
-    /// Leads the search around the best ones, as the detector's ranking does; may be null.
-    std::shared_ptr<const LaneRanking> ranking;
     /// At most so many candidates of a scene are kept, drawn without replacement; 0 keeps all.
     std::size_t most_per_scene = 0;
     std::uint64_t seed = 0;  ///< of that draw, together with the id of the scene

@@ -2,6 +2,7 @@
 
 #include "experiments/progress.hpp"
 #include "experiments/scoring/score.hpp"
+#include "experiments/training/random_order.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
@@ -160,15 +161,6 @@ class Adam {
 };
 
 using Pair = std::pair<Eigen::Index, Eigen::Index>;
-
-/// The same order from the same generator with any standard library.
-template <typename Value>
-void shuffle(std::vector<Value>& values, Generator& random) {
-    for (std::size_t i = values.size(); i > 1; --i) {
-        std::swap(values[i - 1],
-                  values[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
-    }
-}
 
 /// The pairs of an epoch, shuffled.
 std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& parameters,

@@ -5,6 +5,7 @@
 #include "experiments/scenes/scene_set.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -56,19 +57,32 @@ Json describe(const RankNetTrainingOptions& training) {
             {"seed", training.seed}};
 }
 
-}  // namespace
+Json describe(const StepScoreFigures& figures) {
+    return {{"scenes", figures.scenes},
+            {"start_share", rounded(figures.start_share)},
+            {"near_kept_share", rounded(figures.near_kept_share)},
+            {"kept_share", rounded(figures.kept_share)}};
+}
 
-TrainingRun run_training(const TrainingRunOptions& options) {
-    const SceneSet set = make_scene_set(options.tracks, options.scenes);
-    SceneSet held_out;
+/// The scenes to train on, and those held out, of which there may be none.
+template <typename Options>
+std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
+    std::pair<SceneSet, SceneSet> sets{make_scene_set(options.tracks, options.scenes), {}};
     SceneOptions hold_out_scenes = options.scenes;
     hold_out_scenes.every_m = options.hold_out_every_m;
-    if (!options.hold_out.empty()) held_out = make_scene_set(options.hold_out, hold_out_scenes);
-    for (const auto& [name, boundaries] : held_out.tracks) {
-        if (set.tracks.contains(name)) {
+    if (!options.hold_out.empty()) sets.second = make_scene_set(options.hold_out, hold_out_scenes);
+    for (const auto& [name, boundaries] : sets.second.tracks) {
+        if (sets.first.tracks.contains(name)) {
             throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
         }
     }
+    return sets;
+}
+
+}  // namespace
+
+TrainingRun run_training(const TrainingRunOptions& options) {
+    const auto [set, held_out] = make_scene_sets(options);
     const std::vector<CandidateList> lists = enumerate_candidates(set, options.candidates);
     TrainingRun run;
     run.weights = train_rank_net(lists, options.training);
@@ -76,7 +90,6 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     run.trained = ranking_figures(lists, *ranking);
     CandidateListOptions all_candidates = options.candidates;
     all_candidates.most_per_scene = 0;
-    all_candidates.ranking = ranking;
     run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
 
     const Json record{{"tracks", track_names(set)},
@@ -84,8 +97,31 @@ TrainingRun run_training(const TrainingRunOptions& options) {
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
-                      {"policy", Json::parse(options.policy_record)},
+                      {"steps", Json::parse(options.steps_record)},
                       {"network", describe(options.training)},
+                      {"figures_of_training", describe(run.trained)},
+                      {"figures_of_hold_out", describe(run.held_out)},
+                      {"commit", provenance().commit}};
+    run.record = record.dump();
+    return run;
+}
+
+StepTrainingRun run_step_training(const StepTrainingRunOptions& options) {
+    const auto [set, held_out] = make_scene_sets(options);
+    StepTrainingRun run;
+    run.scores = train_step_scores(set, options.training);
+    run.trained = step_score_figures(set, run.scores, options.training.search);
+    run.held_out = step_score_figures(held_out, run.scores, options.training.search);
+    const Json record{{"tracks", track_names(set)},
+                      {"hold_out_tracks", track_names(held_out)},
+                      {"scenes", describe(options.scenes)},
+                      {"hold_out_every", options.hold_out_every_m},
+                      {"beam",
+                       {{"width", options.training.search.beam_width},
+                        {"epochs", options.training.epochs},
+                        {"learning_rate", options.training.learning_rate},
+                        {"weight_decay", options.training.weight_decay},
+                        {"seed", options.training.seed}}},
                       {"figures_of_training", describe(run.trained)},
                       {"figures_of_hold_out", describe(run.held_out)},
                       {"commit", provenance().commit}};

@@ -3,6 +3,7 @@
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/training/candidate_lists.hpp"
 #include "experiments/training/rank_net_training.hpp"
+#include "experiments/training/step_score_training.hpp"
 #include "graph_search/ranking.hpp"
 
 #include <string>
@@ -14,9 +15,9 @@ struct TrainingRunOptions {
     std::vector<std::string> tracks;    ///< SPECs of load_tracks
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
     SceneOptions scenes;
-    double hold_out_every_m = 10.0;      ///< travel between poses there: all candidates of a scene are scored
-    CandidateListOptions candidates;     ///< those of the hold-out are led by the network that was trained
-    std::string policy_record = "null";  ///< of the training of candidates.ranking; JSON
+    double hold_out_every_m = 10.0;  ///< travel between poses there: all candidates of a scene are scored
+    CandidateListOptions candidates;
+    std::string steps_record = "null";  ///< of the training of candidates.search.step_scores; JSON
     RankNetTrainingOptions training;
 };
 
@@ -30,5 +31,23 @@ struct TrainingRun {
 /// From track names to a trained network and the record of its training. The record names tracks, not files.
 /// Throws InputError or InvalidInput; also where a track is both trained on and held out.
 [[nodiscard]] TrainingRun run_training(const TrainingRunOptions& options);
+
+struct StepTrainingRunOptions {
+    std::vector<std::string> tracks;    ///< SPECs of load_tracks
+    std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
+    SceneOptions scenes;
+    double hold_out_every_m = 10.0;
+    StepScoreTrainingOptions training;
+};
+
+struct StepTrainingRun {
+    StepScores scores;
+    StepScoreFigures trained;
+    StepScoreFigures held_out;  ///< all zero where there are none
+    std::string record;         ///< as that of TrainingRun
+};
+
+/// The same for the scores of the beam search.
+[[nodiscard]] StepTrainingRun run_step_training(const StepTrainingRunOptions& options);
 
 }  // namespace conelane::experiments

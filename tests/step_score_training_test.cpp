@@ -1,0 +1,105 @@
+#include "experiments/training/step_score_training.hpp"
+
+#include "experiments/training/training_run.hpp"
+#include "model/invalid_input.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+SceneSet scenes(const std::string& track, double every_m, double rate = 0.4) {
+    SceneOptions options;
+    options.false_positive_rates = {rate};
+    options.ranges_m = {30.0};
+    options.every_m = every_m;
+    return make_scene_set({track}, options);
+}
+
+StepScoreTrainingOptions quick() {
+    StepScoreTrainingOptions options;
+    options.epochs = 2;
+    options.show_progress = false;
+    return options;
+}
+
+StepScores untrained() {
+    return {std::vector<double>(step_score_count(), 0.0)};
+}
+
+TEST(StepScoreTraining, LearnsToKeepTheRightLane) {
+    const StepScores scores = train_step_scores(scenes("generated:hairpins@1", 4.0), quick());
+    const SceneSet other = scenes("generated:kidney@2", 10.0);
+    const StepScoreFigures before = step_score_figures(other, untrained(), {});
+    const StepScoreFigures after = step_score_figures(other, scores, {});
+    EXPECT_GT(after.scenes, 20u);
+    EXPECT_EQ(after.scenes, before.scenes);
+    EXPECT_EQ(after.start_share, before.start_share);
+    EXPECT_LT(before.kept_share, 0.3);
+    EXPECT_GT(after.kept_share, 0.8);
+    EXPECT_GE(after.near_kept_share, after.kept_share);
+    EXPECT_GE(after.start_share, after.near_kept_share);
+}
+
+TEST(StepScoreTraining, GivesTheSameScoresAgainAndOthersFromAnotherSeed) {
+    const SceneSet set = scenes("generated:slalom@1", 20.0);
+    StepScoreTrainingOptions options = quick();
+    const StepScores scores = train_step_scores(set, options);
+    EXPECT_EQ(train_step_scores(set, options).values, scores.values);
+    options.seed = 1;
+    EXPECT_NE(train_step_scores(set, options).values, scores.values);
+}
+
+TEST(StepScoreTraining, ABeamAsWideAsTheSceneKeepsEveryLane) {
+    CandidateSearchOptions search;
+    search.beam_width = 100'000;
+    const StepScoreFigures figures =
+        step_score_figures(scenes("generated:circle@1", 30.0, 0.0), untrained(), search);
+    EXPECT_GT(figures.scenes, 0u);
+    EXPECT_GT(figures.start_share, 0.9);
+    EXPECT_GT(figures.near_kept_share, 0.5) << "of lanes with the same last vertices one goes on";
+}
+
+TEST(StepScoreTraining, OptionsOutOfRangeAreNamed) {
+    const SceneSet set = scenes("generated:circle@1", 30.0);
+    const auto key_of = [&](auto change) -> std::string {
+        StepScoreTrainingOptions options = quick();
+        change(options);
+        try {
+            (void)train_step_scores(set, options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](auto&) {}), "accepted");
+    EXPECT_EQ(key_of([](auto& o) { o.epochs = 0; }), "epochs");
+    EXPECT_EQ(key_of([](auto& o) { o.learning_rate = 0.0; }), "learning_rate");
+    EXPECT_EQ(key_of([](auto& o) { o.weight_decay = -1.0; }), "weight_decay");
+    EXPECT_EQ(key_of([](auto& o) { o.search.beam_width = 0; }), "beam_width");
+    EXPECT_THROW((void)train_step_scores({}, quick()), InvalidInput);
+}
+
+TEST(StepScoreTraining, ARunRecordsWhatItDependedOn) {
+    StepTrainingRunOptions options;
+    options.tracks = {"generated:slalom@1"};
+    options.hold_out = {"generated:kidney@2"};
+    options.scenes.false_positive_rates = {0.3};
+    options.scenes.ranges_m = {30.0};
+    options.scenes.every_m = 20.0;
+    options.hold_out_every_m = 40.0;
+    options.training = quick();
+    const StepTrainingRun run = run_step_training(options);
+    EXPECT_THAT(run.record, ::testing::HasSubstr(R"("tracks":["slalom@1"],"hold_out_tracks":["kidney@2"])"));
+    EXPECT_THAT(run.record, ::testing::HasSubstr(R"("beam":{"width":8,"epochs":2)"));
+    EXPECT_GT(run.trained.scenes, run.held_out.scenes);
+    EXPECT_GT(run.held_out.scenes, 0u);
+    options.hold_out = options.tracks;
+    EXPECT_ANY_THROW((void)run_step_training(options));
+}
+
+}  // namespace
+}  // namespace conelane::experiments
