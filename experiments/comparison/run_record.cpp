@@ -31,7 +31,9 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
         json[std::string(field.key)] = parameters.*field.value;
     }
     json["pairing"] = to_string(parameters.pairing);
-    json["w_color"] = parameters.w_color;
+    for (const RldParameterField& field : rld_extra_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
     json["use_confidence"] = parameters.use_confidence;
     json["forbid_crossing"] = parameters.forbid_crossing;
     return json;
