@@ -17,12 +17,13 @@ constexpr std::size_t kRldConeSet = 12;
 /// More do not make lanes more accurate.
 constexpr std::size_t kRldContext = 24;
 
-std::unique_ptr<LaneDetector> make_rld(std::string_view solver, Formulation formulation,
-                                       std::optional<std::size_t> nearest, const MethodOptions& options,
-                                       std::optional<std::size_t> context = std::nullopt) {
-    if (options.nearest) nearest = options.nearest;
+std::unique_ptr<LaneDetector> make_rld(std::string_view name, std::string_view solver,
+                                       Formulation formulation, const MethodOptions& options) {
+    const MethodEntry& method = find_method(name);
     return make_rld_detector(find_rld_solver(solver)->make(formulation),
-                             {.parameters = rld_parameters(options), .nearest = nearest, .context = context});
+                             {.parameters = rld_parameters(method, options),
+                              .nearest = cone_set_size(method, options),
+                              .context = method.context});
 }
 
 /// Shows its detector the nearest cones only.
@@ -50,51 +51,62 @@ std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOption
     return cut_to(make_clc_detector(clc), options.nearest);
 }
 
-constexpr std::array<MethodEntry, 10> kMethods{{
-    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, std::nullopt, true,
-     [](const MethodOptions& options) { return make_rld("cbc", Formulation::tight, kRldConeSet, options); }},
+constexpr std::array<MethodEntry, 12> kMethods{{
+    {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, std::nullopt, true, false,
+     [](const MethodOptions& options) { return make_rld("rld-cbc", "cbc", Formulation::tight, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
-     std::nullopt, true,
+     std::nullopt, true, false,
      [](const MethodOptions& options) {
-         return make_rld("cbc-main", Formulation::paper, kRldConeSet, options);
+         return make_rld("rld-paper", "cbc-main", Formulation::paper, options);
      }},
     {"rld-pair", "RLD, exact search over pairs of paths, on all cones", std::nullopt, std::nullopt, true,
+     false,
      [](const MethodOptions& options) {
-         return make_rld("path-pair", Formulation::tight, std::nullopt, options);
+         return make_rld("rld-pair", "path-pair", Formulation::tight, options);
      }},
     {"rld-context", "RLD by the exact search among more cones, then cut to the nearest", kRldConeSet,
-     kRldContext, true,
+     kRldContext, true, false,
      [](const MethodOptions& options) {
-         return make_rld("path-pair", Formulation::tight, kRldConeSet, options, kRldContext);
+         return make_rld("rld-context", "path-pair", Formulation::tight, options);
+     }},
+    {"rld-shape", "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
+     std::nullopt, std::nullopt, true, true,
+     [](const MethodOptions& options) {
+         return make_rld("rld-shape", "path-pair", Formulation::tight, options);
+     }},
+    {"rld-shape-context", "rld-context with the costs of the lane's shape", kRldConeSet, kRldContext, true,
+     true,
+     [](const MethodOptions& options) {
+         return make_rld("rld-shape-context", "path-pair", Formulation::tight, options);
      }},
     {"clc", "CLC led by a beam search; NVD weighs distances, a second search, a network on all features",
-     std::nullopt, std::nullopt, false,
+     std::nullopt, std::nullopt, false, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, std::nullopt,
-     false,
+     false, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.warm_start = true;
          return make_clc(clc, options);
      }},
     {"clc-no-beam", "clc whose first search follows no lane of a beam search", std::nullopt, std::nullopt,
-     false,
+     false, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.step_scores = nullptr;
          return make_clc(clc, options);
      }},
     {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, std::nullopt,
-     false, [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
+     false, false, [](const MethodOptions& options) { return make_clc(paper_clc_options(), options); }},
     {"clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)", std::nullopt, std::nullopt,
-     false,
+     false, false,
      [](const MethodOptions& options) {
          ClcOptions clc = paper_clc_options();
          clc.graph = SearchGraphKind::delaunay;
          return make_clc(clc, options);
      }},
     {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt, std::nullopt,
-     false, [](const MethodOptions& options) { return make_clc({}, options); }},
+     false, false, [](const MethodOptions& options) { return make_clc({}, options); }},
 }};
 
 }  // namespace
@@ -121,10 +133,10 @@ Scene seen_by(const MethodEntry& method, const MethodOptions& options, const Sce
     return nearest ? nearest_ahead(scene, std::max(*nearest, method.context.value_or(0))) : scene;
 }
 
-RldParameters rld_parameters(const MethodOptions& options) {
+RldParameters rld_parameters(const MethodEntry& method, const MethodOptions& options) {
     RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
     if (options.pairing) parameters.pairing = *options.pairing;
-    return parameters;
+    return method.has_shape ? with_shape_costs(parameters) : parameters;
 }
 
 }  // namespace conelane::experiments

@@ -27,7 +27,8 @@ struct MethodEntry {
     /// The nearest cones that it finds its lane among before it cuts it to the cone set, where these are
     /// more.
     std::optional<std::size_t> context;
-    bool is_rld;  ///< uses RLD parameters
+    bool is_rld;     ///< uses RLD parameters ...
+    bool has_shape;  ///< ... with the costs of a lane's shape, weighted by hand where the options do not
     std::unique_ptr<LaneDetector> (*make)(const MethodOptions& options);
 };
 
@@ -45,6 +46,6 @@ struct MethodEntry {
 [[nodiscard]] Scene seen_by(const MethodEntry& method, const MethodOptions& options, const Scene& scene);
 
 /// The parameters that an RLD method gets under these options.
-[[nodiscard]] RldParameters rld_parameters(const MethodOptions& options);
+[[nodiscard]] RldParameters rld_parameters(const MethodEntry& method, const MethodOptions& options);
 
 }  // namespace conelane::experiments

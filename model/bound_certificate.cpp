@@ -27,7 +27,8 @@ class Verification {
 
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
-        if (p_.w_color > 0.0) violated("certificates are for the model without colour cost");
+        if (p_.w_color > 0.0 || has_shape_costs(p_))
+            violated("certificates are for the model without colour and shape costs");
         prices();
         cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);

@@ -210,6 +210,42 @@ class Checker {
         return faults;
     }
 
+    /// How badly an edge of the scene faces this one: 1 where it is out of the question.
+    [[nodiscard]] Real facing_cost(const Edge& edge, std::size_t k, std::size_t l) const {
+        if (k == edge.i || k == edge.j || l == edge.i || l == edge.j) return 1;
+        const Vector along_edge = position(edge.j) - position(edge.i);
+        const Vector other = position(l) - position(k);
+        const Real own = length(along_edge);
+        const Real theirs = length(other);
+        const Real spacing = fourth((theirs - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
+        if (own == 0 || theirs == 0 || spacing > static_cast<Real>(p_.s_crit) + kTie) return 1;
+        const Vector way =
+            along(position(k), position(l), 0.5L) - along(position(edge.i), position(edge.j), 0.5L);
+        const Real ahead = dot(way, along_edge) / own;
+        const Real off_width = std::abs(wedge(along_edge, way)) / own - static_cast<Real>(p_.d_w);
+        const Real turned = wedge(along_edge, other) / (own * theirs * static_cast<Real>(p_.theta_v));
+        return (ahead * ahead + off_width * off_width) / (static_cast<Real>(p_.d_v) * p_.d_v) +
+               turned * turned;
+    }
+
+    /// By the edge of the scene that faces this one best.
+    [[nodiscard]] Real facing_cost(const Edge& edge) const {
+        Real best = 1;
+        for (std::size_t k = 0; k < scene_.cones.size(); ++k) {
+            for (std::size_t l = k + 1; l < scene_.cones.size(); ++l) {
+                best = std::min(best, facing_cost(edge, k, l));
+            }
+        }
+        return best;
+    }
+
+    /// What a near endpoint is worth where it stands.
+    [[nodiscard]] Real near_end_benefit(std::size_t cone) const {
+        const Real off = std::abs(wedge(heading_, position(cone) - car_)) - static_cast<Real>(p_.d_w) / 2;
+        const Real off_scaled = off / static_cast<Real>(p_.d_t);
+        return static_cast<Real>(p_.w_n) * std::max(Real{0}, 1 - off_scaled * off_scaled);
+    }
+
     void costs() {
         Real sum = 0;
         int along_heading = 0;
@@ -231,10 +267,12 @@ class Checker {
             const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
             if (along_the_heading) ++along_heading;
             sum += static_cast<Real>(p_.w_color) * static_cast<Real>(color_faults(edge, along_the_heading));
+            if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge);
         }
         if (along_heading < 2)
             violated("(9) " + std::to_string(along_heading) + " edges along the heading instead of 2");
         for (const auto& [cone, others] : neighbours_) {
+            if (others.size() == 1 && is_near(cone)) sum -= near_end_benefit(cone);
             for (std::size_t a = 0; a < others.size(); ++a) {
                 for (std::size_t b = a + 1; b < others.size(); ++b) {
                     const Vector to_a = position(others[a]) - position(cone);
@@ -244,7 +282,8 @@ class Checker {
                         fourth((angle - static_cast<Real>(p_.theta_e)) / static_cast<Real>(p_.theta_t));
                     if (cost > static_cast<Real>(p_.t_crit) + kTie)
                         violated("(28) the angle at cone " + name(cone) + " exceeds t_crit");
-                    sum += static_cast<Real>(p_.w_t) * cost;
+                    const Real uneven = (length(to_a) - length(to_b)) / static_cast<Real>(p_.d_t);
+                    sum += static_cast<Real>(p_.w_t) * cost + static_cast<Real>(p_.w_u) * uneven * uneven;
                 }
             }
         }

@@ -1,6 +1,7 @@
 #include "model/lane_graph_problem.hpp"
 
 #include "model/geometry.hpp"
+#include "model/shape_costs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             spacing_cost,
             heading_cost,
             color_cost,
+            0.0,
             p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
             along_heading,
             !within(spacing_cost, p.s_crit) || length == 0.0};
@@ -101,6 +103,26 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
     }
 }
 
+/// Precondition: all edges are listed.
+void add_shape_costs(const Scene& scene, LaneGraphProblem& problem) {
+    const RldParameters& p = problem.parameters;
+    if (p.w_v > 0.0) {
+        const std::vector<double> facing = facing_costs(scene, problem.edges, p);
+        for (std::size_t e = 0; e < facing.size(); ++e) problem.edges[e].facing_cost = facing[e];
+    }
+    problem.near_end_fit.assign(problem.cone_count, 0.0);
+    if (p.w_n > 0.0) {
+        for (std::size_t i = 0; i < problem.cone_count; ++i) {
+            if (problem.near[i]) problem.near_end_fit[i] = near_end_fit(scene, scene.cones[i].position, p);
+        }
+    }
+    for (ProblemEdge& edge : problem.edges) {
+        edge.cost +=
+            p.w_v * edge.facing_cost - p.w_n * (problem.near_end_fit[edge.i] + problem.near_end_fit[edge.j]);
+    }
+}
+
+/// Precondition: edges and the fit of near ends are known.
 void find_turns(const Scene& scene, LaneGraphProblem& problem) {
     const RldParameters& p = problem.parameters;
     const auto other_end = [&](std::size_t edge, std::size_t cone) {
@@ -109,15 +131,19 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem) {
     };
     for (std::size_t middle = 0; middle < problem.cone_count; ++middle) {
         const std::vector<std::size_t>& incident = problem.incident[middle];
+        const Point& at = scene.cones[middle].position;
+        const double end_cost = 2.0 * p.w_n * problem.near_end_fit[middle];
         for (std::size_t first = 0; first < incident.size(); ++first) {
             for (std::size_t second = first + 1; second < incident.size(); ++second) {
                 // Ascending edges at a cone have ascending other ends.
-                const double angle = interior_angle(
-                    scene.cones[other_end(incident[first], middle)].position, scene.cones[middle].position,
-                    scene.cones[other_end(incident[second], middle)].position);
+                const Point& before = scene.cones[other_end(incident[first], middle)].position;
+                const Point& after = scene.cones[other_end(incident[second], middle)].position;
+                const double angle = interior_angle(before, at, after);
                 const double angle_cost = fourth_power((angle - p.theta_e) / p.theta_t);  // (20)
-                problem.turns.push_back({incident[first], incident[second], middle, angle_cost,
-                                         p.w_t * angle_cost, !within(angle_cost, p.t_crit)});
+                const double uneven = unevenness((before - at).norm(), (after - at).norm(), p);
+                problem.turns.push_back({incident[first], incident[second], middle, angle_cost, uneven,
+                                         p.w_t * angle_cost + p.w_u * uneven + end_cost,
+                                         !within(angle_cost, p.t_crit)});
             }
         }
     }
@@ -167,6 +193,7 @@ LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameter
             problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
         }
     }
+    add_shape_costs(scene, problem);
     find_turns(scene, problem);
     find_conflicts(scene, problem);
     return problem;

@@ -32,6 +32,27 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kLargestWeight, true, "largest angle cost"},
 }};
 
+constexpr std::array<RldParameterField, 7> kExtraFields{{
+    {"w_color", &P::w_color, "1", 0.0, kLargestWeight, true, "weight of the colour cost"},
+    {"w_u", &P::w_u, "1", 0.0, kLargestWeight, true, "weight of uneven spacing"},
+    {"w_v", &P::w_v, "1", 0.0, kLargestWeight, true, "weight of the facing cost"},
+    {"w_n", &P::w_n, "1", 0.0, kLargestWeight, true, "benefit of a near endpoint beside the car"},
+    {"d_w", &P::d_w, "m", 0.0, kLongest_m, true, "expected width of the lane"},
+    {"d_v", &P::d_v, "m", 0.0, kLongest_m, false, "facing threshold"},
+    {"theta_v", &P::theta_v, "rad", 0.0, std::numbers::pi, false, "facing angle threshold"},
+}};
+
+void require_in_range(const RldParameterField& field, const RldParameters& parameters) {
+    const double value = parameters.*field.value;
+    const bool above = field.lowest_allowed ? value >= field.lowest : value > field.lowest;
+    if (!std::isfinite(value) || !above || value > field.highest) {
+        throw InvalidInput(std::string(field.key),
+                           "must be in " + std::string(field.lowest_allowed ? "[" : "(") +
+                               std::to_string(field.lowest) + ", " + std::to_string(field.highest) + "] " +
+                               std::string(field.unit == "1" ? "" : field.unit));
+    }
+}
+
 }  // namespace
 
 std::string_view to_string(Pairing pairing) {
@@ -42,20 +63,25 @@ std::span<const RldParameterField> rld_parameter_fields() {
     return kFields;
 }
 
+std::span<const RldParameterField> rld_extra_fields() {
+    return kExtraFields;
+}
+
+RldParameters with_shape_costs(RldParameters parameters) {
+    const RldParameters by_hand{.w_u = 0.25, .w_v = 0.6, .w_n = 0.8};
+    for (double P::*weight : {&P::w_u, &P::w_v, &P::w_n}) {
+        if (parameters.*weight == 0.0) parameters.*weight = by_hand.*weight;
+    }
+    return parameters;
+}
+
+bool has_shape_costs(const RldParameters& parameters) {
+    return parameters.w_u > 0.0 || parameters.w_v > 0.0 || parameters.w_n > 0.0;
+}
+
 void validate(const RldParameters& parameters) {
-    for (const RldParameterField& field : kFields) {
-        const double value = parameters.*field.value;
-        const bool above = field.lowest_allowed ? value >= field.lowest : value > field.lowest;
-        if (!std::isfinite(value) || !above || value > field.highest) {
-            throw InvalidInput(std::string(field.key),
-                               "must be in " + std::string(field.lowest_allowed ? "[" : "(") +
-                                   std::to_string(field.lowest) + ", " + std::to_string(field.highest) +
-                                   "] " + std::string(field.unit == "1" ? "" : field.unit));
-        }
-    }
-    if (!(parameters.w_color >= 0.0 && parameters.w_color <= kLargestWeight)) {
-        throw InvalidInput("w_color", "must be in [0, " + std::to_string(kLargestWeight) + "]");
-    }
+    for (const RldParameterField& field : kFields) require_in_range(field, parameters);
+    for (const RldParameterField& field : kExtraFields) require_in_range(field, parameters);
 }
 
 }  // namespace conelane

@@ -37,6 +37,14 @@ struct RldParameters {
     double w_color = 0.0;          ///< weight of the colour cost, see ProblemEdge::color_cost
     bool use_confidence = false;   ///< an edge's benefit is w_b times the confidences of its two cones
     bool forbid_crossing = false;  ///< no two edges cross; (7) forbids most crossings already
+
+    // Extras of this project, off by default: costs of a lane's shape, see shape_costs.hpp.
+    double w_u = 0.0;      ///< weight of uneven spacing
+    double w_v = 0.0;      ///< weight of the facing cost
+    double w_n = 0.0;      ///< benefit of a near endpoint half a lane beside the car's axis
+    double d_w = 3.7;      ///< expected width of the lane [m]
+    double d_v = 2.0;      ///< facing threshold [m]
+    double theta_v = 0.5;  ///< facing angle threshold [rad]
 };
 
 /// One numeric parameter: how files spell it, where it is, and what it may be.
@@ -49,8 +57,15 @@ struct RldParameterField {
     bool lowest_allowed;  ///< whether `lowest` itself is valid; `highest` always is
     std::string_view meaning;
 };
-/// All numeric parameters of the paper in the order of the file format; w_color is none of them.
+/// All numeric parameters of the paper in the order of the file format.
 [[nodiscard]] std::span<const RldParameterField> rld_parameter_fields();
+/// The numeric parameters of the extras, whose defaults switch them off.
+[[nodiscard]] std::span<const RldParameterField> rld_extra_fields();
+
+/// The same with hand-set weights of the shape costs in place of any that are 0.
+[[nodiscard]] RldParameters with_shape_costs(RldParameters parameters);
+/// Whether a shape cost has a weight.
+[[nodiscard]] bool has_shape_costs(const RldParameters& parameters);
 
 /// Throws InvalidInput naming the first parameter that is not finite or out of its range.
 void validate(const RldParameters& parameters);

@@ -121,7 +121,8 @@ TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
     options.ranges_m = {30.0};
     options.every_m = 15.0;
     const SceneSet set = make_scene_set({"generated:kidney"}, options);
-    for (const char* method : {"rld-cbc", "rld-pair", "rld-context", "clc"}) {
+    for (const char* method :
+         {"rld-cbc", "rld-pair", "rld-context", "rld-shape", "rld-shape-context", "clc"}) {
         SCOPED_TRACE(method);
         const MethodEntry& entry = find_method(method);
         std::size_t found = 0;

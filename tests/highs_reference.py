@@ -29,6 +29,7 @@ PARAMETERS = {
     "pairing": "near_far",
 }
 EXTRAS = {**PARAMETERS, "w_color": 0.3, "use_confidence": 1, "forbid_crossing": 1, "d_min": 0.0, "d_max": 16.0}
+SHAPE = {**PARAMETERS, "w_u": 0.3, "w_v": 0.8, "w_n": 0.9, "d_w": 3.6, "d_v": 2.2, "theta_v": 0.4}
 
 
 def point_to_segment(p, a, b):
@@ -112,6 +113,8 @@ class Model:
                                                  or ("yellow" in colors and min(lefts) > TIE)):
                 color += 1
             self.cost[column] = p["w_s"] * s + p["w_p"] * heading + p.get("w_color", 0.0) * color - benefit
+            if "w_v" in p:
+                self.cost[column] += p["w_v"] * self.facing_cost(i, j)
             if s > p["s_crit"] + TIE or self.length(i, j) == 0.0:
                 self.upper[column] = 0.0  # (27)
         for (i, j, k), column in self.f.items():
@@ -119,8 +122,32 @@ class Model:
             angle = math.atan2(abs(cross(u, v)), float(np.dot(u, v)))
             t = ((angle - p["theta_e"]) / p["theta_t"]) ** 4
             self.cost[column] = p["w_t"] * t
+            if "w_u" in p:
+                self.cost[column] += p["w_u"] * ((self.length(i, j) - self.length(j, k)) / p["d_t"]) ** 2
             if t > p["t_crit"] + TIE:
                 self.upper[column] = 0.0  # (28)
+
+        for i in range(self.n):
+            if "w_n" in p and self.near[i]:  # a benefit where i ends a path
+                side = abs(cross(self.heading, self.at[i] - self.car))
+                fit = max(0.0, 1 - ((side - p["d_w"] / 2) / p["d_t"]) ** 2)
+                for column, factor in self.mark(i, -p["w_n"] * fit):
+                    self.cost[column] += factor
+
+    def facing_cost(self, i, j):
+        """How badly the edge that faces {i, j} best does."""
+        p, best = self.p, 1.0
+        v = (self.at[j] - self.at[i]) / max(self.length(i, j), 1e-300)
+        for k, l in self.edges:
+            if {i, j} & {k, l} or self.length(k, l) == 0.0:
+                continue
+            if ((self.length(k, l) - p["d_e"]) / p["d_t"]) ** 4 > p["s_crit"] + TIE:
+                continue
+            way = (self.at[k] + self.at[l] - self.at[i] - self.at[j]) / 2
+            sine = cross(v, self.at[l] - self.at[k]) / self.length(k, l)
+            best = min(best, (float(np.dot(v, way)) ** 2 + (abs(cross(v, way)) - p["d_w"]) ** 2) / p["d_v"] ** 2
+                       + (sine / p["theta_v"]) ** 2)
+        return best
 
     def row(self, terms, lower, upper):
         self.rows.append((terms, lower, upper))
@@ -227,7 +254,7 @@ def main():
     with open(scenes_file, "w", encoding="utf-8") as file:
         file.writelines(json.dumps(scene) + "\n" for scene in scenes)
     disagreements = feasible = 0
-    for name, parameters in (("paper", PARAMETERS), ("extras", EXTRAS)):
+    for name, parameters in (("paper", PARAMETERS), ("extras", EXTRAS), ("shape", SHAPE)):
         parameter_file = os.path.join(folder, f"{name}.json")
         with open(parameter_file, "w", encoding="utf-8") as file:
             json.dump(parameters, file)

@@ -373,7 +373,7 @@ TEST_F(Program, MergedShardsEqualOneRun) {
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
     ASSERT_EQ(run("compare --tracks generated:circle --every 15 --fp 0.3 --out results").exit_code, 0);
-    for (const char* method : {"rld-cbc", "rld-pair", "clc"}) {
+    for (const char* method : {"rld-cbc", "rld-pair", "rld-shape", "clc"}) {
         for (const LaneRecord& record :
              read_lanes(path("results") / (std::string(method) + ".lanes.jsonl"))) {
             EXPECT_EQ(record.checked,

@@ -190,16 +190,21 @@ TEST_F(ParameterFileTest, RoundTripAndDefaultPairing) {
 /// A file speaks of extras where they are on; one that does not has them off.
 TEST_F(ParameterFileTest, ExtrasAreOptional) {
     write_rld_parameters(path("p"), RldParameters{});
-    EXPECT_EQ(text_of(path("p")).find("w_color"), std::string::npos);
-    EXPECT_EQ(read_rld_parameters(path("p")).w_color, 0.0);
+    for (const RldParameterField& field : rld_extra_fields()) {
+        EXPECT_EQ(text_of(path("p")).find(field.key), std::string::npos) << field.key;
+        EXPECT_EQ(read_rld_parameters(path("p")).*field.value, RldParameters{}.*field.value) << field.key;
+    }
 
     RldParameters parameters;
-    parameters.w_color = 0.25;
+    double step = 0.25;
+    for (const RldParameterField& field : rld_extra_fields()) parameters.*field.value += step += 0.125;
     parameters.use_confidence = true;
     parameters.forbid_crossing = true;
     write_rld_parameters(path("p"), parameters);
     const RldParameters read = read_rld_parameters(path("p"));
-    EXPECT_EQ(read.w_color, 0.25);
+    for (const RldParameterField& field : rld_extra_fields()) {
+        EXPECT_EQ(read.*field.value, parameters.*field.value) << field.key;
+    }
     EXPECT_TRUE(read.use_confidence);
     EXPECT_TRUE(read.forbid_crossing);
 
@@ -207,6 +212,8 @@ TEST_F(ParameterFileTest, ExtrasAreOptional) {
     text.replace(text.find("\"use_confidence\": 1"), 19, "\"use_confidence\": 2");
     EXPECT_EQ(error_of([&] { static_cast<void>(read_rld_parameters(file_with(text, "p"))); }),
               "p: use_confidence: must be 0 or 1");
+    parameters.d_v = 0.0;
+    EXPECT_THROW(validate(parameters), InvalidInput);
 }
 
 TEST_F(ParameterFileTest, NamesBadParameters) {

@@ -255,6 +255,11 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
         parameters.w_color = 0.4;
         parameters.use_confidence = true;
         parameters.forbid_crossing = true;
+        if (seed % 2 == 0) {
+            parameters.w_u = 0.3;
+            parameters.w_v = 0.8;
+            parameters.w_n = 0.9;
+        }
         const RldReport reference = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
         const RldReport report = solve(scene, parameters);
         ASSERT_EQ(report.status, reference.status) << report.message;

@@ -37,11 +37,21 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
 TEST(ParameterBox, LeadsToThePointAndBack) {
     RldParameters start;
     start.s_crit = 8.0;
-    const RldParameters back = from_unit_cube(to_unit_cube(start), start);
-    for (const TunedParameter& tuned : tuned_parameters()) {
-        EXPECT_NEAR(back.*tuned.value, start.*tuned.value, 1e-4) << tuned.key;
+    for (const RldParameters& from : {start, with_shape_costs(start)}) {
+        const RldParameters back = from_unit_cube(to_unit_cube(from), from);
+        for (const TunedParameter& tuned : tuned_parameters(from)) {
+            EXPECT_NEAR(back.*tuned.value, from.*tuned.value, 1e-4) << tuned.key;
+        }
+        EXPECT_EQ(back.w_b, from.w_b);
     }
-    EXPECT_EQ(back.w_b, start.w_b);
+}
+
+TEST(ParameterBox, HoldsTheShapeCostsOfAStartThatHasThem) {
+    const RldParameters plain;
+    const RldParameters back =
+        from_unit_cube(std::vector<double>(tuned_parameters(plain).size(), 1.0), plain);
+    EXPECT_FALSE(has_shape_costs(back));
+    EXPECT_EQ(tuned_parameters(with_shape_costs(plain)).size(), tuned_parameters(plain).size() + 6);
 }
 
 TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {
@@ -58,7 +68,7 @@ TEST(ParameterBox, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
     rest.d_t = 1.25;
     rest.pairing = Pairing::paper;
     for (const double corner : {0.0, 1.0}) {
-        const std::vector<double> point(tuned_parameters().size(), corner);
+        const std::vector<double> point(tuned_parameters(rest).size(), corner);
         const RldParameters parameters = from_unit_cube(point, rest);
         EXPECT_NO_THROW(validate(parameters));
         EXPECT_EQ(parameters.d_t, 1.25);

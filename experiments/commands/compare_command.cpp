@@ -94,7 +94,7 @@ void add_compare_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
-    options->methods = {"rld-cbc", "rld-pair", "clc"};
+    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
@@ -117,7 +117,7 @@ void add_sweep_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto sizes = std::make_shared<std::vector<std::size_t>>(
         std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
-    options->methods = {"rld-cbc", "rld-pair", "clc"};
+    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.2};
     scenes.ranges_m = {30.0};

@@ -33,6 +33,7 @@ struct Options {
     EvaluationOptions evaluation;
     TunerOptions tuner;
     std::string start;
+    bool shape = false;
     std::filesystem::path out;
     std::filesystem::path log;
 };
@@ -57,6 +58,7 @@ ordered_json conditions(const Options& options, const RldParameters& start) {
                       {"most_nodes", options.evaluation.most_nodes},
                       {"pairing", to_string(start.pairing)},
                       {"w_color", start.w_color},
+                      {"shape", has_shape_costs(start)},
                       {"use_confidence", start.use_confidence},
                       {"forbid_crossing", start.forbid_crossing}};
     if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
@@ -67,6 +69,10 @@ ordered_json conditions(const Options& options, const RldParameters& start) {
 ordered_json to_json(const RldParameters& parameters) {
     ordered_json json = ordered_json::object();
     for (const RldParameterField& field : rld_parameter_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
+    if (!has_shape_costs(parameters)) return json;
+    for (const RldParameterField& field : rld_extra_fields()) {
         json[std::string(field.key)] = parameters.*field.value;
     }
     return json;
@@ -172,7 +178,8 @@ std::filesystem::path record_path(std::filesystem::path parameters) {
 void run(Options& options) {
     options.scenes.threads = options.evaluation.threads;
     options.tuner.seed = options.scenes.seed;
-    const RldParameters start = ParameterSource{options.start, {}}.load();
+    RldParameters start = ParameterSource{options.start, {}}.load();
+    if (options.shape) start = with_shape_costs(start);
     const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
     EvaluationLog log(options.log, to_line(conditions(options, start)),
                       [&](const RldParameters& parameters) { return evaluation(parameters); });
@@ -251,6 +258,7 @@ void add_tune_command(CLI::App& program) {
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
     command.add_option("--start", options->start, "parameters to start from");
+    command.add_flag("--shape", options->shape, "with the costs of the lane's shape, tuned too");
     add_threads_option(command, options->evaluation.threads, "scenes at a time");
     command.add_option("--out", options->out, "P.json; its record goes to P.record.json")->required();
     command.add_option("--log", options->log, "*.jsonl of all evaluations; a tuning stopped there goes on");

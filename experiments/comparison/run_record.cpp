@@ -31,7 +31,9 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
         json[std::string(field.key)] = parameters.*field.value;
     }
     json["pairing"] = to_string(parameters.pairing);
-    json["w_color"] = parameters.w_color;
+    for (const RldParameterField& field : rld_extra_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
     json["use_confidence"] = parameters.use_confidence;
     json["forbid_crossing"] = parameters.forbid_crossing;
     return json;
@@ -49,8 +51,8 @@ std::string run_record(const ComparisonOptions& options) {
     for (const Entrant& entrant : options.entrants) {
         nlohmann::ordered_json json{{"name", entrant.method}};
         if (entrant.nearest) json["nearest"] = *entrant.nearest;
-        if (find_method(entrant.method).is_rld)
-            json["rld_parameters"] = to_json(rld_parameters(options.run.method));
+        const MethodEntry& method = find_method(entrant.method);
+        if (method.is_rld) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
         methods.push_back(json);
     }
     const SceneOptions& scenes = options.scenes;

@@ -43,7 +43,7 @@ std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const Ann
                                   const RunOptions& options, Progress& progress) {
     const std::unique_ptr<LaneDetector> detector = method.make(options.method);
     const std::optional<std::size_t> nearest = cone_set_size(method, options.method);
-    const RldParameters parameters = rld_parameters(options.method);
+    const RldParameters parameters = rld_parameters(method, options.method);
     (void)detect(*detector, lap.front().scene, options.limits);
     detector->reset();
     std::vector<LaneRecord> records;

@@ -27,7 +27,9 @@ RldParameters rld_parameters_of(const JsonNode& json) {
         parameters.*field.value = json.member(field.key).number();
     }
     if (const auto pairing = json.find("pairing")) parameters.pairing = pairing->one_of(kPairings);
-    if (const auto weight = json.find("w_color")) parameters.w_color = weight->number();
+    for (const RldParameterField& field : rld_extra_fields()) {
+        if (const auto value = json.find(field.key)) parameters.*field.value = value->number();
+    }
     if (const auto flag = json.find("use_confidence")) parameters.use_confidence = is_on(*flag);
     if (const auto flag = json.find("forbid_crossing")) parameters.forbid_crossing = is_on(*flag);
     json.require_valid([&] { validate(parameters); });
@@ -53,8 +55,11 @@ void write_rld_parameters(const std::filesystem::path& file, const RldParameters
         json[std::string(field.key)] = parameters.*field.value;
     }
     json["pairing"] = to_string(parameters.pairing);
-    // Extras stand in a file where they are on.
-    if (parameters.w_color != 0.0) json["w_color"] = parameters.w_color;
+    // Extras stand in a file where they are on, or else not as they come.
+    for (const RldParameterField& field : rld_extra_fields()) {
+        if (parameters.*field.value != RldParameters{}.*field.value)
+            json[std::string(field.key)] = parameters.*field.value;
+    }
     if (parameters.use_confidence) json["use_confidence"] = 1;
     if (parameters.forbid_crossing) json["forbid_crossing"] = 1;
     AtomicFile output(file);

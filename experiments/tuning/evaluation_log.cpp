@@ -2,6 +2,7 @@
 
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
+#include "model/rld_parameters.hpp"
 
 #include <iterator>
 #include <system_error>
@@ -12,9 +13,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// All that tuning may move.
+std::vector<RldParameterField> fields() {
+    std::vector<RldParameterField> all;
+    for (const auto& some : {rld_parameter_fields(), rld_extra_fields()}) {
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+}
+
 std::vector<double> key_of(const RldParameters& parameters) {
     std::vector<double> key;
-    for (const RldParameterField& field : rld_parameter_fields()) key.push_back(parameters.*field.value);
+    for (const RldParameterField& field : fields()) key.push_back(parameters.*field.value);
     return key;
 }
 
@@ -26,7 +36,7 @@ LapFigure read_lap(const JsonNode& json) {
 std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>& laps) {
     nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
     std::size_t i = 0;
-    for (const RldParameterField& field : rld_parameter_fields()) {
+    for (const RldParameterField& field : fields()) {
         parameters[std::string(field.key)] = key[i++];
     }
     nlohmann::ordered_json figures = nlohmann::ordered_json::array();
@@ -75,7 +85,7 @@ void EvaluationLog::read(const std::string& header) {
         if (json.line() == 1) return;
         const JsonNode parameters = json.member("parameters");
         std::vector<double> key;
-        for (const RldParameterField& field : rld_parameter_fields()) {
+        for (const RldParameterField& field : fields()) {
             key.push_back(parameters.member(field.key).number());
         }
         std::vector<LapFigure> laps;

@@ -58,6 +58,9 @@ struct Terms {
     double angle = 0.0;
     double heading = 0.0;
     double color = 0.0;
+    double unevenness = 0.0;
+    double facing = 0.0;
+    double near_ends = 0.0;  ///< at most zero
 };
 
 Terms terms_of(const LaneGraphProblem& problem, const LaneGraph& graph) {
@@ -74,10 +77,17 @@ Terms terms_of(const LaneGraphProblem& problem, const LaneGraph& graph) {
         terms.spacing += spacing;
         terms.heading += heading;
         terms.color += color;
-        terms.benefit += edge.cost - spacing - heading - color;
+        const double facing = p.w_v * edge.facing_cost;
+        const double near_ends = -p.w_n * (problem.near_end_fit[edge.i] + problem.near_end_fit[edge.j]);
+        terms.facing += facing;
+        terms.near_ends += near_ends;
+        terms.benefit += edge.cost - spacing - heading - color - facing - near_ends;
     }
     for (const ProblemTurn& turn : problem.turns) {
-        if (chosen[turn.edge_i] && chosen[turn.edge_k]) terms.angle += turn.cost;
+        if (!chosen[turn.edge_i] || !chosen[turn.edge_k]) continue;
+        terms.angle += p.w_t * turn.angle_cost;
+        terms.unevenness += p.w_u * turn.unevenness;
+        terms.near_ends += 2.0 * p.w_n * problem.near_end_fit[turn.middle];
     }
     return terms;
 }
@@ -90,7 +100,10 @@ Loss dearest_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth
                                  std::pair(theirs.spacing - ours.spacing, Loss::cheaper_spacing),
                                  std::pair(theirs.angle - ours.angle, Loss::cheaper_angle),
                                  std::pair(theirs.heading - ours.heading, Loss::cheaper_heading),
-                                 std::pair(theirs.color - ours.color, Loss::cheaper_color)};
+                                 std::pair(theirs.color - ours.color, Loss::cheaper_color),
+                                 std::pair(theirs.unevenness - ours.unevenness, Loss::cheaper_unevenness),
+                                 std::pair(theirs.facing - ours.facing, Loss::cheaper_facing),
+                                 std::pair(theirs.near_ends - ours.near_ends, Loss::cheaper_near_ends)};
     return std::ranges::max(differences, {}, [](const auto& entry) { return entry.first; }).second;
 }
 
@@ -102,9 +115,10 @@ bool contains(const std::vector<ConeId>& run, ConeId id) {
 
 std::string_view to_string(Loss loss) {
     constexpr std::array<std::string_view, kLossCount> kNames{
-        "no_ground_truth", "accurate",         "breaks_spacing",  "breaks_angle",    "breaks_width",
-        "breaks_heading",  "breaks_endpoints", "cheaper_benefit", "cheaper_spacing", "cheaper_angle",
-        "cheaper_heading", "cheaper_color",    "none_found"};
+        "no_ground_truth",    "accurate",       "breaks_spacing",    "breaks_angle",
+        "breaks_width",       "breaks_heading", "breaks_endpoints",  "cheaper_benefit",
+        "cheaper_spacing",    "cheaper_angle",  "cheaper_heading",   "cheaper_color",
+        "cheaper_unevenness", "cheaper_facing", "cheaper_near_ends", "none_found"};
     return kNames[static_cast<std::size_t>(loss)];
 }
 

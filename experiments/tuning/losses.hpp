@@ -29,9 +29,12 @@ enum class Loss {
     cheaper_angle,
     cheaper_heading,
     cheaper_color,
+    cheaper_unevenness,  ///< and of the shape costs
+    cheaper_facing,
+    cheaper_near_ends,
     none_found,  ///< the ground truth is feasible, yet the search stopped at the time limit before it
 };
-inline constexpr std::size_t kLossCount = 13;
+inline constexpr std::size_t kLossCount = 16;
 [[nodiscard]] std::string_view to_string(Loss loss);
 
 /// Cones that are chosen and not in the ground truth, or missed, by where on their boundary they are: before

@@ -15,7 +15,8 @@ using P = RldParameters;
 /// m wide (d_min), first cones 5 m away (d_near), far ends the widest lane apart (d_max), two edges near a
 /// car that stands across a bend (d_h, theta_heading). d_e ends at the largest spacing that the competition's
 /// rules allow.
-constexpr std::array<TunedParameter, 11> kTuned{{
+constexpr std::size_t kShapeParameters = 6;
+constexpr std::array<TunedParameter, 11 + kShapeParameters> kTuned{{
     {"d_e", &P::d_e, 1.5, 5.0, false},
     {"w_s", &P::w_s, 0.01, 3.0, true},
     {"w_t", &P::w_t, 0.02, 5.0, true},
@@ -27,6 +28,13 @@ constexpr std::array<TunedParameter, 11> kTuned{{
     {"d_max", &P::d_max, 6.5, 12.0, false},
     {"s_crit", &P::s_crit, 7.0, 20.0, true},
     {"t_crit", &P::t_crit, 3.5, 10.0, true},
+    // Of the shape costs.
+    {"w_u", &P::w_u, 0.01, 3.0, true},
+    {"w_v", &P::w_v, 0.02, 5.0, true},
+    {"w_n", &P::w_n, 0.02, 5.0, true},
+    {"d_w", &P::d_w, 3.0, 5.0, false},
+    {"d_v", &P::d_v, 0.5, 4.0, true},
+    {"theta_v", &P::theta_v, 0.1, 1.5, true},
 }};
 
 /// Short numbers in files, and the same ones on every machine, whose logarithms differ in the last bits.
@@ -37,13 +45,13 @@ double rounded(double value) {
 
 }  // namespace
 
-std::span<const TunedParameter> tuned_parameters() {
-    return kTuned;
+std::span<const TunedParameter> tuned_parameters(const RldParameters& start) {
+    return std::span(kTuned).first(has_shape_costs(start) ? kTuned.size() : kTuned.size() - kShapeParameters);
 }
 
 std::vector<double> to_unit_cube(const RldParameters& parameters) {
     std::vector<double> point;
-    for (const TunedParameter& tuned : kTuned) {
+    for (const TunedParameter& tuned : tuned_parameters(parameters)) {
         const double value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
         point.push_back(tuned.logarithmic
                             ? std::log(value / tuned.lowest) / std::log(tuned.highest / tuned.lowest)
@@ -54,8 +62,9 @@ std::vector<double> to_unit_cube(const RldParameters& parameters) {
 
 RldParameters from_unit_cube(std::span<const double> point, const RldParameters& rest) {
     RldParameters parameters = rest;
-    for (std::size_t i = 0; i < kTuned.size(); ++i) {
-        const TunedParameter& tuned = kTuned[i];
+    const std::span<const TunedParameter> tuned_ones = tuned_parameters(rest);
+    for (std::size_t i = 0; i < tuned_ones.size(); ++i) {
+        const TunedParameter& tuned = tuned_ones[i];
         const double value = tuned.logarithmic
                                  ? tuned.lowest * std::pow(tuned.highest / tuned.lowest, point[i])
                                  : tuned.lowest + point[i] * (tuned.highest - tuned.lowest);

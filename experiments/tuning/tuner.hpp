@@ -40,12 +40,13 @@ using Evaluate = std::function<std::vector<LapFigure>(const RldParameters&)>;
 /// Mean over the scenes of the laps; 0 without laps.
 [[nodiscard]] double mean_over_scenes(std::span<const LapFigure> laps);
 
-/// Parameters that make the mean over scenes as large as the search finds, in the box of tuned_parameters().
-/// Each fit is NLopt's controlled random search (GN_CRS2_LM) around `start` on 30 % of the evaluations, then
-/// Subplex (LN_SBPLX) from the best point in the whole box; what counts is the best point evaluated. Track i,
-/// in the order of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that
-/// memory in `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
-/// InvalidInput where there are fewer tracks than folds, and what `evaluate` throws.
+/// Parameters that make the mean over scenes as large as the search finds, in the box of
+/// tuned_parameters(start). Each fit is NLopt's controlled random search (GN_CRS2_LM) around `start` on 30 %
+/// of the evaluations, then Subplex (LN_SBPLX) from the best point in the whole box; what counts is the best
+/// point evaluated. Track i, in the order of the laps, belongs to fold i modulo `folds`. Every fit draws the
+/// same first points, so that memory in `evaluate` saves most of a fold's work. The same seed and figures
+/// give the same answer. Throws InvalidInput where there are fewer tracks than folds, and what `evaluate`
+/// throws.
 [[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options);
 
 }  // namespace conelane::experiments
