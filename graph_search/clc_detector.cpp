@@ -11,8 +11,6 @@
 namespace conelane {
 namespace {
 
-/// Led by a beam search it gains nothing by more.
-constexpr std::int64_t kIterations = 1500;
 /// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
 /// positives.
 constexpr double kNextVertexDistanceWeight = 0.8;
@@ -78,7 +76,6 @@ ClcOptions paper_clc_options() {
 
 CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
-    options.iteration_limit = kIterations;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
     options.step_scores = shipped_step_scores();
     options.second_search_discrepancies = kSecondSearchDiscrepancies;
