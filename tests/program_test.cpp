@@ -1,6 +1,7 @@
 // The program as a user or a script calls it: files in, files out, one line and exit code 2 on bad input.
 
 #include "experiments/files/lane_file.hpp"
+#include "experiments/files/parameter_file.hpp"
 #include "experiments/files/scene_file.hpp"
 #include "tests/file_test.hpp"
 
@@ -249,6 +250,8 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
         EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
     }
     expect_refused(on_scenes + "--pairing paper --out x.certificates.jsonl", {"near_far"});
+    expect_refused(on_scenes + "--params shape --out x.certificates.jsonl", {"shape costs"});
+    EXPECT_EQ(run(on_scenes + "--params shape --verify s.certificates.jsonl").exit_code, 1);
     expect_refused(on_scenes, {"--out", "--verify"});
     file_with("{\"scene\": 3}\n", "bad.certificates.jsonl");
     expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
@@ -266,20 +269,22 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     // Scoring the stored lanes again gives the same table.
     const Outcome again =
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
-            "results/rld-pair.lanes.jsonl results/clc.lanes.jsonl");
+            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
 }
 
-TEST_F(Program, TuneWithContextLeavesARecordThatExtrasGoesBy) {
+TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
-        "--folds 2 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
+        "--shape --folds 2 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
     const Outcome tuned = run(tune);
     ASSERT_EQ(tuned.exit_code, 0) << tuned.errors;
     EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
     const nlohmann::json record = nlohmann::json::parse(text_of(path("p.record.json")));
     EXPECT_EQ(record["nearest"], 8);
     EXPECT_EQ(record["context"], 16);
+    EXPECT_EQ(record["shape"], true);
+    EXPECT_TRUE(has_shape_costs(read_rld_parameters(path("p.json"))));
     std::size_t counted = 0;
     for (const auto& [cause, scenes] : record["losses"]["0.3"].items()) counted += scenes.get<std::size_t>();
     EXPECT_GT(counted, 5U);
