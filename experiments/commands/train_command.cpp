@@ -8,6 +8,7 @@
 #include "graph_search/step_score_file.hpp"
 #include "model/invalid_input.hpp"
 
+#include <cstdint>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -29,6 +30,7 @@ struct Options {
     bool extended = false;
     bool steps = false;
     std::string step_scores;
+    std::int64_t iterations = CandidateSearchOptions{}.iteration_limit;
     StepScoreTrainingOptions step_training;
     unsigned threads = 1;
     std::string out;
@@ -102,6 +104,7 @@ void train(Options& options) {
             run.steps_record = step_scores_training(text);
         });
     }
+    run.candidates.search.iteration_limit = options.iterations;
     run.training.seed = run.scenes.seed;
     run.candidates.seed = run.scenes.seed;
     run.scenes.threads = options.threads;
@@ -129,6 +132,9 @@ void add_train_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
+        ->capture_default_str();
+    command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
+        ->check(CLI::PositiveNumber)
         ->capture_default_str();
     command.add_flag("--extended", options->extended,
                      "the network of clc, on its search, by all features and the quality of its choice; "

@@ -97,6 +97,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
+                      {"iterations", options.candidates.search.iteration_limit},
                       {"steps", Json::parse(options.steps_record)},
                       {"network", describe(options.training)},
                       {"figures_of_training", describe(run.trained)},
