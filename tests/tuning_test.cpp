@@ -46,12 +46,18 @@ TEST(ParameterBox, LeadsToThePointAndBack) {
     }
 }
 
-TEST(ParameterBox, HoldsTheShapeCostsOfAStartThatHasThem) {
-    const RldParameters plain;
-    const RldParameters back =
-        from_unit_cube(std::vector<double>(tuned_parameters(plain).size(), 1.0), plain);
-    EXPECT_FALSE(has_shape_costs(back));
-    EXPECT_EQ(tuned_parameters(with_shape_costs(plain)).size(), tuned_parameters(plain).size() + 6);
+TEST(ParameterBox, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
+    const auto highest = [](const RldParameters& start) {
+        return from_unit_cube(std::vector<double>(tuned_parameters(start).size(), 1.0), start);
+    };
+    const RldParameters plain = highest({});
+    EXPECT_FALSE(has_shape_costs(plain));
+    EXPECT_EQ(plain.d_near, 12.0);
+    const RldParameters shaped = highest(with_shape_costs({}));
+    EXPECT_EQ(shaped.w_u, 3.0);
+    EXPECT_EQ(shaped.w_s, plain.w_s);
+    EXPECT_EQ(shaped.d_near, RldParameters{}.d_near);
+    EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below the box";
 }
 
 TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {

@@ -15,8 +15,19 @@ using P = RldParameters;
 /// m wide (d_min), first cones 5 m away (d_near), far ends the widest lane apart (d_max), two edges near a
 /// car that stands across a bend (d_h, theta_heading). d_e ends at the largest spacing that the competition's
 /// rules allow.
-constexpr std::size_t kShapeParameters = 6;
-constexpr std::array<TunedParameter, 11 + kShapeParameters> kTuned{{
+///
+/// Beside the shape costs limits stay: these tell false edges from true ones without cutting off any, and
+/// with the limits tuned as well fewer lanes of held-out tracks were accurate.
+constexpr std::size_t kShape = 6;
+constexpr std::size_t kCosts = 4;
+constexpr std::size_t kLimits = 7;
+constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
+    {"w_u", &P::w_u, 0.01, 3.0, true},
+    {"w_v", &P::w_v, 0.02, 5.0, true},
+    {"w_n", &P::w_n, 0.02, 5.0, true},
+    {"d_w", &P::d_w, 3.0, 5.0, false},
+    {"d_v", &P::d_v, 0.5, 4.0, true},
+    {"theta_v", &P::theta_v, 0.1, 1.5, true},
     {"d_e", &P::d_e, 1.5, 5.0, false},
     {"w_s", &P::w_s, 0.01, 3.0, true},
     {"w_t", &P::w_t, 0.02, 5.0, true},
@@ -28,13 +39,6 @@ constexpr std::array<TunedParameter, 11 + kShapeParameters> kTuned{{
     {"d_max", &P::d_max, 6.5, 12.0, false},
     {"s_crit", &P::s_crit, 7.0, 20.0, true},
     {"t_crit", &P::t_crit, 3.5, 10.0, true},
-    // Of the shape costs.
-    {"w_u", &P::w_u, 0.01, 3.0, true},
-    {"w_v", &P::w_v, 0.02, 5.0, true},
-    {"w_n", &P::w_n, 0.02, 5.0, true},
-    {"d_w", &P::d_w, 3.0, 5.0, false},
-    {"d_v", &P::d_v, 0.5, 4.0, true},
-    {"theta_v", &P::theta_v, 0.1, 1.5, true},
 }};
 
 /// Short numbers in files, and the same ones on every machine, whose logarithms differ in the last bits.
@@ -46,7 +50,8 @@ double rounded(double value) {
 }  // namespace
 
 std::span<const TunedParameter> tuned_parameters(const RldParameters& start) {
-    return std::span(kTuned).first(has_shape_costs(start) ? kTuned.size() : kTuned.size() - kShapeParameters);
+    const std::span<const TunedParameter> all(kTuned);
+    return has_shape_costs(start) ? all.first(kShape + kCosts) : all.last(kCosts + kLimits);
 }
 
 std::vector<double> to_unit_cube(const RldParameters& parameters) {
@@ -62,6 +67,9 @@ std::vector<double> to_unit_cube(const RldParameters& parameters) {
 
 RldParameters from_unit_cube(std::span<const double> point, const RldParameters& rest) {
     RldParameters parameters = rest;
+    for (const TunedParameter& limit : std::span(kTuned).last(kLimits)) {
+        parameters.*limit.value = std::clamp(rest.*limit.value, limit.lowest, limit.highest);
+    }
     const std::span<const TunedParameter> tuned_ones = tuned_parameters(rest);
     for (std::size_t i = 0; i < tuned_ones.size(); ++i) {
         const TunedParameter& tuned = tuned_ones[i];

@@ -20,14 +20,15 @@ struct TunedParameter {
 /// What tuning moves. The rest would move nothing: w_b sets the unit of the objective, and d_t, theta_t with
 /// their weights and limits only enter as w_s / d_t^4, d_t^4 s_crit, w_t / theta_t^4 and theta_t^4 t_crit. An
 /// expected angle below pi would prefer bends to straights. The pairing stays as well.
-/// Those of the shape costs are among them where these have a weight in `start`.
+/// Where the shape costs have a weight in `start`, their parameters are moved in place of the limits.
 [[nodiscard]] std::span<const TunedParameter> tuned_parameters(const RldParameters& start);
 
 /// The parameters that are tuned from this start as a point of the unit cube; what lies outside the box is
 /// moved to its border.
 [[nodiscard]] std::vector<double> to_unit_cube(const RldParameters& parameters);
 
-/// `rest` with the parameters tuned from it at a point of the unit cube, rounded to four decimals.
+/// `rest`, its limits moved into the box, with the parameters tuned from it at a point of the unit cube,
+/// rounded to four decimals.
 /// Precondition: as many coordinates as tuned parameters, each in [0, 1].
 [[nodiscard]] RldParameters from_unit_cube(std::span<const double> point, const RldParameters& rest);
 
