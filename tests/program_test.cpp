@@ -342,7 +342,7 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
     EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
-    EXPECT_EQ(results_in(path("stopped")).size(), 3U * 2U);  // methods, rates
+    EXPECT_EQ(results_in(path("stopped")).size(), 4U * 2U);  // methods, rates
 }
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryStartAnew) {

@@ -81,7 +81,7 @@ def legend(axes):
     if handles:
         height_in = axes.figure.get_size_inches()[1]
         axes.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.5 / (height_in - 0.7)),
-                    ncol=max(1, min(3, 54 // (6 + max(map(len, labels))))), handlelength=2.4, columnspacing=1.4)
+                    ncol=max(1, min(3, 60 // (6 + max(map(len, labels))))), handlelength=2.4, columnspacing=1.4)
 
 
 @contextlib.contextmanager
