@@ -140,7 +140,8 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem) {
                 const Point& after = scene.cones[other_end(incident[second], middle)].position;
                 const double angle = interior_angle(before, at, after);
                 const double angle_cost = fourth_power((angle - p.theta_e) / p.theta_t);  // (20)
-                const double uneven = unevenness((before - at).norm(), (after - at).norm(), p);
+                const double uneven =
+                    p.w_u > 0.0 ? unevenness((before - at).norm(), (after - at).norm(), p) : 0.0;
                 problem.turns.push_back({incident[first], incident[second], middle, angle_cost, uneven,
                                          p.w_t * angle_cost + p.w_u * uneven + end_cost,
                                          !within(angle_cost, p.t_crit)});

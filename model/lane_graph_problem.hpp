@@ -28,7 +28,7 @@ struct ProblemEdge {
     double color_cost;
     double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0
     /// w_s s_ij + w_p p_ij - w_b (29), with use_confidence - w_b times both cones' confidences instead, and
-    /// of the extras w_color color_ij + w_v v_ij - w_n (q_i + q_j).
+    /// of the extras w_color color_ij + w_v v_ij - w_n (z_i + z_j).
     double cost;
     bool along_heading;  ///< h_ij of (9)
     bool high_cost;      ///< s_ij > s_crit (27): never chosen
@@ -40,8 +40,8 @@ struct ProblemTurn {
     std::size_t edge_k;
     std::size_t middle;
     double angle_cost;  ///< t_ijk (20), without weight
-    double unevenness;  ///< u_ijk, without weight
-    double cost;        ///< w_t t_ijk, and of the extras w_u u_ijk + 2 w_n q_j
+    double unevenness;  ///< u_ijk, without weight; 0 where w_u is 0
+    double cost;        ///< w_t t_ijk, and of the extras w_u u_ijk + 2 w_n z_j
     bool high_cost;     ///< t_ijk > t_crit (28): never both chosen
 };
 
@@ -60,8 +60,8 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
     std::vector<bool> near;                                      ///< r_i of (11)
-    /// q_i, see near_end_fit; 0 of a far cone. Where a path ends, m_i = A_i - 2 (turns at i) is 1, else 0: so
-    /// - w_n sum_i q_i m_i is a cost of edges and turns, and no solver needs to know of it.
+    /// z_i, see near_end_fit; 0 of a far cone. Where a path ends, m_i = A_i - 2 (turns at i) is 1, else 0: so
+    /// - w_n sum_i z_i m_i is a cost of edges and turns, and no solver needs to know of it.
     std::vector<double> near_end_fit;
     std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
     std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only

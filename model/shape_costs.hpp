@@ -22,7 +22,7 @@ namespace conelane {
 [[nodiscard]] std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
                                                const RldParameters& parameters);
 
-/// q_i in [0, 1]: 1 - ((|y_i| - d_w / 2) / d_t)^2, at least 0, with the distance y_i of a cone to the car's
+/// z_i in [0, 1]: 1 - ((|y_i| - d_w / 2) / d_t)^2, at least 0, with the distance y_i of a cone to the car's
 /// axis: 1 half a lane beside it, where a boundary begins.
 [[nodiscard]] double near_end_fit(const Scene& scene, const Point& cone, const RldParameters& parameters);
 
