@@ -223,6 +223,17 @@ TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
 }
 
+/// What faces an edge is a matter of the cone set.
+TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
+    make_scenes("--fp 0.5");
+    const std::string on = "--nearest 12 --params shape --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run("solve --solver path-pair " + on + "--out n.solutions.jsonl").exit_code, 0);
+    const Outcome good = run("check " + on + "--solutions n.solutions.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
+    EXPECT_EQ(run("check --params shape --scenes s.scenes.jsonl --solutions n.solutions.jsonl").exit_code, 1);
+}
+
 TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     make_scenes("--fp 0.2");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";

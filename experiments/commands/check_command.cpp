@@ -6,7 +6,9 @@
 #include "model/check.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -20,6 +22,7 @@ struct Options {
     std::string scenes;
     std::string solutions;
     ParameterSource parameters;
+    std::optional<std::size_t> nearest;
 };
 
 /// Everything wrong with a record; nothing where it is right or claims no lane graph.
@@ -54,7 +57,8 @@ void check_all(const Options& options) {
             throw InputError(options.solutions, i + 1, "scene",
                              "'" + records[i].scene + "' is not in the scenes file");
         }
-        const std::vector<std::string> violations = check_record(records[i], *scene->second, parameters);
+        const Scene seen = options.nearest ? nearest_ahead(*scene->second, *options.nearest) : *scene->second;
+        const std::vector<std::string> violations = check_record(records[i], seen, parameters);
         for (const std::string& violation : violations) fmt::print("{}: {}\n", records[i].scene, violation);
         if (!violations.empty()) ++failed;
     }
@@ -71,6 +75,8 @@ void add_check_command(CLI::App& program) {
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
     add_parameter_options(command, options->parameters, "the defaults");
+    add_nearest_option(command, options->nearest,
+                       "as in `solve`: shape costs depend on the cone set, all else does not");
     command.callback([options] { check_all(*options); });
 }
 
