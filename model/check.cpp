@@ -224,8 +224,9 @@ class Checker {
         const Real ahead = dot(way, along_edge) / own;
         const Real off_width = std::abs(wedge(along_edge, way)) / own - static_cast<Real>(p_.d_w);
         const Real turned = wedge(along_edge, other) / (own * theirs * static_cast<Real>(p_.theta_v));
+        const Real longer = (theirs - own) / static_cast<Real>(p_.d_l);
         return (ahead * ahead + off_width * off_width) / (static_cast<Real>(p_.d_v) * p_.d_v) +
-               turned * turned;
+               turned * turned + longer * longer;
     }
 
     /// By the edge of the scene that faces this one best.

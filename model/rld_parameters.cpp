@@ -32,7 +32,7 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kLargestWeight, true, "largest angle cost"},
 }};
 
-constexpr std::array<RldParameterField, 7> kExtraFields{{
+constexpr std::array<RldParameterField, 8> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kLargestWeight, true, "weight of the colour cost"},
     {"w_u", &P::w_u, "1", 0.0, kLargestWeight, true, "weight of uneven spacing"},
     {"w_v", &P::w_v, "1", 0.0, kLargestWeight, true, "weight of the facing cost"},
@@ -40,6 +40,7 @@ constexpr std::array<RldParameterField, 7> kExtraFields{{
     {"d_w", &P::d_w, "m", 0.0, kLongest_m, true, "expected width of the lane"},
     {"d_v", &P::d_v, "m", 0.0, kLongest_m, false, "facing threshold"},
     {"theta_v", &P::theta_v, "rad", 0.0, std::numbers::pi, false, "facing angle threshold"},
+    {"d_l", &P::d_l, "m", 0.0, kLongest_m, false, "facing length threshold"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {

@@ -45,6 +45,7 @@ struct RldParameters {
     double d_w = 3.7;      ///< expected width of the lane [m]
     double d_v = 2.0;      ///< facing threshold [m]
     double theta_v = 0.5;  ///< facing angle threshold [rad]
+    double d_l = 3.0;      ///< facing length threshold [m]
 };
 
 /// One numeric parameter: how files spell it, where it is, and what it may be.

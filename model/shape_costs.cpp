@@ -15,13 +15,14 @@ double square(double value) {
 struct PlacedEdge {
     Point middle;
     Point direction;  ///< of length one; zero where the edge has no length
+    double length_m;
 };
 
 PlacedEdge placed(const Scene& scene, const ProblemEdge& edge) {
     const Point& from = scene.cones[edge.i].position;
     const Point& to = scene.cones[edge.j].position;
     const double length = (to - from).norm();
-    return {0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0)};
+    return {0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0), length};
 }
 
 }  // namespace
@@ -46,11 +47,12 @@ std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge
             const ProblemEdge& facing = edges[other];
             if (edge.i == facing.i || edge.i == facing.j || edge.j == facing.i || edge.j == facing.j)
                 continue;
-            const double turned = square(cross(places[e].direction, places[other].direction) / p.theta_v);
+            const double unlike = square(cross(places[e].direction, places[other].direction) / p.theta_v) +
+                                  square((places[e].length_m - places[other].length_m) / p.d_l);
             const auto cost = [&](const Point& direction) {
                 const double across = cross(direction, way);
                 const double along_squared = std::max(0.0, distance_squared - square(across));
-                return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + turned;
+                return (along_squared + square(std::abs(across) - p.d_w)) / square(p.d_v) + unlike;
             };
             if (!facing.high_cost) costs[e] = std::min(costs[e], cost(places[e].direction));
             if (!edge.high_cost) costs[other] = std::min(costs[other], cost(places[other].direction));

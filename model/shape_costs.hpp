@@ -16,9 +16,10 @@ namespace conelane {
 [[nodiscard]] double unevenness(double before_m, double after_m, const RldParameters& parameters);
 
 /// v_ij in [0, 1], an entry for each edge: how badly the edge that faces it best does. Of all edges that (27)
-/// allows and that share no cone with {i, j}, the least ((l^2 + (b - d_w)^2) / d_v^2 + (sin(angle) /
-/// theta_v)^2, at most 1; l and b are the components, along {i, j} and across, of the way between both
-/// midpoints, and the angle is that between the edges. An edge of zero length has 1.
+/// allows and that share no cone with {i, j}, the least (l^2 + (b - d_w)^2) / d_v^2 + (sin(angle) /
+/// theta_v)^2 + ((D - D_ij) / d_l)^2, at most 1; l and b are the components, along {i, j} and across, of the
+/// way between both midpoints, the angle is that between the edges, and D the other's length. An edge of zero
+/// length has 1.
 [[nodiscard]] std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
                                                const RldParameters& parameters);
 

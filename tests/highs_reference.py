@@ -29,7 +29,7 @@ PARAMETERS = {
     "pairing": "near_far",
 }
 EXTRAS = {**PARAMETERS, "w_color": 0.3, "use_confidence": 1, "forbid_crossing": 1, "d_min": 0.0, "d_max": 16.0}
-SHAPE = {**PARAMETERS, "w_u": 0.3, "w_v": 0.8, "w_n": 0.9, "d_w": 3.6, "d_v": 2.2, "theta_v": 0.4}
+SHAPE = {**PARAMETERS, "w_u": 0.3, "w_v": 0.8, "w_n": 0.9, "d_w": 3.6, "d_v": 2.2, "theta_v": 0.4, "d_l": 2.5}
 
 
 def point_to_segment(p, a, b):
@@ -146,7 +146,8 @@ class Model:
             way = (self.at[k] + self.at[l] - self.at[i] - self.at[j]) / 2
             sine = cross(v, self.at[l] - self.at[k]) / self.length(k, l)
             best = min(best, (float(np.dot(v, way)) ** 2 + (abs(cross(v, way)) - p["d_w"]) ** 2) / p["d_v"] ** 2
-                       + (sine / p["theta_v"]) ** 2)
+                       + (sine / p["theta_v"]) ** 2
+                       + ((self.length(k, l) - self.length(i, j)) / p["d_l"]) ** 2)
         return best
 
     def row(self, terms, lower, upper):

@@ -34,6 +34,7 @@ RldParameters facing_parameters() {
     parameters.d_w = 4.0;
     parameters.d_v = 2.0;
     parameters.theta_v = 0.5;
+    parameters.d_l = 2.0;
     return parameters;
 }
 
@@ -59,7 +60,7 @@ TEST(FacingCost, IsNothingWhereALaneHasItsWidth) {
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 2, 3), 0.0, 1e-12);
 }
 
-TEST(FacingCost, GrowsWithWidthOffsetAndAngle) {
+TEST(FacingCost, GrowsWithWidthOffsetAngleAndLength) {
     // 1 m too wide: (1 / 2)^2.
     EXPECT_NEAR(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -3}, {5, -3}}), facing_parameters(), 0, 1), 0.25,
                 1e-12);
@@ -70,6 +71,10 @@ TEST(FacingCost, GrowsWithWidthOffsetAndAngle) {
     const double ahead = 1.5 * std::sqrt(1.0 - 0.09);
     const Scene turned = scene_of({{2, 2}, {5, 2}, {3.5 - ahead, -2.45}, {3.5 + ahead, -1.55}});
     EXPECT_NEAR(facing_cost(turned, facing_parameters(), 0, 1), 0.36, 1e-12);
+    // 1 m longer: (1 / 2)^2, for the longer one as for the shorter.
+    const Scene unlike = scene_of({{2, 2}, {5, 2}, {1.5, -2}, {5.5, -2}});
+    EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 0, 1), 0.25, 1e-12);
+    EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 2, 3), 0.25, 1e-12);
 }
 
 TEST(FacingCost, IsOneWhereNothingFaces) {
@@ -125,6 +130,7 @@ TEST(ShapeCosts, OffMeansNoneAtAll) {
     other_thresholds.d_w = 3.0;
     other_thresholds.d_v = 1.0;
     other_thresholds.theta_v = 0.1;
+    other_thresholds.d_l = 1.0;
     const LaneGraphProblem plain = make_problem(scene, {});
     const LaneGraphProblem same = make_problem(scene, other_thresholds);
     ASSERT_FALSE(plain.turns.empty());

@@ -18,7 +18,7 @@ using P = RldParameters;
 ///
 /// Beside the shape costs limits stay: these tell false edges from true ones without cutting off any, and
 /// with the limits tuned as well fewer lanes of held-out tracks were accurate.
-constexpr std::size_t kShape = 6;
+constexpr std::size_t kShape = 7;
 constexpr std::size_t kCosts = 4;
 constexpr std::size_t kLimits = 7;
 constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
@@ -28,6 +28,7 @@ constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
     {"d_w", &P::d_w, 3.0, 5.0, false},
     {"d_v", &P::d_v, 0.5, 4.0, true},
     {"theta_v", &P::theta_v, 0.1, 1.5, true},
+    {"d_l", &P::d_l, 0.5, 10.0, true},
     {"d_e", &P::d_e, 1.5, 5.0, false},
     {"w_s", &P::w_s, 0.01, 3.0, true},
     {"w_t", &P::w_t, 0.02, 5.0, true},
