@@ -261,11 +261,22 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
         EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
     }
     expect_refused(on_scenes + "--pairing paper --out x.certificates.jsonl", {"near_far"});
-    expect_refused(on_scenes + "--params shape --out x.certificates.jsonl", {"shape costs"});
-    EXPECT_EQ(run(on_scenes + "--params shape --verify s.certificates.jsonl").exit_code, 1);
     expect_refused(on_scenes, {"--out", "--verify"});
     file_with("{\"scene\": 3}\n", "bad.certificates.jsonl");
     expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
+}
+
+TEST_F(Program, CertificatesCoverShapeCosts) {
+    make_scenes("--fp 0.5");
+    const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run(on_scenes + "--params shape --out shape.certificates.jsonl").exit_code, 0);
+    const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    // They are about these costs and this cone set.
+    EXPECT_EQ(run(on_scenes + "--verify shape.certificates.jsonl").exit_code, 1);
+    EXPECT_EQ(
+        run("certify --scenes s.scenes.jsonl --params shape --verify shape.certificates.jsonl").exit_code, 1);
 }
 
 TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {

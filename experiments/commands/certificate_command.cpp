@@ -78,9 +78,8 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
 }
 
 void certify(const Options& options, const RldParameters& parameters) {
-    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0 || has_shape_costs(parameters)) {
-        throw InvalidInput("--params",
-                           "certificates are for the pairing near_far without colour and shape costs");
+    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
+        throw InvalidInput("--params", "certificates are for the pairing near_far without colour costs");
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<CertificateRecord> records;
