@@ -95,6 +95,39 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("tune --tracks generated:circle --context 24 --out p.json", {"--context", "--nearest"});
 }
 
+TEST_F(Program, TimeLimitsAreAboveZero) {
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    for (const char* limit : {"0", "-1", "nan", "soon", "400ms", "''"}) {
+        expect_refused("detect --method clc --scenes a.scenes.jsonl --out l.lanes.jsonl --time-limit " +
+                           std::string(limit),
+                       {"--time-limit", "no number above 0"});
+    }
+    expect_refused("tune --tracks generated:circle --out p.json --time-limit inf", {"--time-limit"});
+}
+
+/// 132 cones of which most edges are possible keep an exact search busy for hours.
+TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
+    nlohmann::json scene{{"id", "lattice"}, {"pose", {{"x", 0}, {"y", 0}, {"yaw", 0}}}};
+    for (int id = 0; id < 132; ++id) {
+        const int row = id / 11;
+        const int column = id % 11;
+        scene["cones"].push_back({{"id", id},
+                                  {"x", 1.0 + 2.6 * row + 0.06 * (id * 37 % 11)},
+                                  {"y", -13.0 + 2.6 * column + 0.05 * (id * 53 % 13)}});
+    }
+    file_with(scene.dump() + "\n", "lattice.scenes.jsonl");
+    const auto answer = [&](const std::string& options) {
+        const Outcome outcome =
+            run("detect --method rld-pair --scenes lattice.scenes.jsonl --out l.lanes.jsonl " + options);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        return read_lanes(path("l.lanes.jsonl")).at(0).answer;
+    };
+    EXPECT_FALSE(answer("").optimality.value().optimal);
+    EXPECT_TRUE(answer("--nearest 12 --time-limit inf").optimality.value().optimal);
+    EXPECT_THAT(run("detect --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=400"));
+    EXPECT_THAT(run("solve --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=inf"));
+}
+
 TEST_F(Program, BadScenesAreNamedByFileLineAndKey) {
     const std::string good = std::string(kScene) + "\n";
     const auto refuse = [&](const std::string& text, const std::vector<std::string>& names) {

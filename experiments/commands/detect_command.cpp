@@ -44,6 +44,7 @@ void add_methods_command(CLI::App& program) {
 void add_detect_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("detect", "lanes of scenes, by any method");
     auto options = std::make_shared<Options>();
+    options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command.add_option("--method", options->method, "see `conelane methods`")->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--out", options->out, "*.lanes.jsonl")->required();

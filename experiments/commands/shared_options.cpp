@@ -11,6 +11,13 @@ namespace {
 
 constexpr unsigned kMostThreads = 1024;
 
+/// What is wrong with the text of a time limit, nothing where it is right.
+std::string time_limit_fault(const std::string& text) {
+    double limit_ms = 0.0;
+    if (CLI::detail::lexical_cast(text, limit_ms) && limit_ms > 0.0) return {};
+    return fmt::format("'{}' is no number above 0", text);
+}
+
 }  // namespace
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
@@ -73,8 +80,9 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, 
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
-    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]")
-        ->check(CLI::PositiveNumber);
+    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]; inf for none")
+        ->check(CLI::Validator(time_limit_fault, "POSITIVE"))
+        ->capture_default_str();
 }
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
