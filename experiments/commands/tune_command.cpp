@@ -181,6 +181,7 @@ void run(Options& options) {
     if (!std::isfinite(options.evaluation.time_limit_ms)) {
         throw InvalidInput("--time-limit", "a tuning records one, inf is none");
     }
+    require_writable(options.out);
     options.scenes.threads = options.evaluation.threads;
     options.tuner.seed = options.scenes.seed;
     RldParameters start = ParameterSource{options.start, {}}.load();
