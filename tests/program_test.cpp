@@ -398,6 +398,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+    expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
 TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
