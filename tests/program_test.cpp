@@ -221,7 +221,8 @@ TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
     file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
     const std::string pipe = path("pipe").string();
     ASSERT_EQ(
-        std::system(("mkfifo " + pipe + " && (cat " + pipe + " >" + path("read").string() + " &)").c_str()),
+        std::system(("mkfifo " + pipe + " && (timeout 60 cat " + pipe + " >" + path("read").string() + " &)")
+                        .c_str()),
         0);
     EXPECT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out pipe").exit_code, 0);
     for (int wait = 0; wait < 100 && text_of(path("read")).empty(); ++wait) {
