@@ -22,6 +22,16 @@ std::string one_line(std::string text) {
     return text;
 }
 
+/// An unset variable of a script must not pass for an option that was not given.
+void refuse_empty_values(CLI::App& program) {
+    const CLI::Validator check([](const std::string& text) { return text.empty() ? "is empty" : ""; }, "");
+    for (CLI::Option* option : program.get_options()) {
+        // Transformations come before an option's own checks.
+        if (option->get_items_expected_max() > 0) option->transform(check);
+    }
+    for (CLI::App* command : program.get_subcommands({})) refuse_empty_values(*command);
+}
+
 int run(int argument_count, char** arguments) {
     namespace experiments = conelane::experiments;
     CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
@@ -49,6 +59,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_optimality_command(program);
     experiments::add_relaxations_command(program);
     experiments::add_train_command(program);
+    refuse_empty_values(program);
     try {
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& help) {

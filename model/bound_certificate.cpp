@@ -16,8 +16,11 @@ constexpr double kAgreement = 1e-6;
 // A walk that is shorter by less than this is not shorter.
 constexpr double kShorter = 1e-12;
 
+double square(double value) {
+    return value * value;
+}
 double fourth(double value) {
-    return value * value * value * value;
+    return square(square(value));
 }
 
 class Verification {
@@ -27,8 +30,7 @@ class Verification {
 
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
-        if (p_.w_color > 0.0 || has_shape_costs(p_))
-            violated("certificates are for the model without colour and shape costs");
+        if (p_.w_color > 0.0) violated("certificates are for the model without colour costs");
         prices();
         cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);
@@ -52,14 +54,32 @@ class Verification {
         std::size_t to;
         double cost;  ///< reduced, with the price of `to`
     };
+    /// An edge that (27) allows.
+    struct AllowedEdge {
+        std::size_t i;
+        std::size_t j;
+        Point vector;
+        double length;
+        Point middle;
+    };
 
     void violated(std::string what) { verdict_.violations.push_back(std::move(what)); }
     [[nodiscard]] const Point& position(std::size_t cone) const { return scene_.cones[cone].position; }
     [[nodiscard]] bool near(std::size_t cone) const {
         return (position(cone) - scene_.pose.position).norm() <= p_.d_near + kTieTolerance;
     }
-    [[nodiscard]] double turn_cost(std::size_t i, std::size_t middle, std::size_t k) const {
+    [[nodiscard]] double angle_cost(std::size_t i, std::size_t middle, std::size_t k) const {
         return fourth((interior_angle(position(i), position(middle), position(k)) - p_.theta_e) / p_.theta_t);
+    }
+    [[nodiscard]] double unevenness(std::size_t i, std::size_t middle, std::size_t k) const {
+        const double before = (position(middle) - position(i)).norm();
+        const double after = (position(k) - position(middle)).norm();
+        return square((before - after) / p_.d_t);
+    }
+    /// What a walk gains that begins at the cone.
+    [[nodiscard]] double near_end_benefit(std::size_t cone) const {
+        const double off_m = std::abs(cross(heading_, position(cone) - scene_.pose.position)) - 0.5 * p_.d_w;
+        return p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
     }
 
     void prices() {
@@ -76,7 +96,7 @@ class Verification {
         if (a == b) return false;
         for (const auto& [middle, i] : {std::pair{a.i, a.j}, std::pair{a.j, a.i}}) {
             for (const auto& [other, k] : {std::pair{b.i, b.j}, std::pair{b.j, b.i}}) {
-                if (middle == other) return turn_cost(i, middle, k) > p_.t_crit + kTieTolerance;
+                if (middle == other) return angle_cost(i, middle, k) > p_.t_crit + kTieTolerance;
             }
         }
         const Segment first{position(a.i), position(a.j)};
@@ -104,34 +124,62 @@ class Verification {
         }
     }
 
+    [[nodiscard]] double spacing_cost(double length) const { return fourth((length - p_.d_e) / p_.d_t); }
+
+    [[nodiscard]] std::vector<AllowedEdge> allowed_edges() const {
+        std::vector<AllowedEdge> edges;
+        for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
+            for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
+                const Point vector = position(j) - position(i);
+                const double length = vector.norm();
+                if (length == 0.0 || spacing_cost(length) > p_.s_crit + kTieTolerance) continue;
+                edges.push_back({i, j, vector, length, 0.5 * (position(i) + position(j))});
+            }
+        }
+        return edges;
+    }
+
+    /// v_ij of formulation.md, by the one of all allowed edges that faces this one best.
+    [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
+        double best = 1.0;
+        for (const AllowedEdge& other : all) {
+            if (other.i == edge.i || other.i == edge.j || other.j == edge.i || other.j == edge.j) continue;
+            const Point way = other.middle - edge.middle;
+            const double ahead_m = way.dot(edge.vector) / edge.length;
+            const double off_width_m = std::abs(cross(edge.vector, way)) / edge.length - p_.d_w;
+            const double turned = cross(edge.vector, other.vector) / (edge.length * other.length);
+            best = std::min(best, (square(ahead_m) + square(off_width_m)) / square(p_.d_v) +
+                                      square(turned / p_.theta_v) +
+                                      square((other.length - edge.length) / p_.d_l));
+        }
+        return best;
+    }
+
     void arcs() {
         std::map<Edge, double> clique_price;
         for (const BoundCertificate::Clique& clique : certificate_.cliques) {
             for (const Edge& edge : clique.edges) clique_price[edge] += clique.price;
         }
         leaving_.resize(scene_.cones.size());
-        for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
-            for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
-                const Point v = position(j) - position(i);
-                const double spacing = fourth((v.norm() - p_.d_e) / p_.d_t);
-                if (v.norm() == 0.0 || spacing > p_.s_crit + kTieTolerance) continue;
-                const Segment segment{position(i), position(j)};
-                const double across = std::abs(cross(v, heading_));
-                const double car_distance =
-                    std::max((0.5 * (position(i) + position(j)) - scene_.pose.position).norm(), 0.5);
-                const double confidence =
-                    p_.use_confidence ? scene_.cones[i].confidence * scene_.cones[j].confidence : 1.0;
-                double cost = p_.w_s * spacing + p_.w_p * fourth(across / car_distance) - p_.w_b * confidence;
-                const bool along_heading =
-                    foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
-                    std::atan2(across, std::abs(v.dot(heading_))) <= p_.theta_heading + kTieTolerance;
-                if (along_heading) cost -= certificate_.heading_price;
-                const auto priced = clique_price.find({i, j});
-                if (priced != clique_price.end()) cost += priced->second;
-                for (const auto& [from, to] : {std::pair{i, j}, std::pair{j, i}}) {
-                    leaving_[from].push_back(arcs_.size());
-                    arcs_.push_back({from, to, cost + certificate_.cone_price[to]});
-                }
+        const std::vector<AllowedEdge> edges = allowed_edges();
+        for (const AllowedEdge& edge : edges) {
+            const double across = std::abs(cross(edge.vector, heading_));
+            const double car_distance = std::max((edge.middle - scene_.pose.position).norm(), 0.5);
+            const double confidence =
+                p_.use_confidence ? scene_.cones[edge.i].confidence * scene_.cones[edge.j].confidence : 1.0;
+            double cost = p_.w_s * spacing_cost(edge.length) + p_.w_p * fourth(across / car_distance) -
+                          p_.w_b * confidence;
+            if (p_.w_v > 0.0) cost += p_.w_v * facing_cost(edge, edges);
+            const Segment segment{position(edge.i), position(edge.j)};
+            const bool along_heading =
+                foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
+                std::atan2(across, std::abs(edge.vector.dot(heading_))) <= p_.theta_heading + kTieTolerance;
+            if (along_heading) cost -= certificate_.heading_price;
+            const auto priced = clique_price.find({edge.i, edge.j});
+            if (priced != clique_price.end()) cost += priced->second;
+            for (const auto& [from, to] : {std::pair{edge.i, edge.j}, std::pair{edge.j, edge.i}}) {
+                leaving_[from].push_back(arcs_.size());
+                arcs_.push_back({from, to, cost + certificate_.cone_price[to]});
             }
         }
     }
@@ -140,7 +188,9 @@ class Verification {
     bool shortest_walks() {
         walk_.assign(arcs_.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
-            if (near(arcs_[a].from)) walk_[a] = certificate_.cone_price[arcs_[a].from] + arcs_[a].cost;
+            const std::size_t from = arcs_[a].from;
+            if (!near(from)) continue;
+            walk_[a] = certificate_.cone_price[from] - near_end_benefit(from) + arcs_[a].cost;
         }
         for (std::size_t round = 0; round <= arcs_.size(); ++round) {
             bool shorter = false;
@@ -148,9 +198,11 @@ class Verification {
                 if (walk_[a] == kNone) continue;
                 for (const std::size_t b : leaving_[arcs_[a].to]) {
                     if (arcs_[b].to == arcs_[a].from) continue;
-                    const double turn = turn_cost(arcs_[a].from, arcs_[a].to, arcs_[b].to);
-                    if (turn > p_.t_crit + kTieTolerance) continue;
-                    const double length = walk_[a] + p_.w_t * turn + arcs_[b].cost;
+                    const double angle = angle_cost(arcs_[a].from, arcs_[a].to, arcs_[b].to);
+                    if (angle > p_.t_crit + kTieTolerance) continue;
+                    const double turn =
+                        p_.w_t * angle + p_.w_u * unevenness(arcs_[a].from, arcs_[a].to, arcs_[b].to);
+                    const double length = walk_[a] + turn + arcs_[b].cost;
                     if (!(length < walk_[b] - kShorter)) continue;
                     walk_[b] = length;
                     shorter = true;

@@ -10,9 +10,9 @@
 
 namespace conelane {
 
-/// Prices that prove a lower bound of (29) for the pairing near_far. Every lane graph visits each cone at
-/// most once, holds at most one edge of each clique and at least two edges along the heading (9); so for
-/// non-negative prices
+/// Prices that prove a lower bound of (29), shape costs included, for the pairing near_far and without colour
+/// costs. Every lane graph visits each cone at most once, holds at most one edge of each clique and at least
+/// two edges along the heading (9); so for non-negative prices
 ///     cost >= cost + sum_v price_v (visits_v - 1) + sum_q price_q (edges_q - 1) + price_h (2 -
 ///     along_heading),
 /// and the right-hand side is a sum over two walks from near to far cones.

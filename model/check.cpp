@@ -210,32 +210,48 @@ class Checker {
         return faults;
     }
 
-    /// How badly an edge of the scene faces this one: 1 where it is out of the question.
-    [[nodiscard]] Real facing_cost(const Edge& edge, std::size_t k, std::size_t l) const {
-        if (k == edge.i || k == edge.j || l == edge.i || l == edge.j) return 1;
-        const Vector along_edge = position(edge.j) - position(edge.i);
-        const Vector other = position(l) - position(k);
-        const Real own = length(along_edge);
-        const Real theirs = length(other);
-        const Real spacing = fourth((theirs - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
-        if (own == 0 || theirs == 0 || spacing > static_cast<Real>(p_.s_crit) + kTie) return 1;
-        const Vector way =
-            along(position(k), position(l), 0.5L) - along(position(edge.i), position(edge.j), 0.5L);
-        const Real ahead = dot(way, along_edge) / own;
-        const Real off_width = std::abs(wedge(along_edge, way)) / own - static_cast<Real>(p_.d_w);
-        const Real turned = wedge(along_edge, other) / (own * theirs * static_cast<Real>(p_.theta_v));
-        const Real longer = (theirs - own) / static_cast<Real>(p_.d_l);
-        return (ahead * ahead + off_width * off_width) / (static_cast<Real>(p_.d_v) * p_.d_v) +
-               turned * turned + longer * longer;
-    }
+    /// An edge that may be part of a boundary, and so may face another one.
+    struct FacingEdge {
+        std::size_t k;
+        std::size_t l;
+        Real length;
+        Vector middle;
+        Vector direction;  ///< of length one
+    };
 
-    /// By the edge of the scene that faces this one best.
-    [[nodiscard]] Real facing_cost(const Edge& edge) const {
-        Real best = 1;
+    /// All that (27) allows. They are the same for every edge that is looked at.
+    [[nodiscard]] std::vector<FacingEdge> facing_edges() const {
+        std::vector<FacingEdge> edges;
         for (std::size_t k = 0; k < scene_.cones.size(); ++k) {
             for (std::size_t l = k + 1; l < scene_.cones.size(); ++l) {
-                best = std::min(best, facing_cost(edge, k, l));
+                const Vector way = position(l) - position(k);
+                const Real apart = length(way);
+                const Real spacing = fourth((apart - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
+                if (apart == 0 || spacing > static_cast<Real>(p_.s_crit) + kTie) continue;
+                edges.push_back(
+                    {k, l, apart, along(position(k), position(l), 0.5L), {way.x / apart, way.y / apart}});
             }
+        }
+        return edges;
+    }
+
+    /// By the one of `others` that faces the edge best; 1 where none does.
+    [[nodiscard]] Real facing_cost(const Edge& edge, const std::vector<FacingEdge>& others) const {
+        const Vector along_edge = position(edge.j) - position(edge.i);
+        const Real own = length(along_edge);
+        if (own == 0) return 1;
+        const Vector middle = along(position(edge.i), position(edge.j), 0.5L);
+        Real best = 1;
+        for (const FacingEdge& other : others) {
+            if (other.k == edge.i || other.k == edge.j || other.l == edge.i || other.l == edge.j) continue;
+            const Vector way = other.middle - middle;
+            const Real ahead = dot(way, along_edge) / own;
+            const Real off_width = std::abs(wedge(along_edge, way)) / own - static_cast<Real>(p_.d_w);
+            const Real turned = wedge(along_edge, other.direction) / (own * static_cast<Real>(p_.theta_v));
+            const Real longer = (other.length - own) / static_cast<Real>(p_.d_l);
+            best = std::min(best,
+                            (ahead * ahead + off_width * off_width) / (static_cast<Real>(p_.d_v) * p_.d_v) +
+                                turned * turned + longer * longer);
         }
         return best;
     }
@@ -250,6 +266,7 @@ class Checker {
     void costs() {
         Real sum = 0;
         int along_heading = 0;
+        const std::vector<FacingEdge> facing = p_.w_v > 0 ? facing_edges() : std::vector<FacingEdge>{};
         for (const Edge& edge : graph_.edges) {
             const Vector from = position(edge.i);
             const Vector to = position(edge.j);
@@ -268,7 +285,7 @@ class Checker {
             const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
             if (along_the_heading) ++along_heading;
             sum += static_cast<Real>(p_.w_color) * static_cast<Real>(color_faults(edge, along_the_heading));
-            if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge);
+            if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge, facing);
         }
         if (along_heading < 2)
             violated("(9) " + std::to_string(along_heading) + " edges along the heading instead of 2");

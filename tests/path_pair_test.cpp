@@ -15,6 +15,7 @@
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -402,32 +403,66 @@ TEST(PathPair, TakesLargeConeSets) {
 /// price below zero and a clique that is none.
 TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-    int forged_cliques = 0;
+    for (const RldParameters& parameters : {RldParameters{}, with_shape_costs({})}) {
+        int forged_cliques = 0;
+        int bounded = 0;
+        for (std::uint64_t seed = 0; seed < 40; ++seed) {
+            SCOPED_TRACE(testing::Message()
+                         << "seed " << seed << ", shape costs: " << has_shape_costs(parameters));
+            const Scene scene = tests::random_scene(seed, 16);
+            const RldReport optimum = solve(*solver, scene, parameters);
+            BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
+            const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
+            EXPECT_THAT(verdict.violations, testing::IsEmpty());
+            ASSERT_TRUE(verdict.bound);
+            if (optimum.objective) {
+                ASSERT_EQ(optimum.status, SolveStatus::optimal);
+                EXPECT_LE(*verdict.bound, *optimum.objective + 1e-9);
+                BoundCertificate higher = certificate;
+                higher.bound = *verdict.bound + 1e-3;
+                EXPECT_THAT(verify_bound(scene, parameters, higher).violations, testing::SizeIs(1));
+                ++bounded;
+            }
+            for (const BoundCertificate::Clique& clique : certificate.cliques) {
+                // An edge does not exclude itself.
+                BoundCertificate wrong = certificate;
+                wrong.cliques = {{{clique.edges.front(), clique.edges.front()}, clique.price}};
+                EXPECT_FALSE(verify_bound(scene, parameters, wrong).violations.empty());
+                ++forged_cliques;
+            }
+            certificate.cone_price.front() = -0.1;
+            EXPECT_FALSE(verify_bound(scene, parameters, certificate).violations.empty());
+        }
+        EXPECT_GT(forged_cliques, 0);
+        EXPECT_GT(bounded, 20);
+    }
+}
+
+/// The verifier's shape costs are those that the solver saw: it finds the same bound, and nearly always a
+/// lower one where any of them is cheaper.
+TEST(PathPairCertificate, RestsOnEveryShapeCost) {
+    const RldParameters parameters = with_shape_costs({});
+    std::vector<RldParameters> cheaper(3, parameters);
+    cheaper[0].w_u = 0.0;
+    cheaper[1].w_v = 0.0;
+    cheaper[2].w_n *= 1.5;
+    std::vector<int> refused(cheaper.size(), 0);
+    int finite = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 16);
-        const RldReport optimum = solve(*solver, scene, {});
-        BoundCertificate certificate = certify_root_bound(make_problem(scene, {}));
-        const BoundVerdict verdict = verify_bound(scene, {}, certificate);
-        EXPECT_THAT(verdict.violations, testing::IsEmpty());
+        const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
+        const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
         ASSERT_TRUE(verdict.bound);
-        if (optimum.objective) {
-            EXPECT_LE(*verdict.bound, *optimum.objective + 1e-9);
-            BoundCertificate higher = certificate;
-            higher.bound = *verdict.bound + 1e-3;
-            EXPECT_THAT(verify_bound(scene, {}, higher).violations, testing::SizeIs(1));
+        if (!std::isfinite(*verdict.bound)) continue;
+        ++finite;
+        EXPECT_NEAR(*verdict.bound, certificate.bound, 1e-6);
+        for (std::size_t k = 0; k < cheaper.size(); ++k) {
+            if (!verify_bound(scene, cheaper[k], certificate).violations.empty()) ++refused[k];
         }
-        for (const BoundCertificate::Clique& clique : certificate.cliques) {
-            // An edge does not exclude itself.
-            BoundCertificate wrong = certificate;
-            wrong.cliques = {{{clique.edges.front(), clique.edges.front()}, clique.price}};
-            EXPECT_FALSE(verify_bound(scene, {}, wrong).violations.empty());
-            ++forged_cliques;
-        }
-        certificate.cone_price.front() = -0.1;
-        EXPECT_FALSE(verify_bound(scene, {}, certificate).violations.empty());
     }
-    EXPECT_GT(forged_cliques, 0);
+    EXPECT_GT(finite, 20);
+    EXPECT_THAT(refused, testing::Each(testing::Gt(finite * 3 / 4)));
 }
 
 }  // namespace

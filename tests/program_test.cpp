@@ -6,10 +6,12 @@
 #include "tests/file_test.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -93,6 +95,54 @@ TEST_F(Program, BadOptionsAreNamed) {
                    {"--formulation"});
     expect_refused("compare --methods magic --out results", {"method", "magic"});
     expect_refused("tune --tracks generated:circle --context 24 --out p.json", {"--context", "--nearest"});
+    expect_refused("export --scenes a.scenes.jsonl --id a --out a.txt", {"--out", "a.txt", ".mps"});
+    expect_refused("compare --tracks generated:circle --methods clc,clc --out results", {"method", "'clc'"});
+    expect_refused("sweep --tracks generated:circle --methods clc --sizes 6,6 --out results",
+                   {"clc", "6 cones"});
+    for (const char* seed : {"-1", "1.5", "x", "99999999999999999999"}) {
+        expect_refused("scenes --tracks generated:circle --out a.scenes.jsonl --seed " + std::string(seed),
+                       {"--seed", seed});
+    }
+    // As a script leaves them whose variable is not set.
+    expect_refused("scenes --tracks generated:circle --out ''", {"--out", "empty"});
+    expect_refused("compare --tracks generated:circle --fp '' --out results", {"--fp", "empty"});
+    expect_refused("formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
+    expect_refused("certify --scenes a.scenes.jsonl --verify ''", {"--verify", "empty"});
+    expect_refused("solve --scenes a.scenes.jsonl --params '' --out l.solutions.jsonl",
+                   {"--params", "empty"});
+}
+
+TEST_F(Program, TimeLimitsAreAboveZero) {
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    for (const char* limit : {"0", "-1", "nan", "soon", "400ms"}) {
+        expect_refused("detect --method clc --scenes a.scenes.jsonl --out l.lanes.jsonl --time-limit " +
+                           std::string(limit),
+                       {"--time-limit", "no number above 0"});
+    }
+    expect_refused("tune --tracks generated:circle --out p.json --time-limit inf", {"--time-limit"});
+}
+
+/// 132 cones of which most edges are possible keep an exact search busy for hours.
+TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
+    nlohmann::json scene{{"id", "lattice"}, {"pose", {{"x", 0}, {"y", 0}, {"yaw", 0}}}};
+    for (int id = 0; id < 132; ++id) {
+        const int row = id / 11;
+        const int column = id % 11;
+        scene["cones"].push_back({{"id", id},
+                                  {"x", 1.0 + 2.6 * row + 0.06 * (id * 37 % 11)},
+                                  {"y", -13.0 + 2.6 * column + 0.05 * (id * 53 % 13)}});
+    }
+    file_with(scene.dump() + "\n", "lattice.scenes.jsonl");
+    const auto answer = [&](const std::string& options) {
+        const Outcome outcome =
+            run("detect --method rld-pair --scenes lattice.scenes.jsonl --out l.lanes.jsonl " + options);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        return read_lanes(path("l.lanes.jsonl")).at(0).answer;
+    };
+    EXPECT_FALSE(answer("").optimality.value().optimal);
+    EXPECT_TRUE(answer("--nearest 12 --time-limit inf").optimality.value().optimal);
+    EXPECT_THAT(run("detect --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=400"));
+    EXPECT_THAT(run("solve --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=inf"));
 }
 
 TEST_F(Program, BadScenesAreNamedByFileLineAndKey) {
@@ -144,6 +194,62 @@ TEST_F(Program, BadFilesAreNamed) {
               "\n",
               "b.lanes.jsonl");
     expect_refused("score --scenes a.scenes.jsonl --lanes b.lanes.jsonl", {"b.lanes.jsonl", ":1:", "scene"});
+}
+
+/// Long work is not begun whose result has no place: the scenes would come first, and are bad.
+TEST_F(Program, OutputsAreTriedBeforeTheWork) {
+    file_with("{", "bad.scenes.jsonl");
+    std::filesystem::create_directory(path("folder"));
+    for (const char* command :
+         {"detect --method clc", "solve", "certify", "formulations", "backends", "optimality", "relaxations",
+          "export --id a", "import-solution --id a --sol a.sol"}) {
+        const std::string begun = std::string(command) + " --scenes bad.scenes.jsonl --out ";
+        expect_refused(begun + "nowhere/x.lp", {"--out", "nowhere/x.lp"});
+        expect_refused(begun + "folder", {"--out", "folder"});
+    }
+    expect_refused("score --scenes bad.scenes.jsonl --lanes x.lanes.jsonl --json nowhere/x",
+                   {"--json", "nowhere/x"});
+    expect_refused("tune --tracks generated:nowhere --out nowhere/p.json", {"nowhere/p.json"});
+    expect_refused("scenes --tracks generated:circle --every 60 --out folder", {"--out", "folder"});
+}
+
+/// What is tried and not written stays; a pipe is not tried, since that would end it.
+TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
+    file_with("old\n", "x.lanes.jsonl");
+    expect_refused("detect --method clc --scenes nowhere.scenes.jsonl --out x.lanes.jsonl", {"nowhere"});
+    EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    const std::string pipe = path("pipe").string();
+    ASSERT_EQ(
+        std::system(("mkfifo " + pipe + " && (timeout 60 cat " + pipe + " >" + path("read").string() + " &)")
+                        .c_str()),
+        0);
+    EXPECT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out pipe").exit_code, 0);
+    for (int wait = 0; wait < 100 && text_of(path("read")).empty(); ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    EXPECT_THAT(text_of(path("read")), HasSubstr("\"scene\":\"a\""));
+}
+
+/// Nothing is not right, and lines are counted with the blank ones.
+TEST_F(Program, RecordsAreNamedByTheirLine) {
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    ASSERT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out a.lanes.jsonl").exit_code, 0);
+    ASSERT_EQ(run("solve --scenes a.scenes.jsonl --out a.solutions.jsonl").exit_code, 0);
+    ASSERT_EQ(run("certify --scenes a.scenes.jsonl --out a.certificates.jsonl").exit_code, 0);
+    file_with("\n", "empty");
+    for (const auto& [command, name] : std::map<std::string, std::string>{
+             {"score --scenes a.scenes.jsonl --lanes ", "a.lanes.jsonl"},
+             {"check --scenes a.scenes.jsonl --solutions ", "a.solutions.jsonl"},
+             {"certify --scenes a.scenes.jsonl --verify ", "a.certificates.jsonl"}}) {
+        expect_refused(command + "empty", {"empty: holds no"});
+        std::string line = text_of(path(name));
+        line.replace(line.find("\"a\""), 3, "\"b\"");
+        file_with("\n\n" + line, "b.jsonl");
+        expect_refused(command + "b.jsonl", {"b.jsonl:3: scene", "'b'"});
+    }
+    expect_refused("score --scenes a.scenes.jsonl --lanes a.lanes.jsonl a.lanes.jsonl",
+                   {"a.lanes.jsonl:1: method", "'clc'"});
 }
 
 TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
@@ -261,11 +367,22 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
         EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
     }
     expect_refused(on_scenes + "--pairing paper --out x.certificates.jsonl", {"near_far"});
-    expect_refused(on_scenes + "--params shape --out x.certificates.jsonl", {"shape costs"});
-    EXPECT_EQ(run(on_scenes + "--params shape --verify s.certificates.jsonl").exit_code, 1);
     expect_refused(on_scenes, {"--out", "--verify"});
     file_with("{\"scene\": 3}\n", "bad.certificates.jsonl");
     expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
+}
+
+TEST_F(Program, CertificatesCoverShapeCosts) {
+    make_scenes("--fp 0.5");
+    const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run(on_scenes + "--params shape --out shape.certificates.jsonl").exit_code, 0);
+    const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    // They are about these costs and this cone set.
+    EXPECT_EQ(run(on_scenes + "--verify shape.certificates.jsonl").exit_code, 1);
+    EXPECT_EQ(
+        run("certify --scenes s.scenes.jsonl --params shape --verify shape.certificates.jsonl").exit_code, 1);
 }
 
 TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
@@ -282,6 +399,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/clc.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+    expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
 TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {

@@ -27,9 +27,10 @@ Scene scene_of(const std::vector<Point>& cones) {
     return scene;
 }
 
-/// Facing alone, of a lane 4 m wide.
+/// Facing alone, of a lane 4 m wide: that is all an edge costs.
 RldParameters facing_parameters() {
     RldParameters parameters;
+    parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
     parameters.w_v = 1.0;
     parameters.d_w = 4.0;
     parameters.d_v = 2.0;
@@ -38,9 +39,13 @@ RldParameters facing_parameters() {
     return parameters;
 }
 
+/// Of the problem; the checker's is the same.
 double facing_cost(const Scene& scene, const RldParameters& parameters, std::size_t i, std::size_t j) {
+    const double checked = *check(scene, parameters, LaneGraph{{{i, j}}}).objective;
     for (const ProblemEdge& edge : make_problem(scene, parameters).edges) {
-        if (edge.i == i && edge.j == j) return edge.facing_cost;
+        if (edge.i != i || edge.j != j) continue;
+        EXPECT_NEAR(checked, edge.facing_cost, 1e-12);
+        return edge.facing_cost;
     }
     ADD_FAILURE() << "there is no such edge";
     return -1.0;
@@ -83,6 +88,10 @@ TEST(FacingCost, IsOneWhereNothingFaces) {
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -8}, {5, -8}}), facing_parameters(), 0, 1), 1.0);
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {3.5, -1}, {3.5, -4}}), facing_parameters(), 0, 1), 1.0);
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
+    // It would be faced by an edge to its own end, were the lane that narrow.
+    RldParameters narrow = facing_parameters();
+    narrow.d_w = 0.5;
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
 }
 
 /// What (27) forbids can be no boundary, whether a problem lists it or not.

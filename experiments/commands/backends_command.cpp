@@ -60,8 +60,8 @@ void add_backends_command(CLI::App& program) {
                      "each also from the lane graph of the scene before, its cones found again by id");
     add_time_limit_option(command, options->backends.time_limit_ms);
     add_parameter_options(command, options->parameters, "the defaults");
-    command.add_option("--out", options->out,
-                       "write a line per solve too; the page shows DIR/backends.jsonl of its results");
+    add_output_option(command, "--out", options->out,
+                      "write a line per solve too; the page shows DIR/backends.jsonl of its results");
     command.callback([options] { measure(*options); });
 }
 

@@ -78,9 +78,8 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
 }
 
 void certify(const Options& options, const RldParameters& parameters) {
-    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0 || has_shape_costs(parameters)) {
-        throw InvalidInput("--params",
-                           "certificates are for the pairing near_far without colour and shape costs");
+    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
+        throw InvalidInput("--params", "certificates are for the pairing near_far without colour costs");
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<CertificateRecord> records;
@@ -101,21 +100,22 @@ void verify(const Options& options, const RldParameters& parameters) {
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
     const std::vector<CertificateRecord> records = read_certificates(options.verify);
     std::size_t failed = 0;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const auto found = scene_of.find(records[i].scene);
+    if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
+    for (const CertificateRecord& record : records) {
+        const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
-            throw InputError(options.verify, i + 1, "scene",
-                             "'" + records[i].scene + "' is not in the scenes file");
+            throw InputError(options.verify, record.line, "scene",
+                             "'" + record.scene + "' is not in the scenes file");
         }
         const Scene scene = cone_set(options, *found->second);
         ConeId missing{};
         std::vector<std::string> violations;
-        if (const auto certificate = from_record(scene, records[i], missing)) {
+        if (const auto certificate = from_record(scene, record, missing)) {
             violations = verify_bound(scene, parameters, *certificate).violations;
         } else {
             violations.push_back(fmt::format("cone {} is not in the scene", missing));
         }
-        for (const std::string& violation : violations) fmt::print("{}: {}\n", records[i].scene, violation);
+        for (const std::string& violation : violations) fmt::print("{}: {}\n", record.scene, violation);
         if (!violations.empty()) ++failed;
     }
     fmt::print("{} verified, {} failed\n", records.size() - failed, failed);
@@ -132,7 +132,7 @@ void add_certify_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");
-    what.add_option("--out", options->out, "*.certificates.jsonl to write");
+    add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");
     what.add_option("--verify", options->verify, "*.certificates.jsonl to verify");
     what.require_option(1);
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");

@@ -51,15 +51,16 @@ void check_all(const Options& options) {
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
     const std::vector<SolutionRecord> records = read_solutions(options.solutions);
     std::size_t failed = 0;
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const auto scene = scene_of.find(records[i].scene);
+    if (records.empty()) throw InputError(options.solutions, 0, "", "holds no solution");
+    for (const SolutionRecord& record : records) {
+        const auto scene = scene_of.find(record.scene);
         if (scene == scene_of.end()) {
-            throw InputError(options.solutions, i + 1, "scene",
-                             "'" + records[i].scene + "' is not in the scenes file");
+            throw InputError(options.solutions, record.line, "scene",
+                             "'" + record.scene + "' is not in the scenes file");
         }
         const Scene seen = options.nearest ? nearest_ahead(*scene->second, *options.nearest) : *scene->second;
-        const std::vector<std::string> violations = check_record(records[i], seen, parameters);
-        for (const std::string& violation : violations) fmt::print("{}: {}\n", records[i].scene, violation);
+        const std::vector<std::string> violations = check_record(record, seen, parameters);
+        for (const std::string& violation : violations) fmt::print("{}: {}\n", record.scene, violation);
         if (!violations.empty()) ++failed;
     }
     fmt::print("{} passed, {} failed\n", records.size() - failed, failed);

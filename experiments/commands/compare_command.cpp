@@ -17,9 +17,6 @@
 namespace conelane::experiments {
 namespace {
 
-/// As in the RLD paper.
-constexpr double kTimeLimit_ms = 400.0;
-
 /// What `compare` and `sweep` share.
 struct Options {
     ComparisonOptions comparison;
@@ -49,7 +46,7 @@ void add_shared_options(CLI::App& command, Options& options) {
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
-    comparison.run.limits.time_limit_ms = kTimeLimit_ms;
+    comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, comparison.run.limits.time_limit_ms);
     add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", comparison.run.limits.keep_candidates,

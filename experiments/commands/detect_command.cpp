@@ -44,9 +44,10 @@ void add_methods_command(CLI::App& program) {
 void add_detect_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("detect", "lanes of scenes, by any method");
     auto options = std::make_shared<Options>();
+    options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command.add_option("--method", options->method, "see `conelane methods`")->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
-    command.add_option("--out", options->out, "*.lanes.jsonl")->required();
+    add_output_option(command, "--out", options->out, "*.lanes.jsonl")->required();
     add_nearest_option(command, options->run.method.nearest, "cone-set size instead of the method's own");
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");

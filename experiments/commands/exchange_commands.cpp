@@ -78,7 +78,8 @@ struct ExportOptions {
 
 void export_program(const ExportOptions& options) {
     const std::string ending = std::filesystem::path(options.out).extension().string();
-    if (ending != ".mps" && ending != ".lp") throw InvalidInput("--out", "must end in .mps or .lp");
+    if (ending != ".mps" && ending != ".lp")
+        throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
     const SceneProgram program(options.source);
     AtomicFile file(options.out);
     // The name is one word in these formats.
@@ -159,7 +160,7 @@ void add_exchange_commands(CLI::App& program) {
                                                   "cycles (5), and the pairing near_far");
     auto exports = std::make_shared<ExportOptions>();
     add_program_options(exporting, exports->source);
-    exporting.add_option("--out", exports->out, "*.mps or *.lp")->required();
+    add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
     exporting.callback([exports] { export_program(*exports); });
 
     CLI::App& importing = *program.add_subcommand("import-solution",
@@ -173,7 +174,7 @@ void add_exchange_commands(CLI::App& program) {
     importing
         .add_option("--sol", imports->solution, "of `cbc FILE solve solution SOL` or `glpsol --write SOL`")
         ->required();
-    importing.add_option("--out", imports->out, "*.solutions.jsonl")->required();
+    add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
     importing.callback([imports] { import_solution(*imports); });
 }
 

@@ -40,8 +40,8 @@ void add_extras_command(CLI::App& program) {
     command.add_option("--tracks", options->tracks,
                        "the record's tracks where they lie elsewhere; without it as in the record");
     add_threads_option(command, options->threads, "nothing is timed");
-    command.add_option("--out", options->out,
-                       "write the rows as JSON lines too; the page shows DIR/extras.jsonl of its results");
+    add_output_option(command, "--out", options->out,
+                      "write the rows as JSON lines too; the page shows DIR/extras.jsonl of its results");
     command.callback([options] { measure(*options); });
 }
 

@@ -45,7 +45,7 @@ void add_formulations_command(CLI::App& program) {
         ->check(CLI::Range(1, 1000000));
     add_time_limit_option(command, formulations.time_limit_ms);
     add_parameter_options(command, options->parameters, "the defaults");
-    command.add_option("--out", options->out, "write the rows as JSON lines too");
+    add_output_option(command, "--out", options->out, "write the rows as JSON lines too");
     command.callback([options] { measure(*options); });
 }
 

@@ -44,8 +44,8 @@ void add_optimality_command(CLI::App& program) {
     add_time_limit_option(command, optimality.time_limit_ms);
     add_threads_option(command, optimality.threads, "nothing is timed");
     add_parameter_options(command, options->parameters, "the defaults");
-    command.add_option("--out", options->out,
-                       "write a line per scene too; the page shows DIR/optimality.jsonl of its results");
+    add_output_option(command, "--out", options->out,
+                      "write a line per scene too; the page shows DIR/optimality.jsonl of its results");
     command.callback([options] { measure(*options); });
 }
 

@@ -40,7 +40,7 @@ void add_scenes_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep the N nearest cones ahead only");
     add_threads_option(command, options->scenes.threads, "same scenes with any number");
-    command.add_option("--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
+    add_output_option(command, "--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
         ->required();
     command.callback([options] { make_scenes(*options); });
 }

@@ -1,5 +1,7 @@
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/results.hpp"
+#include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/scene_file.hpp"
 #include "experiments/scoring/score_table.hpp"
@@ -7,8 +9,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,8 +36,17 @@ void score_all(const Options& options) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(options.lanes.size());
     std::vector<ScoredRecord> scored;
-    for (const std::string& file : options.lanes) {
+    std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
+    for (std::size_t i = 0; i < options.lanes.size(); ++i) {
+        const std::string& file = options.lanes[i];
         records.push_back(read_lanes(file));
+        if (records.back().empty()) throw InputError(file, 0, "", "holds no lane");
+        for (const LaneRecord& record : records.back()) {
+            const std::size_t first = file_of.try_emplace({record.method, record.nearest}, i).first->second;
+            if (first == i) continue;
+            throw InputError(file, record.line, "method",
+                             "lanes of '" + record.method + "' are in " + options.lanes[first] + " too");
+        }
         std::ranges::move(score_records(scenes, tracks, records.back(), file), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
@@ -52,7 +66,7 @@ void add_score_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more")->required();
-    command.add_option("--json", options->json, "write the rows as JSON lines too");
+    add_output_option(command, "--json", options->json, "write the rows as JSON lines too");
     command.callback([options] { score_all(*options); });
 }
 

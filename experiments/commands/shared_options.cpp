@@ -1,7 +1,13 @@
 #include "experiments/commands/shared_options.hpp"
 
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/parameters/shipped_parameters.hpp"
+
+#include <charconv>
+#include <cstdint>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,6 +16,32 @@ namespace conelane::experiments {
 namespace {
 
 constexpr unsigned kMostThreads = 1024;
+
+/// What is wrong with the text of a seed, nothing where it is right. Negative and larger ones would wrap.
+std::string seed_fault(const std::string& text) {
+    std::uint64_t seed = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, seed);
+    if (error == std::errc{} && rest == end) return {};
+    return fmt::format("'{}' is no non-negative integer of 64 bits", text);
+}
+
+/// Why a file cannot be written, nothing where it can.
+std::string output_fault(const std::string& file) {
+    try {
+        require_writable(file);
+        return {};
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+/// What is wrong with the text of a time limit, nothing where it is right.
+std::string time_limit_fault(const std::string& text) {
+    double limit_ms = 0.0;
+    if (CLI::detail::lexical_cast(text, limit_ms) && limit_ms > 0.0) return {};
+    return fmt::format("'{}' is no number above 0", text);
+}
 
 }  // namespace
 
@@ -38,7 +70,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
                        "with --color: share of the cones seen in the other boundary's colour");
     command.add_flag("--confidence", options.with_confidence,
                      "scenes carry simulated confidences, lower ones for false positives");
-    command.add_option("--seed", options.seed, "base seed")->capture_default_str();
+    command.add_option("--seed", options.seed, "base seed")
+        ->check(CLI::Validator(seed_fault, ""))
+        ->capture_default_str();
 }
 
 RldParameters ParameterSource::load() const {
@@ -73,8 +107,14 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, 
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
-    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]")
-        ->check(CLI::PositiveNumber);
+    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]; inf for none")
+        ->check(CLI::Validator(time_limit_fault, "POSITIVE"))
+        ->capture_default_str();
+}
+
+CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
+                               const std::string& meaning) {
+    return command.add_option(name, file, meaning)->check(CLI::Validator(output_fault, ""));
 }
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {

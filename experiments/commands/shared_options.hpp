@@ -32,8 +32,13 @@ void add_parameter_options(CLI::App& command, ParameterSource& source, const std
 
 /// --nearest N
 void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning);
-/// --time-limit MS
+/// For methods that are compared in real time, as in the RLD paper.
+inline constexpr double kRealTimeLimit_ms = 400.0;
+/// --time-limit MS; what `time_limit_ms` holds is the default
 void add_time_limit_option(CLI::App& command, double& time_limit_ms);
+/// A file to write. That it can be is looked at before the work, not after it.
+CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
+                               const std::string& meaning);
 /// --threads T
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning);
 

@@ -116,7 +116,7 @@ void add_solve_command(CLI::App& program) {
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
-    command.add_option("--out", options->out, "*.solutions.jsonl")->required();
+    add_output_option(command, "--out", options->out, "*.solutions.jsonl")->required();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
     add_time_limit_option(command, options->limits.time_limit_ms);
     command.add_flag("--warm-start", options->warm_start,

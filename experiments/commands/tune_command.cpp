@@ -10,9 +10,11 @@
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/losses.hpp"
 #include "experiments/tuning/tuner.hpp"
+#include "model/invalid_input.hpp"
 #include "model/rld_parameters.hpp"
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -176,6 +178,10 @@ std::filesystem::path record_path(std::filesystem::path parameters) {
 }
 
 void run(Options& options) {
+    if (!std::isfinite(options.evaluation.time_limit_ms)) {
+        throw InvalidInput("--time-limit", "a tuning records one, inf is none");
+    }
+    require_writable(options.out);
     options.scenes.threads = options.evaluation.threads;
     options.tuner.seed = options.scenes.seed;
     RldParameters start = ParameterSource{options.start, {}}.load();
@@ -249,7 +255,7 @@ void add_tune_command(CLI::App& program) {
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
         .add_option("--most-nodes", options->evaluation.most_nodes, "a scene that takes more counts as wrong")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Range(1, 1'000'000'000))
         ->capture_default_str();
     command.add_option("--folds", options->tuner.folds, "of tracks; 1 holds none out")
         ->check(CLI::Range(1, 1000))

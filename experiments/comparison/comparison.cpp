@@ -4,9 +4,11 @@
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 namespace conelane::experiments {
@@ -59,7 +61,13 @@ std::vector<ScoreRow> score_directory(const fs::path& directory, const SceneSet&
 }
 
 std::vector<ScoreRow> compare(const ComparisonOptions& options, const fs::path& directory) {
-    for (const Entrant& entrant : options.entrants) (void)find_method(entrant.method);
+    std::set<std::string> lanes_of_entrants;
+    for (const Entrant& entrant : options.entrants) {
+        (void)find_method(entrant.method);
+        if (lanes_of_entrants.insert(entrant.lanes_file()).second) continue;
+        const std::string cones = entrant.nearest ? " of " + std::to_string(*entrant.nearest) + " cones" : "";
+        throw InvalidInput("method", "'" + entrant.method + "'" + cones + " is named twice");
+    }
     const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard);
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");

@@ -70,11 +70,11 @@ std::vector<ScoredRecord> score_records(std::span<const AnnotatedScene> scenes,
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene);
     std::vector<ScoredRecord> scored;
     std::map<std::string, std::size_t> answered;  // by method and cone-set size
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        const LaneRecord& record = records[i];
+    for (const LaneRecord& record : records) {
         const auto scene = scene_of.find(record.scene);
         if (scene == scene_of.end()) {
-            throw InputError(lanes_file, i + 1, "scene", "'" + record.scene + "' is not in the scenes file");
+            throw InputError(lanes_file, record.line, "scene",
+                             "'" + record.scene + "' is not in the scenes file");
         }
         const AnnotatedScene& annotated = *scene->second;
         ++answered[key_of(annotated, record).method_label()];
@@ -85,7 +85,7 @@ std::vector<ScoredRecord> score_records(std::span<const AnnotatedScene> scenes,
                               score(annotated, record.answer, record.latency_ms, record.nearest,
                                     track == tracks.end() ? nullptr : &track->second)});
         } catch (const InvalidInput& invalid) {
-            throw InputError(lanes_file, i + 1, invalid.key(), invalid.what());
+            throw InputError(lanes_file, record.line, invalid.key(), invalid.what());
         }
     }
     for (const auto& [name, count] : answered) {

@@ -87,4 +87,11 @@ void AtomicFile::commit() {
     temporary_.clear();
 }
 
+void require_writable(const fs::path& target) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(target, ignored);
+    if (fs::is_other(status)) return;
+    const AtomicFile probe(target);
+}
+
 }  // namespace conelane::experiments

@@ -30,4 +30,8 @@ class AtomicFile {
     std::ofstream stream_;
 };
 
+/// Throws InputError as writing the target would, and leaves it as it was. Pipes and devices are left alone:
+/// opening one may end what reads it.
+void require_writable(const std::filesystem::path& target);
+
 }  // namespace conelane::experiments

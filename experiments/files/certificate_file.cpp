@@ -28,6 +28,7 @@ CertificateRecord::Clique read_clique(const JsonNode& json) {
 
 CertificateRecord read_record(const JsonNode& json) {
     CertificateRecord record;
+    record.line = json.line();
     record.scene = json.member("scene").string();
     const auto bound = json.find("bound");
     const auto infeasible = json.find("infeasible");

@@ -2,6 +2,7 @@
 
 #include "model/scene.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <limits>
 #include <span>
@@ -24,6 +25,7 @@ struct CertificateRecord {
     double heading_price = 0.0;
     /// Infinite where the prices prove that there is no lane graph, minus infinity where nothing is claimed.
     double bound = -std::numeric_limits<double>::infinity();
+    std::size_t line = 0;  ///< in the file that was read; 0: none was
 };
 
 /// Records in the order of the file. Throws InputError naming file, line and key.

@@ -56,6 +56,7 @@ Enumeration read_enumeration(const JsonNode& json) {
 
 LaneRecord read_record(const JsonNode& json) {
     LaneRecord record;
+    record.line = json.line();
     record.scene = json.member("scene").string();
     record.method = json.member("method").string();
     LaneAnswer& answer = record.answer;

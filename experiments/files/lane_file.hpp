@@ -19,6 +19,7 @@ struct LaneRecord {
     double latency_ms = 0.0;             ///< from the scene in memory to the lane in memory
     std::optional<std::size_t> nearest;  ///< size of the cone set the method was given; absent: all cones
     bool checked = false;                ///< the independent checker of the RLD model accepted the lane
+    std::size_t line = 0;                ///< in the file that was read; 0: none was
 };
 
 /// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside

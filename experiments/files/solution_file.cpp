@@ -30,6 +30,7 @@ std::vector<std::pair<ConeId, ConeId>> read_edges(const JsonNode& json) {
 
 SolutionRecord read_record(const JsonNode& json) {
     SolutionRecord record;
+    record.line = json.line();
     record.scene = json.member("scene").string();
     record.solver = json.member("solver").string();
     record.formulation = json.member("formulation").string();

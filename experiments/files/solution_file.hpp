@@ -2,6 +2,7 @@
 
 #include "model/scene.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -26,6 +27,7 @@ struct SolutionRecord {
     std::optional<std::int64_t> nodes;
     double build_ms = 0.0;
     double solve_ms = 0.0;
+    std::size_t line = 0;  ///< in the file that was read; 0: none was
 };
 
 /// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside

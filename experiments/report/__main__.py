@@ -37,9 +37,10 @@ def main(arguments):
     folder, page, published, picture_folder = arguments
     try:
         results = load_results(folder)
-        write_whole(page, render(results, json.loads(published)).encode("utf-8"))
         if picture_folder:
             os.makedirs(picture_folder, exist_ok=True)
+        write_whole(page, render(results, json.loads(published)).encode("utf-8"))
+        if picture_folder:
             for name, content in pictures(results):
                 write_whole(os.path.join(picture_folder, name), content)
     except InputError as error:

@@ -170,7 +170,8 @@ double intersection_over_union(const LaneOutline& a, const LaneOutline& b) {
     grid.cover(b);
     const Region region_a = region_of(a, grid);
     const Region region_b = region_of(b, grid);
-    using namespace bp::operators;
+    using bp::operators::operator&;
+    using bp::operators::operator|;
     Region shared;
     shared = region_a & region_b;
     const double intersection = area_units(shared);
