@@ -69,9 +69,10 @@ std::span<const RldParameterField> rld_extra_fields() {
 }
 
 RldParameters with_shape_costs(RldParameters parameters) {
-    const RldParameters by_hand{.w_u = 0.25, .w_v = 0.6, .w_n = 0.8};
-    for (double P::*weight : {&P::w_u, &P::w_v, &P::w_n}) {
-        if (parameters.*weight == 0.0) parameters.*weight = by_hand.*weight;
+    const RldParameters by_hand{
+        .d_e = 2.8, .w_s = 0.1, .w_t = 0.7, .s_crit = 7.0, .w_u = 0.4, .w_v = 0.8, .w_n = 1.2};
+    for (double P::*value : {&P::d_e, &P::w_s, &P::w_t, &P::s_crit, &P::w_u, &P::w_v, &P::w_n}) {
+        if (parameters.*value == RldParameters{}.*value) parameters.*value = by_hand.*value;
     }
     return parameters;
 }

@@ -42,9 +42,9 @@ struct RldParameters {
     double w_u = 0.0;      ///< weight of uneven spacing
     double w_v = 0.0;      ///< weight of the facing cost
     double w_n = 0.0;      ///< benefit of a near endpoint half a lane beside the car's axis
-    double d_w = 3.7;      ///< expected width of the lane [m]
-    double d_v = 2.0;      ///< facing threshold [m]
-    double theta_v = 0.5;  ///< facing angle threshold [rad]
+    double d_w = 3.6;      ///< expected width of the lane [m]
+    double d_v = 2.7;      ///< facing threshold [m]
+    double theta_v = 0.4;  ///< facing angle threshold [rad]
     double d_l = 3.0;      ///< facing length threshold [m]
 };
 
@@ -63,7 +63,9 @@ struct RldParameterField {
 /// The numeric parameters of the extras, whose defaults switch them off.
 [[nodiscard]] std::span<const RldParameterField> rld_extra_fields();
 
-/// The same with hand-set weights of the shape costs in place of any that are 0.
+/// The same with the costs of a lane's shape, by hand-set values: their weights, and what goes with them,
+/// since beside them the spacing and angle costs matter less to tell false edges. What is not at its default
+/// stays.
 [[nodiscard]] RldParameters with_shape_costs(RldParameters parameters);
 /// Whether a shape cost has a weight.
 [[nodiscard]] bool has_shape_costs(const RldParameters& parameters);

@@ -156,6 +156,18 @@ TEST_F(TuningLog, RemembersAcrossRunsAndDropsALineCutShort) {
     EXPECT_THROW(EvaluationLog(path("log"), R"({"seed":2})", evaluate), InputError);
 }
 
+TEST_F(TuningLog, AFileThatIsNoLogStaysAsItIs) {
+    const auto evaluate = [](const RldParameters&) { return std::vector<LapFigure>{}; };
+    for (const std::string text : {"notes without a line feed", "notes\nof two lines", R"({"seed":1} )"}) {
+        std::ofstream(path("log")) << text;
+        EXPECT_THROW(EvaluationLog(path("log"), R"({"seed":1})", evaluate), InputError) << text;
+        std::ifstream file(path("log"));
+        EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), text);
+    }
+    std::ofstream(path("log")) << R"({"se)";  // stopped while the header was written
+    EXPECT_NO_THROW(EvaluationLog(path("log"), R"({"seed":1})", evaluate));
+}
+
 SceneSet straight_track(double rate) {
     SceneOptions options;
     options.false_positive_rates = {rate};

@@ -50,6 +50,17 @@ std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>
     return to_line({{"parameters", parameters}, {"laps", figures}});
 }
 
+/// Before anything is cut: a file of another kind stays as it is. The header itself may be unfinished.
+void require_header(const fs::path& file, const std::string& header) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string first_line;
+    std::getline(stream, first_line);
+    const bool is_finished = !stream.eof();
+    if (is_finished ? first_line != header : !header.starts_with(first_line)) {
+        throw InputError(file, 1, "", "is the log of another tuning: other sources or options");
+    }
+}
+
 /// Cuts what follows the last line feed: a line that was being written when the program was stopped.
 void drop_unfinished_line(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -61,13 +72,14 @@ void drop_unfinished_line(const fs::path& file) {
 
 }  // namespace
 
-EvaluationLog::EvaluationLog(const fs::path& file, const std::string& header, Evaluate evaluate)
-    : file_(file), evaluate_(std::move(evaluate)) {
+EvaluationLog::EvaluationLog(fs::path file, const std::string& header, Evaluate evaluate)
+    : file_(std::move(file)), evaluate_(std::move(evaluate)) {
     if (file_.empty()) return;
     const bool is_new = !fs::exists(file_);
     if (!is_new) {
+        require_header(file_, header);
         drop_unfinished_line(file_);
-        read(header);
+        read();
     }
     const bool has_header = !is_new && fs::file_size(file_) > 0;
     stream_.open(file_, std::ios::binary | std::ios::app);
@@ -75,12 +87,7 @@ EvaluationLog::EvaluationLog(const fs::path& file, const std::string& header, Ev
     if (!stream_) throw InputError(file_, 0, "", "cannot be written");
 }
 
-void EvaluationLog::read(const std::string& header) {
-    std::string first_line;
-    std::getline(std::ifstream(file_), first_line);
-    if (!first_line.empty() && first_line != header) {
-        throw InputError(file_, 1, "", "is the log of another tuning: other sources or options");
-    }
+void EvaluationLog::read() {
     for_each_json_line(file_, [&](const JsonNode& json) {
         if (json.line() == 1) return;
         const JsonNode parameters = json.member("parameters");

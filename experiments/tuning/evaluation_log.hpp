@@ -19,7 +19,7 @@ class EvaluationLog {
   public:
     /// `header`: a JSON object. An empty path keeps the memory but no file. An unfinished last line is
     /// dropped. Throws InputError where the file holds another header or is none of this kind.
-    EvaluationLog(const std::filesystem::path& file, const std::string& header, Evaluate evaluate);
+    EvaluationLog(std::filesystem::path file, const std::string& header, Evaluate evaluate);
 
     /// From memory, or evaluated and written through. Throws InputError where the disk is full.
     [[nodiscard]] std::vector<LapFigure> operator()(const RldParameters& parameters);
@@ -29,7 +29,7 @@ class EvaluationLog {
   private:
     using Key = std::vector<double>;  ///< the numeric parameters in the order of the file format
 
-    void read(const std::string& header);
+    void read();
 
     std::filesystem::path file_;
     Evaluate evaluate_;

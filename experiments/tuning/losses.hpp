@@ -56,8 +56,8 @@ struct SceneLoss {
 };
 
 /// Solves one scene by path-pair, with the cone set, context and time limit of the options. With a context
-/// the cause refers to the ground truth of the context. Precondition: counts(scene).
-[[nodiscard]] SceneLoss loss_on(const AnnotatedScene& scene, const RldParameters& parameters,
+/// the cause refers to the ground truth of the context. Precondition: counts(annotated).
+[[nodiscard]] SceneLoss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
                                 const EvaluationOptions& options);
 
 }  // namespace conelane::experiments
