@@ -28,9 +28,9 @@ struct ClcOptions : CandidateSearchOptions {
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
 /// cones a side that has the highest score of the ranking, or without one the longest (mean length of both
 /// boundaries). Of equal ones, the one met first. LaneAnswer::enumeration is always there; `complete`: every
-/// starting pair tried was searched to its end, as far as width_backtracking follows lanes. With a second
-/// search or two guides from one start a candidate may be there twice. Throws InvalidInput where an option is
-/// out of its range.
+/// starting pair tried was searched to its end, as far as width_backtracking follows lanes. With two guides
+/// or a second search a candidate may be there twice, its vertices added in another order, on which features
+/// depend. Throws InvalidInput where an option is out of its range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_clc_detector(const ClcOptions& options);
 
 }  // namespace conelane
