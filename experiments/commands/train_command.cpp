@@ -72,6 +72,7 @@ void train_steps(Options& options) {
     StepTrainingRunOptions run;
     run.tracks = options.run.tracks;
     run.hold_out = options.run.hold_out;
+    run.variants = options.run.variants;
     run.scenes = options.run.scenes;
     run.scenes.threads = options.threads;
     run.hold_out_every_m = options.run.hold_out_every_m;
@@ -127,6 +128,12 @@ void add_train_command(CLI::App& program) {
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
+    command
+        .add_option("--scales", run.variants.scales,
+                    "each track at each of these sizes, its poses as much sparser")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_flag("--reversed", run.variants.reversed, "each of them in both directions, the same");
     add_scene_options(command, run.scenes);
     command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
         ->capture_default_str();
@@ -136,14 +143,21 @@ void add_train_command(CLI::App& program) {
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command.add_flag("--extended", options->extended,
-                     "the network of clc, on its search, by all features and the quality of its choice; "
-                     "without it that of clc-paper");
-    command.add_flag("--steps", options->steps,
-                     "not a network, but the step scores that the beam search of clc goes by");
-    command.add_option("--step-scores", options->step_scores,
-                       "step scores (JSON) of the beam search that finds candidates, with --extended; "
-                       "without it those of clc");
+    CLI::Option& extended =
+        *command.add_flag("--extended", options->extended,
+                          "the network of clc, on its search, by all features and the quality of its "
+                          "choice; without it that of clc-paper");
+    CLI::Option& steps =
+        *command
+             .add_flag("--steps", options->steps,
+                       "not a network, but the step scores that the beam search of clc goes by")
+             ->excludes(&extended);
+    command
+        .add_option("--step-scores", options->step_scores,
+                    "step scores (JSON) of the beam search that finds candidates, with --extended; "
+                    "without it those of clc")
+        ->needs(&extended)
+        ->excludes(&steps);
     command
         .add_option("--step-epochs", options->step_training.epochs, "rounds over the scenes, with --steps")
         ->capture_default_str();
