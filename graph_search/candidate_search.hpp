@@ -66,6 +66,7 @@ class CandidateSearch {
     Report run(const Scene& scene, const Request& request);
 
     [[nodiscard]] const PathPairs& pairs() const { return pairs_; }
+    [[nodiscard]] const SearchGraph& graph() const { return graph_; }
     /// A pair of `pairs()` of the last run, which was on `scene`.
     [[nodiscard]] Lane lane(const PathPair& pair, const Scene& scene) const;
 

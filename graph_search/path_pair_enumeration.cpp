@@ -73,12 +73,17 @@ std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex
 }
 
 PathPairVertices PathPairs::vertices(const PathPair& pair) const {
-    PathPairVertices vertices;
+    PathPairVertices both;
+    for (const Side side : {kLeft, kRight}) vertices(pair, side, both[side]);
+    return both;
+}
+
+void PathPairs::vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const {
+    vertices.clear();
     for (std::uint32_t step = pair.last_step; step != kNone; step = steps_[step].before) {
-        vertices[steps_[step].side].push_back(steps_[step].vertex);
+        if (steps_[step].side == side) vertices.push_back(steps_[step].vertex);
     }
-    for (std::vector<Vertex>& side : vertices) std::ranges::reverse(side);
-    return vertices;
+    std::ranges::reverse(vertices);
 }
 
 void PathPairs::add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,

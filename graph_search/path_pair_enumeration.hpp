@@ -97,6 +97,8 @@ class PathPairs {
     /// One entry for each pair found, where they were asked for.
     [[nodiscard]] std::span<const LaneFeatures> features() const { return features_; }
     [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
+    /// Those of one side, in the place of what `vertices` holds.
+    void vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step. The first two of a pair are its start, left and right.

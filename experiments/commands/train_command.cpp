@@ -170,6 +170,10 @@ void add_train_command(CLI::App& program) {
                     "decay of a score by each step, times the rate, with --steps")
         ->capture_default_str();
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
+    command
+        .add_option("--networks", run.training.networks,
+                    "trained one after the other; their mean is the result")
+        ->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
     command
         .add_option("--scenes-a-step", run.training.scenes_a_step,

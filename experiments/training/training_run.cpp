@@ -52,6 +52,7 @@ Json describe(const SceneOptions& scenes) {
 
 Json describe(const RankNetTrainingOptions& training) {
     return {{"units", training.units},
+            {"networks", training.networks},
             {"loss", training.loss == RankLoss::pairs ? "pairs" : "choice"},
             {"epochs", training.epochs},
             {"pairs_a_step", training.pairs_a_step},
