@@ -61,7 +61,7 @@ void LaneAgreement::measure(const PathPairs& pairs, const SearchGraph& graph, st
         double along_m = 0.0;
         for (std::size_t i = 0; i < side_.size(); ++i) {
             if (i > 0) along_m += (graph.position(side_[i]) - graph.position(side_[i - 1])).norm();
-            const auto member = static_cast<std::uint32_t>(2 * side_[i] + side);
+            const auto member = static_cast<std::uint32_t>(2 * std::size_t{side_[i]} + side);
             members_.push_back({member, along_m <= kNearPart_m});
             on_[member] |= std::uint32_t{1} << place;
         }
