@@ -99,29 +99,7 @@ TEST_F(Program, BadOptionsAreNamed) {
                    {"--steps", "--extended"});
     expect_refused("train --tracks generated:circle --steps --step-scores s.json --out n.json",
                    {"--step-scores"});
-    expect_refused("train --tracks generated:circle --scales 1,3 --out n.json", {"scales"});
-    expect_refused("train --tracks generated:circle --scales 1,1 --out n.json", {"scales"});
     expect_refused("train --tracks generated:circle generated:circle --out n.json", {"circle", "twice"});
-}
-
-TEST_F(Program, TrainingOnVariantsGoesByTheTracksTheyComeFrom) {
-    const std::string options = "train --every 20 --fp 0.3 --range 30 --epochs 1 --tracks generated:circle ";
-    ASSERT_EQ(run(options + "--scales 0.9,1 --reversed --out varied.json").exit_code, 0);
-    const auto record_of = [&](const std::string& name) {
-        return nlohmann::json::parse(text_of(path(name))).at("training");
-    };
-    const nlohmann::json varied = record_of("varied.json");
-    EXPECT_EQ(varied.at("tracks"), nlohmann::json({"circle"}));
-    EXPECT_EQ(varied.at("variants"), nlohmann::json::parse(R"({"scales":[0.9,1.0],"reversed":true})"));
-    // About as many scenes: four variants, each with a quarter of the poses.
-    ASSERT_EQ(run(options + "--out plain.json").exit_code, 0);
-    const auto scenes = [](const nlohmann::json& record) {
-        return record.at("figures_of_training").at("scenes").get<int>();
-    };
-    EXPECT_GT(scenes(varied), 3);
-    EXPECT_NEAR(scenes(varied), scenes(record_of("plain.json")), 4);
-    expect_refused("train --tracks generated:circle --scales 0.9 --hold-out generated:circle --out n.json",
-                   {"--hold-out", "circle"});
 }
 
 TEST_F(Program, BadScenesAreNamedByFileLineAndKey) {

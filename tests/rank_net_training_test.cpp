@@ -162,34 +162,6 @@ TEST(RankNetTraining, LearnsWhatDecides) {
     EXPECT_EQ(figures.critical_share, 0.0);
 }
 
-TEST(RankNetTraining, SeveralNetworksBecomeTheirMean) {
-    const std::vector<CandidateList> lists = lists_by_fourth_feature(100, 1);
-    RankNetTrainingOptions options = quick();
-    const RankNetWeights one = train_rank_net(lists, options);
-    options.networks = 2;
-    const RankNetWeights two = train_rank_net(lists, options);
-    const Eigen::Index units = one.hidden.rows();
-    ASSERT_EQ(two.hidden.rows(), 2 * units);
-    EXPECT_EQ(two.hidden.topRows(units), one.hidden);
-    EXPECT_NE(two.hidden.bottomRows(units), one.hidden) << "another beginning";
-    RankNetWeights other = one;
-    other.hidden = two.hidden.bottomRows(units);
-    other.hidden_bias = two.hidden_bias.tail(units);
-    other.output = 2.0F * two.output.tail(units);
-    const std::vector<LaneFeatures>& lanes = lists.front().lanes;
-    const auto scores = [&](const RankNetWeights& weights) {
-        std::vector<double> result(lanes.size());
-        make_rank_net(weights)->score(lanes, result);
-        return result;
-    };
-    const std::vector<double> mean = scores(two);
-    const std::vector<double> first = scores(one);
-    const std::vector<double> second = scores(other);
-    for (std::size_t i = 0; i < lanes.size(); ++i) {
-        EXPECT_NEAR(mean[i], (first[i] + second[i]) / 2.0, 1e-4);
-    }
-}
-
 TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
     std::vector<CandidateList> lists = lists_by_fourth_feature(200, 3);
     for (CandidateList& list : lists) {
@@ -236,7 +208,6 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](RankNetTrainingOptions&) {}), "accepted");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.inputs = 9; }), "inputs");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.units = 0; }), "units");
-    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.networks = 0; }), "networks");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.epochs = 0; }), "epochs");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.scenes_a_step = 0; }), "scenes_a_step");

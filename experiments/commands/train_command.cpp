@@ -72,7 +72,6 @@ void train_steps(Options& options) {
     StepTrainingRunOptions run;
     run.tracks = options.run.tracks;
     run.hold_out = options.run.hold_out;
-    run.variants = options.run.variants;
     run.scenes = options.run.scenes;
     run.scenes.threads = options.threads;
     run.hold_out_every_m = options.run.hold_out_every_m;
@@ -128,12 +127,6 @@ void add_train_command(CLI::App& program) {
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
-    command
-        .add_option("--scales", run.variants.scales,
-                    "each track at each of these sizes, its poses as much sparser")
-        ->delimiter(',')
-        ->capture_default_str();
-    command.add_flag("--reversed", run.variants.reversed, "each of them in both directions, the same");
     add_scene_options(command, run.scenes);
     command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
         ->capture_default_str();
@@ -170,10 +163,6 @@ void add_train_command(CLI::App& program) {
                     "decay of a score by each step, times the rate, with --steps")
         ->capture_default_str();
     command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
-    command
-        .add_option("--networks", run.training.networks,
-                    "trained one after the other; their mean is the result")
-        ->capture_default_str();
     command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
     command
         .add_option("--scenes-a-step", run.training.scenes_a_step,

@@ -253,7 +253,6 @@ void validate(const RankNetTrainingOptions& options) {
     require(options.inputs == kPaperFeatureCount || options.inputs == kLaneFeatureCount, "inputs",
             "must be the paper's features or all");
     require(options.units > 0, "units", "must be positive");
-    require(options.networks > 0, "networks", "must be positive");
     require(options.epochs > 0, "epochs", "must be positive");
     require(options.pairs_a_step > 0, "pairs_a_step", "must be positive");
     require(options.scenes_a_step > 0, "scenes_a_step", "must be positive");
@@ -330,12 +329,14 @@ double choice_loss(const RankNetParameters& parameters, const CandidateScenes& s
     return loss / scene_count;
 }
 
-namespace {
-
-RankNetParameters train_one(const Candidates& all, const RankNetTrainingOptions& options, Generator& random,
-                            Progress& progress) {
+RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
+    validate(options);
+    Candidates all = gather(lists, options);
+    const auto [mean, deviation] = standardise(all.inputs);
+    Generator random(options.seed);
     RankNetParameters parameters = initial(options, random);
     Adam adam(parameters);
+    Progress progress("training", options.show_progress ? options.epochs : 0);
     for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
         // The rate falls along a cosine from the first step to the last.
         const auto rate = [&](double share_of_epoch) {
@@ -350,33 +351,12 @@ RankNetParameters train_one(const Candidates& all, const RankNetTrainingOptions&
         }
         progress.advance();
     }
-    return parameters;
-}
-
-}  // namespace
-
-RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
-    validate(options);
-    Candidates all = gather(lists, options);
-    const auto [mean, deviation] = standardise(all.inputs);
-    Generator random(options.seed);
-    Progress progress("training", options.show_progress ? options.epochs * options.networks : 0);
-    const auto units = static_cast<Eigen::Index>(options.units);
-    const auto networks = static_cast<Eigen::Index>(options.networks);
-    RankNetWeights weights{mean,
-                           deviation,
-                           Eigen::MatrixXf(networks * units, mean.size()),
-                           Eigen::VectorXf(networks * units),
-                           Eigen::VectorXf(networks * units),
-                           0.0F};
-    for (Eigen::Index i = 0; i < networks; ++i) {
-        const RankNetParameters parameters = train_one(all, options, random, progress);
-        weights.hidden.middleRows(i * units, units) = parameters.hidden.cast<float>();
-        weights.hidden_bias.segment(i * units, units) = parameters.hidden_bias.cast<float>();
-        weights.output.segment(i * units, units) =
-            (parameters.output / static_cast<double>(networks)).cast<float>();
-    }
-    return weights;
+    return {mean,
+            deviation,
+            parameters.hidden.cast<float>(),
+            parameters.hidden_bias.cast<float>(),
+            parameters.output.cast<float>(),
+            0.0F};
 }
 
 RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneRanking& ranking) {

@@ -52,9 +52,6 @@ enum class RankLoss {
 struct RankNetTrainingOptions {
     std::size_t inputs = kPaperFeatureCount;  ///< the paper's features, or kLaneFeatureCount for all
     std::size_t units = 100;
-    /// So many are trained, each from another beginning and in another order, and their mean is the network,
-    /// with all of their units. What one of them has learnt by chance the others outvote.
-    std::size_t networks = 1;
     RankLoss loss = RankLoss::pairs;
     /// In each, every candidate is the first of one pair; or for choice_loss, every scene is met once.
     std::size_t epochs = 60;

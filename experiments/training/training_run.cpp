@@ -3,17 +3,10 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_set.hpp"
-#include "experiments/tracks/track_spec.hpp"
-#include "model/invalid_input.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <set>
-#include <string>
 #include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -52,7 +45,6 @@ Json describe(const SceneOptions& scenes) {
 
 Json describe(const RankNetTrainingOptions& training) {
     return {{"units", training.units},
-            {"networks", training.networks},
             {"loss", training.loss == RankLoss::pairs ? "pairs" : "choice"},
             {"epochs", training.epochs},
             {"pairs_a_step", training.pairs_a_step},
@@ -72,84 +64,25 @@ Json describe(const StepScoreFigures& figures) {
             {"kept_share", rounded(figures.kept_share)}};
 }
 
-Json describe(const TrackVariants& variants) {
-    return {{"scales", variants.scales}, {"reversed", variants.reversed}};
-}
-
-void validate(const TrackVariants& variants) {
-    if (variants.scales.empty()) throw InvalidInput("scales", "must hold at least one value");
-    for (const double scale : variants.scales) {
-        if (!(scale >= 0.5 && scale <= 2.0)) throw InvalidInput("scales", "must be in [0.5, 2]");
-        if (std::ranges::count(variants.scales, scale) > 1) {
-            throw InvalidInput("scales", fmt::format("{} is there twice", scale));
-        }
-    }
-}
-
-Track variant(Track track, double scale, bool reversed) {
-    if (scale != 1.0) {
-        track.name += fmt::format("_x{}", scale);
-        for (Cone& cone : track.cones) cone.position *= scale;
-    }
-    if (reversed) {
-        track.name += "_reversed";
-        std::swap(track.left, track.right);
-        std::ranges::reverse(track.left);
-        std::ranges::reverse(track.right);
-    }
-    return track;
-}
-
-struct TrainingScenes {
-    SceneSet set;
-    std::set<std::string> tracks;  ///< trained on, by their own names, whatever their variants are called
-    SceneSet held_out;             ///< maybe none
-};
-
-void add_varied_scenes(const std::vector<std::string>& track_specs, const TrackVariants& variants,
-                       const SceneOptions& options, TrainingScenes& scenes) {
-    validate(variants);
-    SceneOptions sparse = options;
-    sparse.every_m *= static_cast<double>(variants.scales.size()) * (variants.reversed ? 2.0 : 1.0);
-    for (const std::string& spec : track_specs) {
-        for (const Track& track : load_tracks(spec)) {
-            if (!scenes.tracks.insert(track.name).second) {
-                throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
-            }
-            for (const double scale : variants.scales) {
-                for (const bool reversed : {false, true}) {
-                    if (reversed && !variants.reversed) continue;
-                    const Track varied = variant(track, scale, reversed);
-                    scenes.set.tracks.emplace(varied.name, boundaries(varied));
-                    std::ranges::move(generate_scenes(varied, sparse), std::back_inserter(scenes.set.scenes));
-                }
-            }
-        }
-    }
-    if (scenes.set.scenes.empty()) {
-        throw InputError("", 0, "--tracks", "no pose sees two cones of both boundaries");
-    }
-}
-
+/// The scenes to train on, and those held out, of which there may be none.
 template <typename Options>
-TrainingScenes make_training_scenes(const Options& options) {
-    TrainingScenes scenes;
-    add_varied_scenes(options.tracks, options.variants, options.scenes, scenes);
+std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
+    std::pair<SceneSet, SceneSet> sets{make_scene_set(options.tracks, options.scenes), {}};
     SceneOptions hold_out_scenes = options.scenes;
     hold_out_scenes.every_m = options.hold_out_every_m;
-    if (!options.hold_out.empty()) scenes.held_out = make_scene_set(options.hold_out, hold_out_scenes);
-    for (const auto& [name, boundaries] : scenes.held_out.tracks) {
-        if (scenes.tracks.contains(name)) {
+    if (!options.hold_out.empty()) sets.second = make_scene_set(options.hold_out, hold_out_scenes);
+    for (const auto& [name, boundaries] : sets.second.tracks) {
+        if (sets.first.tracks.contains(name)) {
             throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
         }
     }
-    return scenes;
+    return sets;
 }
 
 }  // namespace
 
 TrainingRun run_training(const TrainingRunOptions& options) {
-    const auto [set, tracks, held_out] = make_training_scenes(options);
+    const auto [set, held_out] = make_scene_sets(options);
     const std::vector<CandidateList> lists = enumerate_candidates(set, options.candidates);
     TrainingRun run;
     run.weights = train_rank_net(lists, options.training);
@@ -159,9 +92,8 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     all_candidates.most_per_scene = 0;
     run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
 
-    const Json record{{"tracks", tracks},
+    const Json record{{"tracks", track_names(set)},
                       {"hold_out_tracks", track_names(held_out)},
-                      {"variants", describe(options.variants)},
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
@@ -176,14 +108,13 @@ TrainingRun run_training(const TrainingRunOptions& options) {
 }
 
 StepTrainingRun run_step_training(const StepTrainingRunOptions& options) {
-    const auto [set, tracks, held_out] = make_training_scenes(options);
+    const auto [set, held_out] = make_scene_sets(options);
     StepTrainingRun run;
     run.scores = train_step_scores(set, options.training);
     run.trained = step_score_figures(set, run.scores, options.training.search);
     run.held_out = step_score_figures(held_out, run.scores, options.training.search);
-    const Json record{{"tracks", tracks},
+    const Json record{{"tracks", track_names(set)},
                       {"hold_out_tracks", track_names(held_out)},
-                      {"variants", describe(options.variants)},
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"beam",

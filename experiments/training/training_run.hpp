@@ -11,16 +11,8 @@
 
 namespace conelane::experiments {
 
-/// What is trained on besides the tracks as they are, so that no spacing, width or bend of the few that there
-/// are is learned by heart.
-struct TrackVariants {
-    std::vector<double> scales{1.0};  ///< each track at each of these sizes, distinct, in [0.5, 2]
-    bool reversed = false;            ///< each of them also in the other direction
-};
-
 struct TrainingRunOptions {
     std::vector<std::string> tracks;    ///< SPECs of load_tracks
-    TrackVariants variants;             ///< of these; poses are as many times sparser as there are variants
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
     SceneOptions scenes;
     double hold_out_every_m = 10.0;  ///< travel between poses there: all candidates of a scene are scored
@@ -42,7 +34,6 @@ struct TrainingRun {
 
 struct StepTrainingRunOptions {
     std::vector<std::string> tracks;    ///< SPECs of load_tracks
-    TrackVariants variants;             ///< as in TrainingRunOptions
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
     SceneOptions scenes;
     double hold_out_every_m = 10.0;
