@@ -101,6 +101,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     find_seeds(scene, request.last_lane);
     for (std::size_t i = 0; i < seeds_.size(); ++i) {
         run_from(seeds_[i], i + 1 == seeds_.size(), scene, report);
+        seeds_[i].found_end = pairs_.found().size();
     }
     if (rules_.with_features) add_scene_features(scene);
     report.iterations = budget_.iterations;
@@ -114,22 +115,23 @@ void CandidateSearch::find_seeds(const Scene& scene, const Lane* last_lane) {
         if (!guide) return;
         const bool is_known =
             std::ranges::any_of(seeds_, [&](const Seed& seed) { return seed.guide == *guide; });
-        if (!is_known) seeds_.push_back({{(*guide)[kLeft].front(), (*guide)[kRight].front()}, *guide});
+        if (!is_known) seeds_.push_back({{(*guide)[kLeft].front(), (*guide)[kRight].front()}, *guide, 0});
     };
+    const std::vector<RankedStartPair> starts = ranked_start_pairs(scene, options_.start);
     if (last_lane != nullptr) add_guide(still_ahead(*last_lane, scene));
-    if (options_.step_scores) add_guide(beam_lane(scene));
+    if (options_.step_scores) add_guide(beam_lane(scene, starts));
     const std::size_t guided = seeds_.size();
-    for (const StartPair& start : start_pairs(scene, options_.starting_pairs, options_.start)) {
+    for (const StartPair& start : start_pairs(starts, options_.starting_pairs, options_.start)) {
         const bool is_met = std::any_of(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(guided),
                                         [&](const Seed& seed) { return seed.start == start; });
-        if (!is_met) seeds_.push_back({start, {}});
+        if (!is_met) seeds_.push_back({start, {}, 0});
     }
 }
 
-std::optional<PathPairVertices> CandidateSearch::beam_lane(const Scene& scene) {
-    const std::vector<StartPair> starts =
-        start_pairs(scene, std::numeric_limits<std::size_t>::max(), options_.start);
-    beam_.start(graph_, scene, starts, *options_.step_scores, options_.bounds, options_.beam_width);
+std::optional<PathPairVertices> CandidateSearch::beam_lane(const Scene& scene,
+                                                           std::span<const RankedStartPair> starts) {
+    beam_.start(graph_, scene, start_pairs(starts, starts.size(), options_.start), *options_.step_scores,
+                options_.bounds, options_.beam_width);
     const std::size_t best = beam_.run();
     if (best == LaneBeam::kNone) return std::nullopt;
     return beam_.vertices(best);
@@ -156,13 +158,16 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
     const std::span<LaneFeatures> features = pairs_.features();
     double longest_m = 0.0;
     for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[0]);
-    for (std::size_t i = 0; i < features.size(); ++i) {
-        LaneFeatures& lane = features[i];
-        const StartPairMeasures measures = start_pair_measures(scene, pairs_.start(pairs_.found()[i]));
-        lane[kLongestShareFeature] = lane[0] / longest_m;
-        lane[kStartAsymmetryFeature] = measures.asymmetry_m;
-        lane[kStartDistanceFeature] = measures.distance_m;
-        lane[kConesFeature] = static_cast<double>(scene.cones.size());
+    std::size_t i = 0;
+    for (const Seed& seed : seeds_) {
+        const StartPairMeasures measures = start_pair_measures(scene, seed.start);
+        for (; i < seed.found_end; ++i) {
+            LaneFeatures& lane = features[i];
+            lane[kLongestShareFeature] = lane[0] / longest_m;
+            lane[kStartAsymmetryFeature] = measures.asymmetry_m;
+            lane[kStartDistanceFeature] = measures.distance_m;
+            lane[kConesFeature] = static_cast<double>(scene.cones.size());
+        }
     }
 }
 

@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -65,6 +66,7 @@ class CandidateSearch {
     Report run(const Scene& scene, const Request& request);
 
     [[nodiscard]] const PathPairs& pairs() const { return pairs_; }
+    [[nodiscard]] const SearchGraph& graph() const { return graph_; }
     /// A pair of `pairs()` of the last run, which was on `scene`.
     [[nodiscard]] Lane lane(const PathPair& pair, const Scene& scene) const;
 
@@ -73,11 +75,13 @@ class CandidateSearch {
     struct Seed {
         StartPair start;
         PathPairVertices guide;
+        std::size_t found_end;  ///< number of the pairs found when it was done
     };
 
     /// Finds the searches to be made, in their order.
     void find_seeds(const Scene& scene, const Lane* last_lane);
-    [[nodiscard]] std::optional<PathPairVertices> beam_lane(const Scene& scene);
+    [[nodiscard]] std::optional<PathPairVertices> beam_lane(const Scene& scene,
+                                                            std::span<const RankedStartPair> starts);
     void run_from(const Seed& seed, bool is_last, const Scene& scene, Report& report);
     /// Sets the features that belong to the scene.
     void add_scene_features(const Scene& scene);

@@ -2,10 +2,12 @@
 
 #include "graph_search/rank_net_file.hpp"
 #include "graph_search/step_score_file.hpp"
+#include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace conelane {
@@ -16,11 +18,22 @@ namespace {
 constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
+/// Fewer lanes leave the track within 20 m, on tracks left out of a training; the lanes are a
+/// little shorter.
+constexpr std::size_t kAgreeingCandidates = 24;
 
 class ClcDetector final : public LaneDetector {
   public:
     explicit ClcDetector(const ClcOptions& options)
-        : ranking_(options.ranking), warm_start_(options.warm_start), search_(options) {}
+        : ranking_(options.ranking),
+          agreeing_candidates_(options.agreeing_candidates),
+          warm_start_(options.warm_start),
+          search_(options) {
+        if (agreeing_candidates_ > LaneAgreement::kMostCandidates) {
+            throw InvalidInput("agreeing_candidates",
+                               "must be at most " + std::to_string(LaneAgreement::kMostCandidates));
+        }
+    }
 
     LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
         CandidateSearch::Request request;
@@ -56,12 +69,17 @@ class ClcDetector final : public LaneDetector {
         if (!ranking_) return *std::ranges::max_element(found, {}, &PathPair::length_m);
         scores_.resize(found.size());
         ranking_->score(search_.pairs().features(), scores_);
+        if (agreeing_candidates_ > 0) {
+            return found[agreement_.choose(search_.pairs(), search_.graph(), scores_, agreeing_candidates_)];
+        }
         return found[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
     }
 
     std::shared_ptr<const LaneRanking> ranking_;
+    std::size_t agreeing_candidates_;
     bool warm_start_;
     CandidateSearch search_;
+    LaneAgreement agreement_;
     std::vector<double> scores_;
     std::optional<Lane> last_lane_;
 };
@@ -86,6 +104,7 @@ ClcOptions extended_clc_options() {
     ClcOptions options;
     static_cast<CandidateSearchOptions&>(options) = extended_search_options();
     options.ranking = extended_rank_net();
+    options.agreeing_candidates = kAgreeingCandidates;
     return options;
 }
 

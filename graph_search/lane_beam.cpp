@@ -2,11 +2,13 @@
 
 #include "graph_search/next_vertex.hpp"
 #include "graph_search/start_vertices.hpp"
+#include "graph_search/surroundings.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -15,6 +17,7 @@
 namespace conelane {
 namespace {
 
+constexpr double kNotBetter = -std::numeric_limits<double>::infinity();
 constexpr double kNotThere = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -66,14 +69,11 @@ Place place(std::size_t measure, double value) {
 /// stand along the lane.
 constexpr double kLargestFirstTurn_rad = 110.0 * kDegree;
 
-constexpr double kBeside_m = 1.2;
-constexpr double kClose_m = 0.6;
+constexpr Vertex kNoVertex = ~Vertex{0};
 
-bool is_inside(const Point& point, const Point& a, const Point& b, const Point& c) {
-    const double at_ab = cross(b - a, point - a);
-    const double at_bc = cross(c - b, point - b);
-    const double at_ca = cross(a - c, point - c);
-    return (at_ab > 0.0 && at_bc > 0.0 && at_ca > 0.0) || (at_ab < 0.0 && at_bc < 0.0 && at_ca < 0.0);
+/// A bit of 64 for each vertex, shared by others.
+std::uint64_t bit_of(Vertex vertex) {
+    return std::uint64_t{1} << (vertex % 64);
 }
 
 }  // namespace
@@ -127,18 +127,35 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     heading_ = scene.pose.heading();
     width_ = width;
     states_.clear();
+    best_ = {kNotBetter, 0.0, kNone, kNoVertex, kNoVertex, kNoVertex};
     next_.clear();
-    for (const StartPair& start : starts) next_.push_back(add_start(start));
+    for (const StartPair& start : starts) {
+        const std::size_t number = add_start(start);
+        const auto [low, high] = std::minmax(start.left, start.right);
+        next_.push_back({states_[number].score, 0.0, number, kNoVertex, low, high});
+    }
     keep_best();
 }
 
 bool LaneBeam::advance() {
     next_.clear();
+    Step step;
     for (const std::size_t number : level_) {
-        const Vertex tip = states_[number].last[next_side(states_[number])];
-        for (const Vertex vertex : graph_->neighbours(tip)) {
-            const std::size_t extended = extend(number, vertex);
-            if (extended != kNone) next_.push_back(extended);
+        const State& from = states_[number];
+        const Side side = next_side(from);
+        const Vertex facing = from.last[opposite(side)];
+        const bool is_lane = from.vertices[opposite(side)] > 1;
+        for (const Vertex vertex : graph_->neighbours(from.last[side])) {
+            if (!measure(number, side, vertex, step)) continue;
+            const auto [low, high] = std::minmax(vertex, facing);
+            const Extension extension{from.score + scores_->score(step.measures),
+                                      from.length_m + step.segment_m,
+                                      number,
+                                      vertex,
+                                      low,
+                                      high};
+            next_.push_back(extension);
+            if (is_lane && extension.score > best_.score) best_ = extension;
         }
     }
     keep_best();
@@ -148,13 +165,7 @@ bool LaneBeam::advance() {
 std::size_t LaneBeam::run() {
     while (advance()) {
     }
-    std::size_t best = kNone;
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        const State& state = states_[i];
-        if (state.vertices[kLeft] < 2 || state.vertices[kRight] < 2) continue;
-        if (best == kNone || state.score > states_[best].score) best = i;
-    }
-    return best;
+    return best_.parent == kNone ? kNone : extend(best_.parent, best_.vertex);
 }
 
 PathPairVertices LaneBeam::vertices(std::size_t number) const {
@@ -186,6 +197,7 @@ std::size_t LaneBeam::add_start(StartPair start) {
     const Point across = graph_->position(start.left) - graph_->position(start.right);
     State state{};
     state.last = {start.left, start.right};
+    state.bits = bit_of(start.left) | bit_of(start.right);
     state.before = state.last;
     state.direction = {heading_, heading_};
     state.vertices = {1, 1};
@@ -201,9 +213,8 @@ std::size_t LaneBeam::add_start(StartPair start) {
     return states_.size() - 1;
 }
 
-std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
+bool LaneBeam::measure(std::size_t number, Side side, Vertex vertex, Step& step) const {
     const State& from = states_[number];
-    const Side side = next_side(from);
     const Side facing = opposite(side);
     const Point& point = graph_->position(vertex);
     const Point& tip = graph_->position(from.last[side]);
@@ -211,73 +222,68 @@ std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
     const Point segment = point - tip;
     const bool is_first = from.vertices[side] == 1;
     if (turning_measure(from.direction[side], segment) >= (is_first ? first_turn_limit_ : turn_limit_)) {
-        return kNone;
+        return false;
     }
-    const double width_m = foot_point(point, {graph_->position(from.before[facing]), facing_tip}).distance_m;
-    if (width_m <= bounds_.w_min_m || is_on_lane(number, vertex)) return kNone;
+    step.width_m = foot_point(point, {graph_->position(from.before[facing]), facing_tip}).distance_m;
+    if (step.width_m <= bounds_.w_min_m || is_on_lane(number, vertex)) return false;
 
-    State state = from;
-    const double turn_rad = turning_angle(from.direction[side], segment);
-    const double segment_m = segment.norm();
-    state.before[side] = from.last[side];
-    state.last[side] = vertex;
-    state.direction[side] = segment / segment_m;
-    state.segment_m[side] = segment_m;
-    state.turn_rad[side] = turn_rad;
-    ++state.vertices[side];
-    state.width_m = width_m;
-    state.length_m += segment_m;
-    state.parent = number;
-    state.pushed = side;
-
-    StepMeasures& step = state.step;
-    step.fill(kNotThere);
-    step[kStepsMeasure] = 0.0;
-    step[kSegmentMeasure] = segment_m;
+    step.turn_rad = turning_angle(from.direction[side], segment);
+    step.segment_m = segment.norm();
+    step.direction = segment / step.segment_m;
+    StepMeasures& measures = step.measures;
+    measures.fill(kNotThere);
+    measures[kStepsMeasure] = 0.0;
+    measures[kSegmentMeasure] = step.segment_m;
     if (is_first) {
-        step[kFirstTurnMeasure] = std::abs(turn_rad);
+        measures[kFirstTurnMeasure] = std::abs(step.turn_rad);
     } else {
-        step[kTurnMeasure] = std::abs(turn_rad);
-        step[kTurnTimesSegmentMeasure] = std::abs(turn_rad) * segment_m;
-        step[kSegmentChangeMeasure] = std::abs(segment_m - from.segment_m[side]);
-        if (from.vertices[side] > 2) step[kTurnChangeMeasure] = std::abs(turn_rad - from.turn_rad[side]);
+        measures[kTurnMeasure] = std::abs(step.turn_rad);
+        measures[kTurnTimesSegmentMeasure] = std::abs(step.turn_rad) * step.segment_m;
+        measures[kSegmentChangeMeasure] = std::abs(step.segment_m - from.segment_m[side]);
+        if (from.vertices[side] > 2) {
+            measures[kTurnChangeMeasure] = std::abs(step.turn_rad - from.turn_rad[side]);
+        }
     }
     if (from.vertices[facing] > 1) {
-        step[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], segment));
+        measures[kSkewMeasure] = std::abs(turning_angle(from.direction[facing], segment));
     }
-    step[kWidthMeasure] = width_m;
-    step[kWidthChangeMeasure] = std::abs(width_m - from.width_m);
-    const Point along = state.direction[side] + state.direction[facing];
+    measures[kWidthMeasure] = step.width_m;
+    measures[kWidthChangeMeasure] = std::abs(step.width_m - from.width_m);
+    const Point along = step.direction + from.direction[facing];
     const double along_length = along.norm();
-    step[kAdvanceMeasure] = along_length == 0.0 ? 0.0 : (point - facing_tip).dot(along) / along_length;
-    measure_surroundings(from, side, vertex, step);
-    state.score += scores_->score(step);
+    measures[kAdvanceMeasure] = along_length == 0.0 ? 0.0 : (point - facing_tip).dot(along) / along_length;
+    const Surroundings cones =
+        surroundings(*graph_, from.last[side], tip, facing_tip, point, point, facing_tip);
+    measures[kBesideMeasure] = cones.beside;
+    measures[kCloseMeasure] = cones.close;
+    measures[kInsideMeasure] = cones.inside;
+    return true;
+}
+
+std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
+    Step step;
+    const Side side = next_side(states_[number]);
+    if (!measure(number, side, vertex, step)) return kNone;
+    State state = states_[number];
+    state.before[side] = state.last[side];
+    state.last[side] = vertex;
+    state.bits |= bit_of(vertex);
+    state.direction[side] = step.direction;
+    state.segment_m[side] = step.segment_m;
+    state.turn_rad[side] = step.turn_rad;
+    ++state.vertices[side];
+    state.width_m = step.width_m;
+    state.length_m += step.segment_m;
+    state.parent = number;
+    state.pushed = side;
+    state.step = step.measures;
+    state.score += scores_->score(step.measures);
     states_.push_back(state);
     return states_.size() - 1;
 }
 
-void LaneBeam::measure_surroundings(const State& state, Side side, Vertex vertex, StepMeasures& step) const {
-    const Point& point = graph_->position(vertex);
-    const Point& tip = graph_->position(state.last[side]);
-    const Vertex facing = state.last[opposite(side)];
-    const Point segment = point - tip;
-    const double segment_m = segment.norm();
-    const Point direction = segment / segment_m;
-    step[kBesideMeasure] = step[kCloseMeasure] = step[kInsideMeasure] = 0.0;
-    for (const Vertex other : graph_->neighbours(state.last[side])) {
-        if (other == vertex || other == facing) continue;
-        const Point& position = graph_->position(other);
-        if (is_inside(position, tip, graph_->position(facing), point)) step[kInsideMeasure] += 1.0;
-        const Point offset = position - tip;
-        const double along_m = offset.dot(direction);
-        if (along_m <= 0.0 || along_m >= segment_m) continue;
-        const double across_m = std::abs(cross(direction, offset));
-        if (across_m < kBeside_m) step[kBesideMeasure] += 1.0;
-        if (across_m < kClose_m) step[kCloseMeasure] += 1.0;
-    }
-}
-
 bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
+    if ((states_[number].bits & bit_of(vertex)) == 0) return false;
     for (; number != kNone; number = states_[number].parent) {
         const std::array<Vertex, 2>& last = states_[number].last;
         if (last[kLeft] == vertex || last[kRight] == vertex) return true;
@@ -286,23 +292,38 @@ bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
 }
 
 void LaneBeam::keep_best() {
-    // Of equal scores by what does not change where the scene is mirrored.
-    std::ranges::sort(next_, {}, [&](std::size_t number) {
-        const State& state = states_[number];
-        const auto [low, high] = std::minmax(state.last[kLeft], state.last[kRight]);
-        return std::tuple(-state.score, state.length_m, low, high);
-    });
+    // A heap, of which the first few are taken. Of equal scores by what does not change where the scene is
+    // mirrored.
+    const auto is_worse = [](const Extension& a, const Extension& b) {
+        return std::tuple(-a.score, a.length_m, a.low, a.high) >
+               std::tuple(-b.score, b.length_m, b.low, b.high);
+    };
+    std::make_heap(next_.begin(), next_.end(), is_worse);
     level_.clear();
-    for (const std::size_t number : next_) {
-        if (level_.size() == width_) break;
-        const State& state = states_[number];
-        // With a segment on each side, whatever goes on from there goes on alike.
-        const bool is_known = std::ranges::any_of(level_, [&](std::size_t better) {
-            const State& other = states_[better];
-            return other.last == state.last && other.before == state.before;
-        });
-        if (!is_known) level_.push_back(number);
+    while (!next_.empty() && level_.size() < width_) {
+        std::pop_heap(next_.begin(), next_.end(), is_worse);
+        const Extension extension = next_.back();
+        next_.pop_back();
+        if (!is_known(extension)) {
+            level_.push_back(extension.vertex == kNoVertex ? extension.parent
+                                                           : extend(extension.parent, extension.vertex));
+        }
     }
+}
+
+bool LaneBeam::is_known(const Extension& extension) const {
+    const State& from = states_[extension.parent];
+    std::array<Vertex, 2> last = from.last;
+    std::array<Vertex, 2> before = from.before;
+    if (extension.vertex != kNoVertex) {
+        const Side side = next_side(from);
+        before[side] = last[side];
+        last[side] = extension.vertex;
+    }
+    // With a segment on each side, whatever goes on from there goes on alike.
+    return std::ranges::any_of(level_, [&](std::size_t better) {
+        return states_[better].last == last && states_[better].before == before;
+    });
 }
 
 }  // namespace conelane

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -92,6 +93,7 @@ class LaneBeam {
         double score;
         std::size_t parent;  ///< kNone: a starting pair
         Side pushed;         ///< the side that was extended to get here
+        std::uint64_t bits;  ///< of the lane's vertices, see is_on_lane
         StepMeasures step;
     };
     static constexpr std::size_t kNone = ~std::size_t{0};
@@ -121,10 +123,31 @@ class LaneBeam {
     void restart(std::size_t number) { level_.assign(1, number); }
 
   private:
+    /// A step and what the state after it needs to know.
+    struct Step {
+        StepMeasures measures;
+        Point direction;
+        double segment_m;
+        double turn_rad;
+        double width_m;
+    };
+    /// A state that may follow; only those that go on are kept.
+    struct Extension {
+        double score;
+        double length_m;
+        std::size_t parent;
+        Vertex vertex;  ///< none: the parent itself, a starting pair
+        Vertex low;     ///< the last vertices of both sides
+        Vertex high;
+    };
+
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex vertex) const;
-    /// Of the states in `next_`, those that go on.
+    /// Whether the vertex can follow on the side, and the step if so.
+    [[nodiscard]] bool measure(std::size_t number, Side side, Vertex vertex, Step& step) const;
+    /// Makes a level of those in `next_` that go on.
     void keep_best();
-    void measure_surroundings(const State& state, Side side, Vertex vertex, StepMeasures& step) const;
+    /// Whether the level has a state that ends alike.
+    [[nodiscard]] bool is_known(const Extension& extension) const;
 
     const SearchGraph* graph_ = nullptr;
     const Scene* scene_ = nullptr;
@@ -136,7 +159,8 @@ class LaneBeam {
     std::size_t width_ = 0;
     std::vector<State> states_;
     std::vector<std::size_t> level_;
-    std::vector<std::size_t> next_;
+    std::vector<Extension> next_;
+    Extension best_;  ///< of those with two vertices a side
 };
 
 }  // namespace conelane

@@ -1,37 +1,75 @@
 #include "graph_search/lane_constraints.hpp"
 
+#include "graph_search/wide_loops.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace conelane {
 namespace {
 
-/// Whether `line` meets one of the first `count` segments of a boundary.
-bool meets(const BoundaryArrays& boundary, std::size_t count, const Segment& line) {
+/// Segments of a boundary that are looked at together.
+constexpr std::size_t kChunk = 8;
+static_assert(kChunk <= BoundaryArrays::kSpare);
+
+/// Whether both ends of `line` and of the segment are on one side of the other, or have none in common in x
+/// or in y. Where not, they nearly always meet, which the exact predicate then tells.
+bool are_apart(const Segment& line, const Segment& segment) {
+    const auto apart = [](double a, double b, double c, double d) {
+        return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
+    };
+    return apart(line.from.x(), line.to.x(), segment.from.x(), segment.to.x()) ||
+           apart(line.from.y(), line.to.y(), segment.from.y(), segment.to.y());
+}
+
+bool segment_meets(const Segment& line, const Segment& segment) {
+    return !are_apart(line, segment) && segments_intersect(line, segment);
+}
+
+/// The first of `count` segments of a boundary, from `first` on, that `line` may meet, rounded down to
+/// a whole number of chunks from `first`; `count` where there is none. Sides are told by the ends of each
+/// against the line through the other, without a branch, so that the loop vectorises.
+CONELANE_WIDE_LOOPS std::size_t first_suspicious_chunk(const BoundaryArrays& boundary, std::size_t first,
+                                                       std::size_t count, const Segment& line) {
     const double* const x = boundary.x.data();
     const double* const y = boundary.y.data();
-    const double line_dx = line.to.x() - line.from.x();
-    const double line_dy = line.to.y() - line.from.y();
-    // Necessary condition without a branch, so that the loop vectorises: each one's ends are not strictly on
-    // one side of the other. Rarely met without an intersection, which the exact predicate then tells.
-    int suspicious = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double from_x = x[i] - line.from.x();
-        const double from_y = y[i] - line.from.y();
-        const double dx = boundary.dx[i];
-        const double dy = boundary.dy[i];
-        const double begin_side = line_dx * from_y - line_dy * from_x;
-        const double end_side = line_dx * (y[i + 1] - line.from.y()) - line_dy * (x[i + 1] - line.from.x());
-        const double line_begin_side = dy * from_x - dx * from_y;
-        const double line_end_side = dx * (line.to.y() - y[i]) - dy * (line.to.x() - x[i]);
-        suspicious |= static_cast<int>(begin_side * end_side <= 0.0) &
-                      static_cast<int>(line_begin_side * line_end_side <= 0.0);
+    const double* const all_dx = boundary.dx.data();
+    const double* const all_dy = boundary.dy.data();
+    const double line_from_x = line.from.x();
+    const double line_from_y = line.from.y();
+    const double line_to_x = line.to.x();
+    const double line_to_y = line.to.y();
+    const double line_dx = line_to_x - line_from_x;
+    const double line_dy = line_to_y - line_from_y;
+    for (; first < count; first += kChunk) {
+        std::int64_t suspicious = 0;
+        for (std::size_t i = first; i < first + kChunk; ++i) {
+            const double from_x = x[i] - line_from_x;
+            const double from_y = y[i] - line_from_y;
+            const double dx = all_dx[i];
+            const double dy = all_dy[i];
+            const double begin_side = line_dx * from_y - line_dy * from_x;
+            const double end_side = line_dx * (y[i + 1] - line_from_y) - line_dy * (x[i + 1] - line_from_x);
+            const double line_begin_side = dy * from_x - dx * from_y;
+            const double line_end_side = dx * (line_to_y - y[i]) - dy * (line_to_x - x[i]);
+            suspicious |= static_cast<std::int64_t>(i < count) &
+                          static_cast<std::int64_t>(begin_side * end_side <= 0.0) &
+                          static_cast<std::int64_t>(line_begin_side * line_end_side <= 0.0);
+        }
+        if (suspicious != 0) break;
     }
-    if (suspicious == 0) return false;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (segments_intersect(line, boundary.segment(i))) return true;
+    return first;
+}
+
+/// Whether `line` meets one of the first `count` segments of a boundary.
+bool meets(const BoundaryArrays& boundary, std::size_t count, const Segment& line) {
+    for (std::size_t first = 0; first < count; first += kChunk) {
+        first = first_suspicious_chunk(boundary, first, count, line);
+        for (std::size_t i = first; i < std::min(first + kChunk, count); ++i) {
+            if (segment_meets(line, boundary.segment(i))) return true;
+        }
     }
     return false;
 }
@@ -117,7 +155,7 @@ bool LaneConstraints::new_segment_meets(Side side, const Point& point) const {
     if (meets(other, other.size - 1, segment)) return true;
     // The first segment of a side is a neighbour of the line between the first points.
     if (own.size == 1) return false;
-    return meets(own, own.size - 2, segment) || segments_intersect(segment, {own.vertex(0), other.vertex(0)});
+    return meets(own, own.size - 2, segment) || segment_meets(segment, {own.vertex(0), other.vertex(0)});
 }
 
 bool LaneConstraints::end_line_meets() const {
@@ -126,7 +164,7 @@ bool LaneConstraints::end_line_meets() const {
     const Segment end_line{left.vertex(left.size - 1), right.vertex(right.size - 1)};
     if (left.size > 2 && meets(left, left.size - 2, end_line)) return true;
     if (right.size > 2 && meets(right, right.size - 2, end_line)) return true;
-    return left.size > 1 && right.size > 1 && segments_intersect(end_line, {left.vertex(0), right.vertex(0)});
+    return left.size > 1 && right.size > 1 && segment_meets(end_line, {left.vertex(0), right.vertex(0)});
 }
 
 }  // namespace conelane

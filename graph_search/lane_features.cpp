@@ -55,16 +55,6 @@ constexpr std::size_t kWholeWidths = 36;
 constexpr std::size_t kNearSteps = 39;
 constexpr std::size_t kNearWidths = 56;
 
-constexpr double kBeside_m = 1.2;
-constexpr double kClose_m = 0.6;
-
-bool is_inside(const Point& point, const Point& a, const Point& b, const Point& c) {
-    const double at_ab = cross(b - a, point - a);
-    const double at_bc = cross(c - b, point - b);
-    const double at_ca = cross(a - c, point - c);
-    return (at_ab > 0.0 && at_bc > 0.0 && at_ca > 0.0) || (at_ab < 0.0 && at_bc < 0.0 && at_ca < 0.0);
-}
-
 /// From `middle` to the cubic through two points before and two after it at even steps, across the chord of
 /// its neighbours [m].
 double offset_m(const Point& second_before, const Point& before, const Point& middle, const Point& after,
@@ -127,10 +117,7 @@ struct LaneGrowth::Step {
     double offset_m = -1.0;
     double segment_change_m = -1.0;
     double skew = -1.0;
-    double cones_inside = 0.0;
-    double cones_beside = 0.0;
-    double cones_close = 0.0;
-    double closeness = 0.0;
+    Surroundings cones;
 };
 
 void LaneGrowth::add(const Step& step, Side side, Stretch& stretch) {
@@ -149,10 +136,10 @@ void LaneGrowth::add(const Step& step, Side side, Stretch& stretch) {
     stretch.turned_rad[side] += step.turn_rad;
     stretch.length_m[side] += step.length_m;
     ++stretch.steps[side];
-    stretch.cones_inside += step.cones_inside;
-    stretch.cones_beside += step.cones_beside;
-    stretch.cones_close += step.cones_close;
-    stretch.closeness += step.closeness;
+    stretch.cones.inside += step.cones.inside;
+    stretch.cones.beside += step.cones.beside;
+    stretch.cones.close += step.cones.close;
+    stretch.cones.closeness += step.cones.closeness;
 }
 
 void LaneGrowth::start(const SearchGraph& graph, Vertex left, Vertex right, const Point& heading) {
@@ -194,20 +181,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
-    const std::span<const Vertex> neighbours = graph.neighbours(vertex);
-    for (const Vertex neighbour : neighbours) {
-        const Point& cone = graph.position(neighbour);
-        if (is_inside(cone, tip_[side], facing_tip, point)) step.cones_inside += 1.0;
-        const Point offset = cone - tip_[side];
-        const double along_m = offset.dot(direction);
-        if (along_m <= 0.0 || along_m >= step.length_m) continue;
-        const double across_m = std::abs(cross(direction, offset));
-        if (across_m >= kBeside_m) continue;
-        step.cones_beside += 1.0;
-        if (across_m < kClose_m) step.cones_close += 1.0;
-        const double share = across_m / kBeside_m;
-        step.closeness += (1.0 - share * share) * (1.0 - share * share);
-    }
+    step.cones = surroundings(graph, vertex, tip_[side], facing_tip, point);
     // Up to where the step begins.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);
@@ -221,7 +195,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
     ++own.vertices;
     tip_[side] = point;
     across_.add((point - facing_tip).norm());
-    degree_.add(static_cast<double>(neighbours.size()));
+    degree_.add(static_cast<double>(graph.neighbours(vertex).size()));
 }
 
 std::array<std::size_t, 2> LaneGrowth::near_vertices() const {
@@ -243,7 +217,7 @@ LaneFeatures LaneGrowth::features() const {
         features[25 + side] = boundary.turn_changes.mean_of_squares();
     }
     features[12] = advance_deviation(tip_[kLeft], left.direction, tip_[kRight], right.direction);
-    features[13] = whole_.cones_inside;
+    features[13] = whole_.cones.inside;
     features[14] = degree_.mean();
     features[15] = whole_.sharpest_turn_rad;
     features[16] = whole_.sharpest_turn_change_rad;
@@ -253,7 +227,7 @@ LaneFeatures LaneGrowth::features() const {
     features[20] = across_.variance();
     features[27] = whole_.shortest_segment_m;
     features[28] = start_skew_;
-    features[29] = whole_.cones_beside;
+    features[29] = whole_.cones.beside;
     features[30] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
     features[31] = std::max(left.last_segment_m, right.last_segment_m);
     features[32] = last_turn_change_rad_;
@@ -274,10 +248,10 @@ LaneFeatures LaneGrowth::features() const {
         std::sqrt(near_.skew.mean_of_squares()),
         std::abs(curvature(near_.turned_rad[kLeft], near_.length_m[kLeft]) -
                  curvature(near_.turned_rad[kRight], near_.length_m[kRight])),
-        near_.cones_inside,
-        near_.cones_beside,
-        near_.cones_close,
-        near_.closeness,
+        near_.cones.inside,
+        near_.cones.beside,
+        near_.cones.close,
+        near_.cones.closeness,
         static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2)};
     std::ranges::copy(of_near_steps, features.begin() + kNearSteps);
     return features;
@@ -295,9 +269,10 @@ void add_width_features(const OnlineLaneWidth& width, const std::array<std::size
     Moments near_widths;
     Moments near_changes;
     for (const Side side : {kLeft, kRight}) {
-        double before_m = width.vertex_width_m(side, 0);
-        for (std::size_t i = 0; i < width.boundary(side).size; ++i) {
-            const double width_m = width.vertex_width_m(side, i);
+        const std::span<const double> squared_m2 = width.squared_vertex_widths_m2(side);
+        double before_m = std::sqrt(squared_m2[0]);
+        for (std::size_t i = 0; i < squared_m2.size(); ++i) {
+            const double width_m = std::sqrt(squared_m2[i]);
             const double change_m = std::abs(width_m - before_m);
             before_m = width_m;
             const auto add = [&](Figures& figures) {

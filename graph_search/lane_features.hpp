@@ -2,6 +2,7 @@
 
 #include "graph_search/lane_width.hpp"
 #include "graph_search/search_graph.hpp"
+#include "graph_search/surroundings.hpp"
 #include "model/geometry.hpp"
 
 #include <array>
@@ -98,10 +99,7 @@ class LaneGrowth {
         std::array<double, 2> turned_rad{0.0, 0.0};  ///< by side, with sign
         std::array<double, 2> length_m{0.0, 0.0};
         std::array<std::size_t, 2> steps{0, 0};
-        double cones_inside = 0.0;
-        double cones_beside = 0.0;
-        double cones_close = 0.0;
-        double closeness = 0.0;
+        Surroundings cones;
     };
     /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
     struct Step;

@@ -29,7 +29,9 @@ struct BoundaryArrays {
     std::vector<double> x, y;    ///< of the vertices
     std::vector<double> dx, dy;  ///< of the segments, end minus begin
     std::vector<double> inverse_squared_length;
-    std::size_t size = 0;  ///< vertices in use; the arrays may be longer
+    std::size_t size = 0;  ///< vertices in use
+    /// The arrays are longer by so many numbers at least, so that loops may end in whole steps.
+    static constexpr std::size_t kSpare = 8;
 
     void push(const Point& point);
     void pop() { --size; }
@@ -76,6 +78,10 @@ class OnlineLaneWidth {
     [[nodiscard]] const State& state() const { return states_.back(); }
     [[nodiscard]] const BoundaryArrays& boundary(Side side) const { return boundaries_[side]; }
     [[nodiscard]] double vertex_width_m(Side side, std::size_t vertex) const;
+    /// Squares of all vertex_width_m of a side.
+    [[nodiscard]] std::span<const double> squared_vertex_widths_m2(Side side) const {
+        return {rows_[side].vertex_squared.data() + rows_[side].begins.back(), boundaries_[side].size};
+    }
     /// Variance of all widths, those of vertices and those of segments [m^2].
     [[nodiscard]] double variance() const;
     [[nodiscard]] double segment_width_m(Side side, std::size_t segment) const;
@@ -87,7 +93,7 @@ class OnlineLaneWidth {
     struct Rows {
         std::vector<double> vertex_squared;   ///< [m^2]
         std::vector<double> segment_squared;  ///< [m^2]; entry i: the segment that ends at vertex i
-        std::vector<std::uint8_t> at_end;     ///< whether the last vertex of the other side is nearest
+        std::vector<std::int64_t> at_end;  ///< 1 where the last vertex of the other side is nearest, else 0
         std::vector<std::size_t> begins;
 
         void make_room(std::size_t size);

@@ -14,12 +14,57 @@ constexpr std::int64_t kIterationsPerClockReading = 32;
 constexpr Vertex kNoVertex = ~Vertex{0};
 constexpr std::uint32_t kNoOption = ~std::uint32_t{0};
 
+/// The finaliser of SplitMix64 (Steele, Lea and Flood): a bijection that looks random.
+std::uint64_t scatter(std::uint64_t bits) {
+    bits += 0x9e3779b97f4a7c15U;
+    bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
+    bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
+    return bits ^ (bits >> 31U);
+}
+
+constexpr std::size_t kFirstSlots = 1024;
+
 }  // namespace
+
+void PathPairFingerprint::add(Side side, Vertex vertex) {
+    value_ = scatter(value_ + 2 * std::uint64_t{vertex} + side);
+}
+
+void FingerprintSet::clear() {
+    std::ranges::fill(slots_, 0);
+    used_ = 0;
+}
+
+bool FingerprintSet::insert(const PathPairFingerprint& fingerprint) {
+    if (2 * used_ >= slots_.size()) grow();
+    const std::uint64_t value = std::max<std::uint64_t>(fingerprint.value(), 1);
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = value & mask;
+    for (; slots_[slot] != 0; slot = (slot + 1) & mask) {
+        if (slots_[slot] == value) return false;
+    }
+    slots_[slot] = value;
+    ++used_;
+    return true;
+}
+
+void FingerprintSet::grow() {
+    std::vector<std::uint64_t> old(std::max(kFirstSlots, 2 * slots_.size()), 0);
+    old.swap(slots_);
+    const std::size_t mask = slots_.size() - 1;
+    for (const std::uint64_t value : old) {
+        if (value == 0) continue;
+        std::size_t slot = value & mask;
+        while (slots_[slot] != 0) slot = (slot + 1) & mask;
+        slots_[slot] = value;
+    }
+}
 
 void PathPairs::clear() {
     steps_.clear();
     found_.clear();
     features_.clear();
+    known_.clear();
 }
 
 std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex) {
@@ -28,29 +73,26 @@ std::uint32_t PathPairs::add_step(std::uint32_t before, Side side, Vertex vertex
 }
 
 PathPairVertices PathPairs::vertices(const PathPair& pair) const {
-    PathPairVertices vertices;
+    PathPairVertices both;
+    for (const Side side : {kLeft, kRight}) vertices(pair, side, both[side]);
+    return both;
+}
+
+void PathPairs::vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const {
+    vertices.clear();
     for (std::uint32_t step = pair.last_step; step != kNone; step = steps_[step].before) {
-        vertices[steps_[step].side].push_back(steps_[step].vertex);
+        if (steps_[step].side == side) vertices.push_back(steps_[step].vertex);
     }
-    for (std::vector<Vertex>& side : vertices) std::ranges::reverse(side);
-    return vertices;
+    std::ranges::reverse(vertices);
 }
 
-StartPair PathPairs::start(const PathPair& pair) const {
-    std::uint32_t right = pair.last_step;
-    std::uint32_t left = steps_[right].before;
-    while (steps_[left].before != kNone) {
-        right = left;
-        left = steps_[right].before;
-    }
-    return {steps_[left].vertex, steps_[right].vertex};
-}
-
-void PathPairs::add_lane(const PathPair& pair, const LaneConstraints& boundaries, const LaneGrowth& growth,
+void PathPairs::add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
+                         const LaneConstraints& boundaries, const LaneGrowth& growth,
                          const EnumerationRules& rules) {
     const BoundaryArrays& left = boundaries.width().boundary(kLeft);
     const BoundaryArrays& right = boundaries.width().boundary(kRight);
     if (left.size < 2 || right.size < 2) return;
+    if (!known_.insert(fingerprint)) return;
     found_.push_back(pair);
     if (rules.with_features) {
         features_.push_back(growth.features());
@@ -89,18 +131,19 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     on_path_[kLeft][start.left] = 1;
     on_path_[kRight][start.right] = 1;
 
-    Call first;
-    first.unvisited = {next_vertex_.after_start(start.left, heading),
-                       next_vertex_.after_start(start.right, heading)};
-    first.tried = {0, 0};
-    first.discrepancies = 0;
-    first.visited_early = {kNoVertex, kNoVertex};
-    first.last = {start.left, start.right};
-    first.direction = {heading, heading};
-    first.length_m = {0.0, 0.0};
-    first.step = pairs.add_step(PathPairs::kNone, kLeft, start.left);
+    Call first{
+        {next_vertex_.after_start(start.left, heading), next_vertex_.after_start(start.right, heading)},
+        {0, 0},
+        0,
+        {kNoVertex, kNoVertex},
+        {start.left, start.right},
+        {heading, heading},
+        {0.0, 0.0},
+        PathPairFingerprint(start),
+        {},
+        pairs.add_step(PathPairs::kNone, kLeft, start.left),
+        kLeft};
     first.step = pairs.add_step(first.step, kRight, start.right);
-    first.pushed = kLeft;
     if (rules_.with_features) first.growth.start(graph, start.left, start.right, heading);
     calls_.assign(1, first);
     guide_ = guide;
@@ -166,13 +209,14 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         below.direction[side] = segment;
         const double segment_m = segment.norm();
         below.length_m[side] += segment_m;
+        below.fingerprint.add(side, next.vertex);
         if (rules_.with_features) below.growth.push(graph, side, next.vertex);
         below.step = pairs.add_step(call.step, side, next.vertex);
         below.pushed = side;
         if (extended.feasible) {
             const double length_m = (below.length_m[kLeft] + below.length_m[kRight]) / 2.0;
-            pairs.add_lane({below.step, false, budget.iterations, length_m}, constraints_, below.growth,
-                           rules_);
+            pairs.add_lane({below.step, false, budget.iterations, length_m}, below.fingerprint, constraints_,
+                           below.growth, rules_);
         }
         below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
         below.visited_early[side] = kNoVertex;

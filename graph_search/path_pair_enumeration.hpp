@@ -52,8 +52,38 @@ struct SearchBudget {
 struct PathPair {
     std::uint32_t last_step;
     bool closed;
-    std::int64_t iteration;  ///< of the search in which it was met, from 1
+    std::int64_t iteration;  ///< of the search in which it was met first, from 1
     double length_m;         ///< mean of the lengths of both boundaries
+};
+
+/// What two path pairs have in common where the same vertices were added to the same sides in the same order,
+/// and else only by a chance of 1 in 2^64.
+class PathPairFingerprint {
+  public:
+    explicit PathPairFingerprint(StartPair start) {
+        add(kLeft, start.left);
+        add(kRight, start.right);
+    }
+    void add(Side side, Vertex vertex);
+    [[nodiscard]] std::uint64_t value() const { return value_; }
+
+  private:
+    std::uint64_t value_ = 0;
+};
+
+/// A set of numbers that keeps its memory when it is emptied. As an open hash table; nothing depends on the
+/// order in it.
+class FingerprintSet {
+  public:
+    void clear();
+    /// Returns whether it was not there yet.
+    bool insert(const PathPairFingerprint& fingerprint);
+
+  private:
+    void grow();
+
+    std::vector<std::uint64_t> slots_;  ///< a power of two of them, at most half in use; 0 is an empty one
+    std::size_t used_ = 0;
 };
 
 /// The vertices of both boundaries, from the car outward.
@@ -67,16 +97,17 @@ class PathPairs {
     /// One entry for each pair found, where they were asked for.
     [[nodiscard]] std::span<const LaneFeatures> features() const { return features_; }
     [[nodiscard]] PathPairVertices vertices(const PathPair& pair) const;
-    [[nodiscard]] StartPair start(const PathPair& pair) const;
+    /// Those of one side, in the place of what `vertices` holds.
+    void vertices(const PathPair& pair, Side side, std::vector<Vertex>& vertices) const;
 
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step. The first two of a pair are its start, left and right.
     std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
-    /// Adds a feasible lane, unless a side has a single vertex; where it can be closed (section IV-E) it is
-    /// followed by itself, closed. `boundaries` and `growth` are those of `pair`, which is open; `growth` is
-    /// read only where rules.with_features.
-    void add_lane(const PathPair& pair, const LaneConstraints& boundaries, const LaneGrowth& growth,
-                  const EnumerationRules& rules);
+    /// Adds a feasible lane, unless a side has a single vertex or it is there already by the same steps;
+    /// where it can be closed (section IV-E) it is followed by itself, closed. `fingerprint`, `boundaries`
+    /// and `growth` are those of `pair`, which is open; `growth` is read only where rules.with_features.
+    void add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
+                  const LaneConstraints& boundaries, const LaneGrowth& growth, const EnumerationRules& rules);
     /// To fill in what belongs to the scene.
     [[nodiscard]] std::span<LaneFeatures> features() { return features_; }
 
@@ -89,6 +120,7 @@ class PathPairs {
     std::vector<Step> steps_;
     std::vector<PathPair> found_;
     std::vector<LaneFeatures> features_;
+    FingerprintSet known_;
     std::array<std::vector<Point>, 2> closing_points_;
 };
 
@@ -105,10 +137,10 @@ class PathPairs {
 class PathPairEnumeration {
   public:
     /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
-    /// rules.most_discrepancies, in the order met; each one that can be closed (section IV-E) is followed by
-    /// itself, closed. Draws on `budget`, in which an iteration is one run of the loop in line 3. Returns
-    /// whether the enumeration is complete. Keeps memory from call to call. Precondition: `heading` is a unit
-    /// vector, start.left != start.right.
+    /// rules.most_discrepancies that are not there yet by the same steps, in the order met; each one that can
+    /// be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in which an iteration is
+    /// one run of the loop in line 3. Returns whether the enumeration is complete. Keeps memory from call to
+    /// call. Precondition: `heading` is a unit vector, start.left != start.right.
     ///
     /// `guide`: a lane to follow first (warm start, section IV-F), its start included; empty for none. The
     /// search goes along it as far as it can, LRD deciding between the sides, and then on as ever: the same
@@ -126,6 +158,7 @@ class PathPairEnumeration {
         std::array<Vertex, 2> last;
         std::array<Point, 2> direction;  ///< of the last segments
         std::array<double, 2> length_m;
+        PathPairFingerprint fingerprint;
         LaneGrowth growth;  ///< only where features are asked for
         std::uint32_t step;
         Side pushed;  ///< the side that was extended to get here

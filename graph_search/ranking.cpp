@@ -1,52 +1,107 @@
 #include "graph_search/ranking.hpp"
 
+#include "graph_search/wide_loops.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <utility>
+#include <vector>
 
 namespace conelane {
 namespace {
 
-/// Candidates that go through the network at once, so that what is between the layers stays in the cache.
-constexpr Eigen::Index kBatch = 64;
+/// Candidates that go through the network at once, ...
+constexpr std::size_t kBatch = 16;
+/// ... and units that they go through at once: their sums stay in registers.
+constexpr std::size_t kUnits = 4;
 
 /// First of each pair of sides.
 constexpr std::array<std::size_t, 6> kPairs{1, 4, 6, 21, 23, 25};
 
+/// Numbers that the compiler keeps in registers, whatever their width is.
+using Floats [[gnu::vector_size(32)]] = float;
+constexpr std::size_t kFloats = sizeof(Floats) / sizeof(float);
+struct Batch {
+    Floats part[kBatch / kFloats];  // NOLINT(modernize-avoid-c-arrays): std::array drops the attribute
+
+    void set(std::size_t i, float value) { part[i / kFloats][i % kFloats] = value; }
+    [[nodiscard]] float operator[](std::size_t i) const { return part[i / kFloats][i % kFloats]; }
+};
+
+/// Adds to `sums` what `kUnits` units make of a batch. `weights`: of all inputs, kUnits at a time.
+CONELANE_WIDE_LOOPS void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
+                                   const float* bias, const float* output, Batch& sums) {
+    std::array<Batch, kUnits> units;
+    for (Batch& unit : units) unit.part[0] = unit.part[1] = Floats{};
+    for (std::size_t i = 0; i < input_count; ++i, weights += kUnits) {
+        for (std::size_t unit = 0; unit < kUnits; ++unit) {
+            units[unit].part[0] += weights[unit] * inputs[i].part[0];
+            units[unit].part[1] += weights[unit] * inputs[i].part[1];
+        }
+    }
+    for (std::size_t unit = 0; unit < kUnits; ++unit) {
+        for (std::size_t part = 0; part < 2; ++part) {
+            const Floats value = units[unit].part[part] + bias[unit];
+            sums.part[part] += output[unit] * (value > 0.0F ? value : Floats{});
+        }
+    }
+}
+static_assert(kBatch == 2 * kFloats);
+
 class RankNet final : public LaneRanking {
   public:
-    explicit RankNet(RankNetWeights weights) : weights_(std::move(weights)) {}
-
-    void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const override {
-        assert(lanes.size() == scores.size());
-        const Eigen::Index input_count = weights_.hidden.cols();
-        Eigen::VectorXd lane_inputs(input_count);
-        Eigen::MatrixXf inputs(input_count, kBatch);
-        Eigen::MatrixXf units(weights_.hidden.rows(), kBatch);
-        const auto count = static_cast<Eigen::Index>(lanes.size());
-        for (Eigen::Index first = 0; first < count; first += kBatch) {
-            const Eigen::Index batch = std::min(kBatch, count - first);
-            for (Eigen::Index i = 0; i < batch; ++i) {
-                network_inputs(lanes[static_cast<std::size_t>(first + i)],
-                               {lane_inputs.data(), static_cast<std::size_t>(input_count)});
-                inputs.col(i) =
-                    ((lane_inputs - weights_.mean).array() / weights_.deviation.array()).cast<float>();
+    explicit RankNet(const RankNetWeights& weights)
+        : mean_(weights.mean.begin(), weights.mean.end()), output_bias_(weights.output_bias) {
+        for (const double deviation : weights.deviation) inverse_deviation_.push_back(1.0 / deviation);
+        // Units that are not there weigh nothing.
+        const auto units = static_cast<std::size_t>(weights.hidden.rows());
+        const auto at = [&](const auto& values, std::size_t unit, auto... column) {
+            return unit < units ? values(static_cast<Eigen::Index>(unit), column...) : 0.0F;
+        };
+        for (std::size_t first = 0; first < units; first += kUnits) {
+            for (Eigen::Index input = 0; input < weights.hidden.cols(); ++input) {
+                for (std::size_t unit = first; unit < first + kUnits; ++unit) {
+                    hidden_.push_back(at(weights.hidden, unit, input));
+                }
             }
-            units.leftCols(batch).noalias() = weights_.hidden * inputs.leftCols(batch);
-            units.leftCols(batch).colwise() += weights_.hidden_bias;
-            for (Eigen::Index i = 0; i < batch; ++i) {
-                scores[static_cast<std::size_t>(first + i)] =
-                    weights_.output.dot(units.col(i).cwiseMax(0.0F)) + weights_.output_bias;
+            for (std::size_t unit = first; unit < first + kUnits; ++unit) {
+                hidden_bias_.push_back(at(weights.hidden_bias, unit));
+                output_.push_back(at(weights.output, unit));
             }
         }
     }
 
+    void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const override {
+        assert(lanes.size() == scores.size());
+        std::array<double, kLaneFeatureCount> of_lane{};
+        std::array<Batch, kLaneFeatureCount> inputs{};
+        const std::size_t input_count = mean_.size();
+        for (std::size_t first = 0; first < lanes.size(); first += kBatch) {
+            const std::size_t count = std::min(kBatch, lanes.size() - first);
+            for (std::size_t i = 0; i < count; ++i) {
+                network_inputs(lanes[first + i], {of_lane.data(), input_count});
+                for (std::size_t k = 0; k < input_count; ++k) {
+                    inputs[k].set(i, static_cast<float>((of_lane[k] - mean_[k]) * inverse_deviation_[k]));
+                }
+            }
+            Batch sums{};
+            for (std::size_t unit = 0; unit < output_.size(); unit += kUnits) {
+                add_units(inputs.data(), input_count, hidden_.data() + unit * input_count,
+                          hidden_bias_.data() + unit, output_.data() + unit, sums);
+            }
+            for (std::size_t i = 0; i < count; ++i) scores[first + i] = sums[i] + output_bias_;
+        }
+    }
+
   private:
-    RankNetWeights weights_;
+    std::vector<double> mean_;
+    std::vector<double> inverse_deviation_;
+    std::vector<float> hidden_;  ///< of kUnits units at a time: by input, by unit
+    std::vector<float> hidden_bias_;
+    std::vector<float> output_;
+    float output_bias_;
 };
 
 }  // namespace

@@ -73,6 +73,12 @@ void SearchGraph::build(std::span<const Point> points, double d_max_m, SearchGra
         first_edge_.push_back(static_cast<DirectedEdge>(neighbours_.size()));
     }
     if (kind == SearchGraphKind::delaunay && !points.empty()) keep_delaunay_edges();
+    neighbour_x_.resize(neighbours_.size() + kSpare);
+    neighbour_y_.resize(neighbours_.size() + kSpare);
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+        neighbour_x_[i] = points_[neighbours_[i]].x();
+        neighbour_y_[i] = points_[neighbours_[i]].y();
+    }
 }
 
 void SearchGraph::keep_delaunay_edges() {

@@ -48,6 +48,18 @@ class SearchGraph {
     [[nodiscard]] std::span<const Vertex> neighbours(Vertex vertex) const {
         return {neighbours_.data() + first_edge_[vertex], first_edge_[vertex + 1] - first_edge_[vertex]};
     }
+    /// Of the neighbours, in their order. Behind them there are kSpare numbers at least, so that loops may
+    /// end in whole steps.
+    struct Positions {
+        const double* x;
+        const double* y;
+        std::size_t size;
+    };
+    static constexpr std::size_t kSpare = 4;
+    [[nodiscard]] Positions neighbour_positions(Vertex vertex) const {
+        const DirectedEdge first = first_edge_[vertex];
+        return {neighbour_x_.data() + first, neighbour_y_.data() + first, first_edge_[vertex + 1] - first};
+    }
     [[nodiscard]] DirectedEdge first_edge(Vertex vertex) const { return first_edge_[vertex]; }
     [[nodiscard]] bool adjacent(Vertex a, Vertex b) const;
 
@@ -64,6 +76,8 @@ class SearchGraph {
     std::vector<Point> points_;
     std::vector<DirectedEdge> first_edge_;  ///< vertex_count + 1 entries
     std::vector<Vertex> neighbours_;
+    std::vector<double> neighbour_x_;  ///< kSpare more than there are neighbours
+    std::vector<double> neighbour_y_;
     std::vector<Cell> cells_;
 };
 

@@ -4,6 +4,7 @@
 #include "model/scene.hpp"
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace conelane {
@@ -24,6 +25,15 @@ struct StartPairMeasures {
 };
 [[nodiscard]] StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair);
 
+struct RankedStartPair {
+    StartPair pair;
+    double cost_m;
+    double distance_m;  ///< as StartPairMeasures
+};
+/// All pairs of start_pairs within the largest radius, best first.
+[[nodiscard]] std::vector<RankedStartPair> ranked_start_pairs(const Scene& scene,
+                                                              const StartVertexRules& rules);
+
 /// Pairs to start the search from, best first, at most `count`; section IV-C of the CLC paper. A left vertex
 /// has a positive angle with the car's heading, a right one a negative one. The search radius grows until it
 /// holds `count` pairs: a lane may start a few metres ahead, and a false positive near the car must not shut
@@ -31,6 +41,9 @@ struct StartPairMeasures {
 /// alone, as printed, any symmetric pair farther ahead would go before the first cones of a lane that do not
 /// face each other.) Ties: the pair with the smaller vertices.
 [[nodiscard]] std::vector<StartPair> start_pairs(const Scene& scene, std::size_t count,
+                                                 const StartVertexRules& rules);
+/// The same from ranked_start_pairs of the scene, by the same rules.
+[[nodiscard]] std::vector<StartPair> start_pairs(std::span<const RankedStartPair> ranked, std::size_t count,
                                                  const StartVertexRules& rules);
 
 }  // namespace conelane

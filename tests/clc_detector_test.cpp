@@ -375,6 +375,7 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.beam_width = 0; }), "beam_width");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.agreeing_candidates = 33; }), "agreeing_candidates");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.step_scores = std::make_shared<StepScores>(); }), "scores");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");

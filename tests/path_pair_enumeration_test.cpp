@@ -89,6 +89,43 @@ TEST(PathPairEnumeration, StopsAtTheDeadline) {
     EXPECT_EQ(budget.iterations, 0);
 }
 
+/// Vertices 0 and 1 start left and right of the car, the others are anywhere ahead.
+std::vector<Point> random_map(unsigned seed, unsigned size) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::uniform_real_distribution<> ahead(-1.0, 11.0);
+    boost::random::uniform_real_distribution<> across(-4.0, 4.0);
+    std::vector<Point> points{{0.5, 1.9}, {0.3, -1.8}};
+    while (points.size() < size) {
+        const double x = ahead(random);
+        points.emplace_back(x, across(random));
+    }
+    return points;
+}
+
+TEST(PathPairEnumeration, AddsWhatIsNotThereYet) {
+    const std::vector<Point> points = random_map(3, 14);
+    SearchGraph graph;
+    graph.build(points, 5.5);
+    PathPairs pairs;
+    PathPairEnumeration enumeration;
+    const auto run = [&](StartPair start, std::uint32_t most_discrepancies) {
+        EnumerationRules rules;
+        rules.most_discrepancies = most_discrepancies;
+        SearchBudget budget;
+        budget.iteration_limit = kNoLimit;
+        EXPECT_TRUE(enumeration.run(graph, start, kHeading, rules, budget, pairs));
+        return pairs.found().size();
+    };
+    const std::size_t few = run({0, 1}, 1);
+    ASSERT_GT(few, 5u);
+    EXPECT_EQ(run({0, 1}, 1), few) << "the same again";
+    const std::size_t all = run({0, 1}, ~std::uint32_t{0});
+    EXPECT_GT(all, few);
+    EXPECT_GT(run({1, 0}, 1), all) << "the sides changed";
+    pairs.clear();
+    EXPECT_EQ(run({0, 1}, 1), few);
+}
+
 TEST(PathPairEnumeration, ClosesARing) {
     std::vector<Point> points;
     const auto on_ring = [&](double radius_m, int i) {
@@ -109,19 +146,6 @@ TEST(PathPairEnumeration, ClosesARing) {
     EXPECT_EQ(vertices[kRight].size(), 12u);
     const double inner_m = 12 * 2 * 6.0 * std::sin(3.14159265358979 / 12);
     EXPECT_NEAR(closed->length_m, inner_m * (6.0 + 9.5) / 12.0, 1e-9);
-}
-
-/// Vertices 0 and 1 start left and right of the car, the others are anywhere ahead.
-std::vector<Point> random_map(unsigned seed, unsigned size) {
-    boost::random::mt19937_64 random(seed);
-    boost::random::uniform_real_distribution<> ahead(-1.0, 11.0);
-    boost::random::uniform_real_distribution<> across(-4.0, 4.0);
-    std::vector<Point> points{{0.5, 1.9}, {0.3, -1.8}};
-    while (points.size() < size) {
-        const double x = ahead(random);
-        points.emplace_back(x, across(random));
-    }
-    return points;
 }
 
 /// All simple paths from a vertex that keep to d_max and C_seg, by definition.

@@ -110,6 +110,13 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("certify --scenes a.scenes.jsonl --verify ''", {"--verify", "empty"});
     expect_refused("solve --scenes a.scenes.jsonl --params '' --out l.solutions.jsonl",
                    {"--params", "empty"});
+    expect_refused("train --tracks generated:circle --step-scores s.json --out n.json",
+                   {"--step-scores", "--extended"});
+    expect_refused("train --tracks generated:circle --steps --extended --out n.json",
+                   {"--steps", "--extended"});
+    expect_refused("train --tracks generated:circle --steps --step-scores s.json --out n.json",
+                   {"--step-scores"});
+    expect_refused("train --tracks generated:circle generated:circle --out n.json", {"circle", "twice"});
 }
 
 TEST_F(Program, TimeLimitsAreAboveZero) {

@@ -136,14 +136,21 @@ void add_train_command(CLI::App& program) {
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command.add_flag("--extended", options->extended,
-                     "the network of clc, on its search, by all features and the quality of its choice; "
-                     "without it that of clc-paper");
-    command.add_flag("--steps", options->steps,
-                     "not a network, but the step scores that the beam search of clc goes by");
-    command.add_option("--step-scores", options->step_scores,
-                       "step scores (JSON) of the beam search that finds candidates, with --extended; "
-                       "without it those of clc");
+    CLI::Option& extended =
+        *command.add_flag("--extended", options->extended,
+                          "the network of clc, on its search, by all features and the quality of its "
+                          "choice; without it that of clc-paper");
+    CLI::Option& steps =
+        *command
+             .add_flag("--steps", options->steps,
+                       "not a network, but the step scores that the beam search of clc goes by")
+             ->excludes(&extended);
+    command
+        .add_option("--step-scores", options->step_scores,
+                    "step scores (JSON) of the beam search that finds candidates, with --extended; "
+                    "without it those of clc")
+        ->needs(&extended)
+        ->excludes(&steps);
     command
         .add_option("--step-epochs", options->step_training.epochs, "rounds over the scenes, with --steps")
         ->capture_default_str();

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/search_graph.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// Chooses among candidate lanes what agrees best with the others. Beyond the paper.
+///
+/// The candidate of the highest score goes its own way alone where several others, each a little less likely,
+/// go another one together, or end before the ways part. So each of the first few is taken for the right lane
+/// with probability softmax(scores), and the answer is the one with the highest expected value. A lane's
+/// value where another one is right is the share of their cones that both have on the same side, less
+/// kStrayingPenalty where the lane has a cone within kNearPart_m along its boundary that the other one does
+/// not have on that side.
+class LaneAgreement {
+  public:
+    /// As many candidates as can be compared.
+    static constexpr std::size_t kMostCandidates = 32;
+    static constexpr double kStrayingPenalty = 1.0;
+
+    /// Returns the place in `pairs.found()`. The first `count` by score are compared; of equal ones, the one
+    /// with the higher score wins, then the one met first. Keeps memory from call to call. Preconditions:
+    /// there is a pair, and a score for each; count in [1, kMostCandidates].
+    [[nodiscard]] std::size_t choose(const PathPairs& pairs, const SearchGraph& graph,
+                                     std::span<const double> scores, std::size_t count);
+
+  private:
+    void measure(const PathPairs& pairs, const SearchGraph& graph, std::size_t place);
+
+    /// A candidate's vertices of both sides, one behind the other, those of the near part marked.
+    struct Member {
+        std::uint32_t vertex;  ///< twice the vertex, plus the side
+        bool is_near;
+    };
+    std::vector<std::size_t> order_;  ///< of the candidates compared, best first
+    std::vector<double> probabilities_;
+    std::vector<Member> members_;
+    std::vector<std::size_t> begins_;  ///< of each candidate in `members_`, and the end of the last one
+    std::vector<std::uint32_t> on_;    ///< by Member::vertex: a bit for each candidate that has it
+    std::vector<Vertex> side_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,11 @@
+#pragma once
+
+/// Marks a function whose loops count: on x86-64 it is compiled twice, and the processor decides at the start
+/// of the program whether they take four numbers at once (AVX2) or two. The operations and their order are
+/// the same, so are the results. Not with sanitizers, which come up after that decision.
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CONELANE_WIDE_LOOPS [[gnu::target_clones("avx2", "default")]]
+#else
+#define CONELANE_WIDE_LOOPS
+#endif
