@@ -79,7 +79,9 @@ constexpr std::array<MethodEntry, 12> kMethods{{
      [](const MethodOptions& options) {
          return make_rld("rld-shape-context", "path-pair", Formulation::tight, options);
      }},
-    {"clc", "CLC led by a beam search; NVD weighs distances, a second search, a network on all features",
+    {"clc",
+     "CLC led by a beam search; NVD weighs distances, a second search, a network on all features and "
+     "agreement of the candidates that it puts first",
      std::nullopt, std::nullopt, false, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, std::nullopt,

@@ -117,6 +117,12 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("train --tracks generated:circle --steps --step-scores s.json --out n.json",
                    {"--step-scores"});
     expect_refused("train --tracks generated:circle generated:circle --out n.json", {"circle", "twice"});
+    for (const char* option : {"--epochs", "--step-epochs", "--units", "--scenes-a-step", "--candidates"}) {
+        expect_refused("train --tracks generated:circle --out n.json " + std::string(option) + " -1",
+                       {option});
+    }
+    expect_refused("train --tracks generated:circle --out n.json --iterations 0", {"--iterations"});
+    expect_refused("train --tracks generated:nowhere --out nowhere/n.json", {"nowhere/n.json"});
 }
 
 TEST_F(Program, TimeLimitsAreAboveZero) {

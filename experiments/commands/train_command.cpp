@@ -120,6 +120,7 @@ void train(Options& options) {
 }  // namespace
 
 void add_train_command(CLI::App& program) {
+    constexpr int kMost = 1'000'000;
     CLI::App& command = *program.add_subcommand("train", "the ranking network of clc, or its step scores");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
@@ -132,9 +133,10 @@ void add_train_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
+        ->check(CLI::Range(0, kMost))
         ->capture_default_str();
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Range(1, kMost))
         ->capture_default_str();
     CLI::Option& extended =
         *command.add_flag("--extended", options->extended,
@@ -153,6 +155,7 @@ void add_train_command(CLI::App& program) {
         ->excludes(&steps);
     command
         .add_option("--step-epochs", options->step_training.epochs, "rounds over the scenes, with --steps")
+        ->check(CLI::Range(1, kMost))
         ->capture_default_str();
     command
         .add_option("--step-rate", options->step_training.learning_rate,
@@ -162,11 +165,16 @@ void add_train_command(CLI::App& program) {
         .add_option("--step-decay", options->step_training.weight_decay,
                     "decay of a score by each step, times the rate, with --steps")
         ->capture_default_str();
-    command.add_option("--units", run.training.units, "of the hidden layer")->capture_default_str();
-    command.add_option("--epochs", run.training.epochs, "rounds over the candidates")->capture_default_str();
+    command.add_option("--units", run.training.units, "of the hidden layer")
+        ->check(CLI::Range(1, kMost))
+        ->capture_default_str();
+    command.add_option("--epochs", run.training.epochs, "rounds over the candidates")
+        ->check(CLI::Range(1, kMost))
+        ->capture_default_str();
     command
         .add_option("--scenes-a-step", run.training.scenes_a_step,
                     "scenes to a step of Adam, with --extended")
+        ->check(CLI::Range(1, kMost))
         ->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
     command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
@@ -184,7 +192,7 @@ void add_train_command(CLI::App& program) {
                     "share of the pairs with the candidate that the network ranks first")
         ->capture_default_str();
     add_threads_option(command, options->threads, "same weights with any number");
-    command.add_option("--out", options->out, "weights (JSON)")->required();
+    add_output_option(command, "--out", options->out, "weights (JSON)")->required();
     command.callback([options] { train(*options); });
 }
 
