@@ -31,10 +31,6 @@ SquaredDistance to_segment(double px, double py, double dx, double dy, double in
     return {ex * ex + ey * ey, foot};
 }
 
-/// Four numbers that the compiler keeps in registers, whatever their width is, and as they lie in an array.
-using Doubles [[gnu::vector_size(32)]] = double;
-using LooseDoubles [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-constexpr std::size_t kDoubles = sizeof(Doubles) / sizeof(double);
 static_assert(kDoubles <= BoundaryArrays::kSpare);
 
 constexpr std::size_t whole_fours(std::size_t count) {

@@ -9,13 +9,10 @@
 namespace conelane {
 namespace {
 
-/// Four numbers that the compiler keeps in registers, whatever their width is, and as they lie in an array.
-using Doubles [[gnu::vector_size(32)]] = double;
-using LooseDoubles [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
 /// Of each of four numbers: all bits where something holds, none where it does not.
 using Masks [[gnu::vector_size(32)]] = std::int64_t;
-constexpr std::int64_t kDoubles = sizeof(Doubles) / sizeof(double);
 static_assert(kDoubles <= SearchGraph::kSpare);
+constexpr auto kStep = static_cast<std::int64_t>(kDoubles);
 
 double sum(const Masks& counts) {
     return -static_cast<double>(counts[0] + counts[1] + counts[2] + counts[3]);
@@ -36,7 +33,7 @@ CONELANE_WIDE_LOOPS void count(const double* x, const double* y, std::int64_t si
     Masks close{};
     Doubles closeness{};
     Masks number{0, 1, 2, 3};
-    for (std::int64_t i = 0; i < size; i += kDoubles, number += kDoubles) {
+    for (std::int64_t i = 0; i < size; i += kStep, number += kStep) {
         const Masks is_there = number < size;
         const Doubles px = *reinterpret_cast<const LooseDoubles*>(x + i);
         const Doubles py = *reinterpret_cast<const LooseDoubles*>(y + i);

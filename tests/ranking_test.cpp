@@ -218,6 +218,38 @@ TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     EXPECT_DOUBLE_EQ(scores[71], 3 * 0.5 - 1);
 }
 
+/// Whatever is left over where units and lanes go through a few at a time.
+TEST(RankNet, IsTheSameForAnyNumberOfUnitsAndLanes) {
+    boost::random::mt19937_64 random(7);
+    boost::random::uniform_real_distribution<float> draw(-1.0F, 1.0F);
+    for (const Eigen::Index units : {1, 3, 4, 5, 64}) {
+        for (const std::size_t count : {1U, 15U, 16U, 17U}) {
+            RankNetWeights weights = only_input(0);
+            weights.mean = Eigen::VectorXd::NullaryExpr(8, [&] { return draw(random); });
+            weights.deviation = Eigen::VectorXd::NullaryExpr(8, [&] { return 1.5 + draw(random); });
+            weights.hidden = Eigen::MatrixXf::NullaryExpr(units, 8, [&] { return draw(random); });
+            weights.hidden_bias = Eigen::VectorXf::NullaryExpr(units, [&] { return draw(random); });
+            weights.output = Eigen::VectorXf::NullaryExpr(units, [&] { return draw(random); });
+            std::vector<LaneFeatures> lanes(count);
+            for (LaneFeatures& lane : lanes) {
+                for (double& feature : lane) feature = draw(random);
+            }
+            std::vector<double> scores(count);
+            make_rank_net(weights)->score(lanes, scores);
+            for (std::size_t i = 0; i < count; ++i) {
+                Eigen::VectorXd inputs(8);
+                network_inputs(lanes[i], {inputs.data(), 8});
+                const Eigen::VectorXf standard =
+                    ((inputs - weights.mean).array() / weights.deviation.array()).cast<float>();
+                const Eigen::VectorXf hidden =
+                    (weights.hidden * standard + weights.hidden_bias).cwiseMax(0.0F);
+                EXPECT_NEAR(scores[i], weights.output.dot(hidden) + weights.output_bias, 1e-4)
+                    << units << " units, lane " << i << " of " << count;
+            }
+        }
+    }
+}
+
 TEST(RankNet, RejectsWeightsThatDoNotFitByName) {
     const auto key_of = [](auto change) -> std::string {
         RankNetWeights weights = only_input(0);
