@@ -68,6 +68,22 @@ TEST(Extras, AFoldAnswersForItsHeldOutTracksAlone) {
     EXPECT_EQ(extras_rows(options).front().accurate, 0.0);
 }
 
+TEST(Extras, CountOnlyTheTracksAskedFor) {
+    ExtrasOptions options = two_folds();
+    options.color_errors.clear();
+    options.folds[1].parameters.d_h = 0.0;  // finds no lane on the circle
+    const std::size_t both = extras_rows(options).front().scenes;
+    options.only = {"circle"};
+    const ExtrasRow circle = extras_rows(options).front();
+    EXPECT_EQ(circle.accurate, 0.0);
+    options.only = {"straight"};
+    const ExtrasRow straight = extras_rows(options).front();
+    EXPECT_GT(straight.accurate, 0.3);
+    EXPECT_EQ(circle.scenes + straight.scenes, both);
+    options.only = {"kidney"};
+    EXPECT_THROW(static_cast<void>(extras_rows(options)), InvalidInput);
+}
+
 TEST(Extras, AreTheSameForAnyNumberOfThreads) {
     ExtrasOptions options = two_folds();
     options.color_errors.clear();

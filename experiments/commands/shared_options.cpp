@@ -75,6 +75,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->capture_default_str();
 }
 
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning) {
+    command.add_option("--seed", seed, meaning)->check(CLI::Validator(seed_fault, ""));
+}
+
 RldParameters ParameterSource::load() const {
     MethodOptions options;
     apply_to(options);

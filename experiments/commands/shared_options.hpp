@@ -5,6 +5,7 @@
 #include "experiments/scenes/scene_generation.hpp"
 #include "model/rld_parameters.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +40,8 @@ void add_time_limit_option(CLI::App& command, double& time_limit_ms);
 /// A file to write. That it can be is looked at before the work, not after it.
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
                                const std::string& meaning);
+/// --seed N, for where another place holds the default
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning);
 /// --threads T
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning);
 

@@ -39,9 +39,11 @@ bool holds_out(const HeldOut& fold, const std::string& track) {
 /// Sums of values over scenes by rate.
 using ByRate = std::map<double, LapFigure>;
 
-void add_held_out(ByRate& sums, const HeldOut& fold, std::span<const LapFigure> laps) {
+void add_held_out(ByRate& sums, const HeldOut& fold, const std::vector<std::string>& only,
+                  std::span<const LapFigure> laps) {
     for (const LapFigure& lap : laps) {
         if (!holds_out(fold, lap.track)) continue;
+        if (!only.empty() && std::ranges::find(only, lap.track) == only.end()) continue;
         sums[lap.rate].scenes += lap.scenes;
         sums[lap.rate].sum += lap.sum;
     }
@@ -71,6 +73,10 @@ Evaluation evaluation_of(const SceneSet& set, TuningObjective objective, const E
 }
 
 void require_held_out_tracks(const SceneSet& set, const ExtrasOptions& options) {
+    for (const std::string& track : options.only) {
+        if (std::ranges::none_of(options.folds, [&](const HeldOut& fold) { return holds_out(fold, track); }))
+            throw InvalidInput("--only", "no fold holds out '" + track + "'");
+    }
     for (const HeldOut& fold : options.folds) {
         for (const std::string& track : fold.tracks) {
             if (!set.tracks.contains(track))
@@ -117,8 +123,8 @@ std::vector<ExtrasRow> rows_with(const ExtraKnowledge& knowledge, const ExtrasOp
             best = parameters;
             laps_of_best = std::move(laps);
         }
-        add_held_out(accurate, fold, laps_of_best);
-        add_held_out(successful, fold, success(best));
+        add_held_out(accurate, fold, options.only, laps_of_best);
+        add_held_out(successful, fold, options.only, success(best));
         if (knowledge.confidence) chosen.push_back(best.w_b);
         if (knowledge.color_error) chosen.push_back(best.w_color);
     }

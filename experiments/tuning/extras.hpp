@@ -30,6 +30,7 @@ struct ExtrasOptions {
     SceneOptions scenes;
     EvaluationOptions evaluation;  ///< its objective is without effect
     std::vector<HeldOut> folds;
+    std::vector<std::string> only;  ///< tracks that rows are of; all held-out ones where empty
     std::vector<double> color_errors{0.0, 0.05, 0.2};
     std::vector<double> color_weights{0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};  ///< w_color, ascending
     std::vector<double> benefits{1.0, 1.5, 2.0, 2.5, 3.0};                       ///< w_b, ascending
@@ -59,7 +60,7 @@ struct ExtrasRow {
 };
 
 /// Rows by knowledge: geometry alone, confidences, colours in the order of their errors; then by rate. Throws
-/// InvalidInput where a fold holds out a track that has no scene.
+/// InvalidInput where a fold holds out a track that has no scene, or none holds out one of `only`.
 [[nodiscard]] std::vector<ExtrasRow> extras_rows(const ExtrasOptions& options);
 
 /// A table for a terminal, a line per row and a final newline.
