@@ -69,11 +69,14 @@ std::span<const RldParameterField> rld_extra_fields() {
 }
 
 RldParameters with_shape_costs(RldParameters parameters) {
-    const RldParameters by_hand{
-        .d_e = 2.8, .w_s = 0.1, .w_t = 0.7, .s_crit = 7.0, .w_u = 0.4, .w_v = 0.8, .w_n = 1.2};
-    for (double P::*value : {&P::d_e, &P::w_s, &P::w_t, &P::s_crit, &P::w_u, &P::w_v, &P::w_n}) {
-        if (parameters.*value == RldParameters{}.*value) parameters.*value = by_hand.*value;
-    }
+    if (has_shape_costs(parameters)) return parameters;
+    parameters.d_e = 2.8;
+    parameters.w_s = 0.1;
+    parameters.w_t = 0.7;
+    parameters.s_crit = 7.0;
+    parameters.w_u = 0.4;
+    parameters.w_v = 0.8;
+    parameters.w_n = 1.2;
     return parameters;
 }
 

@@ -63,9 +63,9 @@ struct RldParameterField {
 /// The numeric parameters of the extras, whose defaults switch them off.
 [[nodiscard]] std::span<const RldParameterField> rld_extra_fields();
 
-/// The same with the costs of a lane's shape, by hand-set values: their weights, and what goes with them,
-/// since beside them the spacing and angle costs matter less to tell false edges. What is not at its default
-/// stays.
+/// The same with the costs of a lane's shape: hand-set weights, and hand-set values of w_s, w_t, d_e and
+/// s_crit, which mean another thing beside them: not a spacing or an angle but its neighbours tell a false
+/// edge. What has shape costs already stays as it is.
 [[nodiscard]] RldParameters with_shape_costs(RldParameters parameters);
 /// Whether a shape cost has a weight.
 [[nodiscard]] bool has_shape_costs(const RldParameters& parameters);

@@ -146,7 +146,16 @@ TEST(ShapeCosts, OffMeansNoneAtAll) {
     for (std::size_t e = 0; e < plain.edges.size(); ++e) EXPECT_EQ(plain.edges[e].cost, same.edges[e].cost);
     for (std::size_t t = 0; t < plain.turns.size(); ++t) EXPECT_EQ(plain.turns[t].cost, same.turns[t].cost);
     EXPECT_FALSE(has_shape_costs(RldParameters{}));
+}
+
+TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
     EXPECT_TRUE(has_shape_costs(with_shape_costs({})));
+    RldParameters own;
+    own.w_v = 0.3;
+    const RldParameters same = with_shape_costs(own);
+    EXPECT_EQ(same.w_v, 0.3);
+    EXPECT_EQ(same.w_u, 0.0);
+    EXPECT_EQ(same.s_crit, RldParameters{}.s_crit);
 }
 
 /// Each edge alone, and every lane graph that is best under some weights, costs what the checker says. With
