@@ -51,7 +51,7 @@ std::unique_ptr<LaneDetector> make_clc(const ClcOptions& clc, const MethodOption
     return cut_to(make_clc_detector(clc), options.nearest);
 }
 
-constexpr std::array<MethodEntry, 12> kMethods{{
+constexpr std::array<MethodEntry, 13> kMethods{{
     {"rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", kRldConeSet, std::nullopt, true, false,
      [](const MethodOptions& options) { return make_rld("rld-cbc", "cbc", Formulation::tight, options); }},
     {"rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones", kRldConeSet,
@@ -96,6 +96,13 @@ constexpr std::array<MethodEntry, 12> kMethods{{
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
          clc.step_scores = nullptr;
+         return make_clc(clc, options);
+     }},
+    {"clc-no-agreement", "clc that answers with the candidate of the highest score", std::nullopt,
+     std::nullopt, false, false,
+     [](const MethodOptions& options) {
+         ClcOptions clc = extended_clc_options();
+         clc.agreeing_candidates = 0;
          return make_clc(clc, options);
      }},
     {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, std::nullopt,

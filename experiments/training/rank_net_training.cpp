@@ -27,9 +27,6 @@ constexpr double kFirstDecay = 0.9;
 constexpr double kSecondDecay = 0.999;
 constexpr double kSmallest = 1e-8;
 
-/// A candidate whose score the loss feels less than this adds nothing to the derivatives.
-constexpr double kLeastDerivative = 1e-9;
-
 /// All candidates, a column each, and where each list of them begins.
 struct Candidates {
     Eigen::MatrixXd inputs;
@@ -111,8 +108,6 @@ struct Pass {
     Eigen::MatrixXd units;
     Eigen::RowVectorXd scores;
 
-    Pass(Eigen::MatrixXd of_units, Eigen::RowVectorXd of_scores)
-        : units(std::move(of_units)), scores(std::move(of_scores)) {}
     Pass(const RankNetParameters& parameters, const Eigen::MatrixXd& inputs) {
         units.noalias() = parameters.hidden * inputs;
         units.colwise() += parameters.hidden_bias;
@@ -309,22 +304,7 @@ double choice_loss(const RankNetParameters& parameters, const CandidateScenes& s
     }
     if (gradient != nullptr) {
         *gradient = {parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0};
-        // Most candidates have no share in the choice any more.
-        std::vector<Eigen::Index> felt;
-        for (Eigen::Index i = 0; i < by_score.size(); ++i) {
-            if (std::abs(by_score(i)) >= kLeastDerivative) felt.push_back(i);
-        }
-        const auto count = static_cast<Eigen::Index>(felt.size());
-        Pass some{Eigen::MatrixXd(pass.units.rows(), count), Eigen::RowVectorXd(count)};
-        Eigen::MatrixXd inputs(scenes.inputs.rows(), count);
-        Eigen::RowVectorXd by_some(count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-            const Eigen::Index from = felt[static_cast<std::size_t>(i)];
-            some.units.col(i) = pass.units.col(from);
-            inputs.col(i) = scenes.inputs.col(from);
-            by_some(i) = by_score(from);
-        }
-        some.add_gradient(parameters, inputs, by_some, *gradient);
+        pass.add_gradient(parameters, scenes.inputs, by_score, *gradient);
     }
     return loss / scene_count;
 }
