@@ -10,6 +10,7 @@
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/losses.hpp"
 #include "experiments/tuning/tuner.hpp"
+#include "experiments/tuning/weight_rounds.hpp"
 #include "model/invalid_input.hpp"
 #include "model/rld_parameters.hpp"
 
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +36,7 @@ struct Options {
     SceneOptions scenes;
     EvaluationOptions evaluation;
     TunerOptions tuner;
+    std::size_t rounds = 0;
     std::string start;
     bool shape = false;
     std::filesystem::path out;
@@ -153,6 +156,7 @@ void print_losses(const Losses& losses) {
 ordered_json record_of(const Options& options, const RldParameters& start, const Tuned& tuned) {
     ordered_json record = conditions(options, start);
     record["folds"] = options.tuner.folds;
+    record["rounds"] = options.rounds;
     record["evaluations"] = options.tuner.evaluations;
     record["compiler"] = provenance().compiler;
     record["machine"] = provenance().machine;
@@ -193,14 +197,18 @@ void run(Options& options) {
     Tuned tuned;
     {
         // The start, and for each fit the start again and the winner on what was held out.
-        Progress progress("tune", 1 + fits * (options.tuner.evaluations + 2));
-        tuned = tune(
-            [&](const RldParameters& parameters) {
-                std::vector<LapFigure> laps = log(parameters);
-                progress.advance();
-                return laps;
-            },
-            start, options.tuner);
+        Progress progress(
+            "tune", 1 + fits * (solves_in(options.rounds) + options.rounds + options.tuner.evaluations + 2));
+        const auto evaluate = [&](const RldParameters& parameters) {
+            std::vector<LapFigure> laps = log(parameters);
+            progress.advance();
+            return laps;
+        };
+        const WeightRoundsOptions rounds{options.rounds, options.scenes.seed, [&] { progress.advance(); }};
+        const auto propose = [&](const RldParameters& from, const std::set<std::string>& tracks) {
+            return fit_weights_in_rounds(evaluation, from, tracks, rounds);
+        };
+        tuned = tune(evaluate, start, options.tuner, propose);
     }
     write_rld_parameters(options.out, tuned.parameters);
     ordered_json record = record_of(options, start, tuned);
@@ -259,6 +267,12 @@ void add_tune_command(CLI::App& program) {
         ->capture_default_str();
     command.add_option("--folds", options->tuner.folds, "of tracks; 1 holds none out")
         ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        .add_option("--rounds", options->rounds,
+                    "of a fit of the weights to lane graphs found, in each fit before the search; not in "
+                    "the log")
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command.add_option("--evaluations", options->tuner.evaluations, "in each fit")
         ->check(CLI::Range(0, 1'000'000))

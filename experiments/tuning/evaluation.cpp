@@ -30,17 +30,8 @@ SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const Track
     const Trial trial = try_on(solver, annotated.scene, parameters, options);
     if (trial.report.status == SolveStatus::feasible || trial.report.status == SolveStatus::time_limit)
         return {0.0, true};
-    if (trial.answer.status != LaneStatus::found || trial.report.nodes > options.most_nodes) return {};
-    const SceneScore result = score(annotated, trial.answer, 0.0, options.nearest, &boundaries);
-    switch (options.objective) {
-        case TuningObjective::accuracy:
-            return {result.accurate() ? 1.0 : 0.0};
-        case TuningObjective::iou:
-            return {result.iou};
-        case TuningObjective::success:
-            break;
-    }
-    return {result.success() ? 1.0 : 0.0};
+    if (trial.report.nodes > options.most_nodes) return {};
+    return {worth_of(trial.answer, annotated, boundaries, options)};
 }
 
 }  // namespace
@@ -58,15 +49,36 @@ Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& paramet
     trial.problem = make_problem(trial.seen, parameters, solver.extent());
     trial.report = solver.solve(trial.problem, {deadline.remaining_ms()});
     if (!trial.report.lane_graph) return trial;
-    std::optional<Lane> lane = to_lane(*trial.report.lane_graph, trial.seen);
-    if (!lane) return trial;
-    if (count > options.nearest) {
-        *lane = cut_to_nearest(std::move(*lane), trial.seen, *options.nearest);
-        if (lane->left.empty() || lane->right.empty()) return trial;
-    }
-    trial.answer.status = LaneStatus::found;
-    trial.answer.lane = std::move(*lane);
+    trial.answer = answer_of(*trial.report.lane_graph, trial.seen, options);
     return trial;
+}
+
+LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen, const EvaluationOptions& options) {
+    LaneAnswer answer;
+    std::optional<Lane> lane = to_lane(graph, seen);
+    if (!lane) return answer;
+    if (seen_count(options) > options.nearest) {
+        *lane = cut_to_nearest(std::move(*lane), seen, *options.nearest);
+        if (lane->left.empty() || lane->right.empty()) return answer;
+    }
+    answer.status = LaneStatus::found;
+    answer.lane = std::move(*lane);
+    return answer;
+}
+
+double worth_of(const LaneAnswer& answer, const AnnotatedScene& scene, const TrackBoundaries& boundaries,
+                const EvaluationOptions& options) {
+    if (answer.status != LaneStatus::found) return 0.0;
+    const SceneScore result = score(scene, answer, 0.0, options.nearest, &boundaries);
+    switch (options.objective) {
+        case TuningObjective::accuracy:
+            return result.accurate() ? 1.0 : 0.0;
+        case TuningObjective::iou:
+            return result.iou;
+        case TuningObjective::success:
+            break;
+    }
+    return result.success() ? 1.0 : 0.0;
 }
 
 std::string_view to_string(TuningObjective objective) {

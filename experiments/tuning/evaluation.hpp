@@ -45,6 +45,13 @@ struct Trial {
 [[nodiscard]] Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
                            const EvaluationOptions& options);
 
+/// The lane of a lane graph over the cones seen, cut to the cone set; not found where nothing is left of it.
+[[nodiscard]] LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen,
+                                   const EvaluationOptions& options);
+/// What the answer on a scene is worth by the objective, in [0, 1]; 0 where no lane was found.
+[[nodiscard]] double worth_of(const LaneAnswer& answer, const AnnotatedScene& scene,
+                              const TrackBoundaries& boundaries, const EvaluationOptions& options);
+
 /// The number of nearest cones that a lane is found among; all cones where absent.
 [[nodiscard]] std::optional<std::size_t> seen_count(const EvaluationOptions& options);
 
@@ -70,6 +77,10 @@ class Evaluation {
     [[nodiscard]] std::vector<LapFigure> operator()(const RldParameters& parameters) const;
 
     [[nodiscard]] const std::vector<AnnotatedScene>& scenes() const { return set_.scenes; }
+    [[nodiscard]] const TrackBoundaries& boundaries_of(const AnnotatedScene& scene) const {
+        return set_.tracks.at(scene.track);
+    }
+    [[nodiscard]] const EvaluationOptions& options() const { return options_; }
 
   private:
     SceneSet set_;

@@ -1,31 +1,20 @@
 #include "experiments/tuning/losses.hpp"
 
+#include "experiments/comparison/answer_check.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
+#include "experiments/tuning/objective_sums.hpp"
 #include "model/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <functional>
-#include <unordered_map>
+#include <limits>
 #include <utility>
 #include <vector>
 
 namespace conelane::experiments {
 namespace {
-
-LaneGraph graph_of(const Lane& lane, const Scene& scene) {
-    std::unordered_map<ConeId, std::size_t> index_of;
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
-    LaneGraph graph;
-    for (const std::vector<ConeId>* side : {&lane.left, &lane.right}) {
-        for (std::size_t i = 1; i < side->size(); ++i) {
-            graph.edges.push_back(make_edge(index_of.at((*side)[i - 1]), index_of.at((*side)[i])));
-        }
-    }
-    std::ranges::sort(graph.edges);
-    return graph;
-}
 
 /// The first family of constraints that the ground truth breaks.
 Loss broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) {
@@ -51,60 +40,22 @@ Loss broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) 
     return along_heading < 2 ? Loss::breaks_heading : Loss::breaks_endpoints;
 }
 
-/// The terms of objective (29).
-struct Terms {
-    double benefit = 0.0;  ///< at most zero
-    double spacing = 0.0;
-    double angle = 0.0;
-    double heading = 0.0;
-    double color = 0.0;
-    double unevenness = 0.0;
-    double facing = 0.0;
-    double near_ends = 0.0;  ///< at most zero
-};
-
-Terms terms_of(const LaneGraphProblem& problem, const LaneGraph& graph) {
-    const RldParameters& p = problem.parameters;
-    Terms terms;
-    std::vector<bool> chosen(problem.edges.size(), false);
-    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        const ProblemEdge& edge = problem.edges[e];
-        chosen[e] = std::ranges::binary_search(graph.edges, Edge{edge.i, edge.j});
-        if (!chosen[e]) continue;
-        const double spacing = p.w_s * edge.spacing_cost;
-        const double heading = p.w_p * edge.heading_cost;
-        const double color = p.w_color * edge.color_cost;
-        terms.spacing += spacing;
-        terms.heading += heading;
-        terms.color += color;
-        const double facing = p.w_v * edge.facing_cost;
-        const double near_ends = -p.w_n * (problem.near_end_fit[edge.i] + problem.near_end_fit[edge.j]);
-        terms.facing += facing;
-        terms.near_ends += near_ends;
-        terms.benefit += edge.cost - spacing - heading - color - facing - near_ends;
-    }
-    for (const ProblemTurn& turn : problem.turns) {
-        if (!chosen[turn.edge_i] || !chosen[turn.edge_k]) continue;
-        terms.angle += p.w_t * turn.angle_cost;
-        terms.unevenness += p.w_u * turn.unevenness;
-        terms.near_ends += 2.0 * p.w_n * problem.near_end_fit[turn.middle];
-    }
-    return terms;
-}
-
 /// The term in which the ground truth costs most more than the answer.
 Loss dearest_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth, const LaneGraph& answer) {
-    const Terms theirs = terms_of(problem, ground_truth);
-    const Terms ours = terms_of(problem, answer);
-    const std::array differences{std::pair(theirs.benefit - ours.benefit, Loss::cheaper_benefit),
-                                 std::pair(theirs.spacing - ours.spacing, Loss::cheaper_spacing),
-                                 std::pair(theirs.angle - ours.angle, Loss::cheaper_angle),
-                                 std::pair(theirs.heading - ours.heading, Loss::cheaper_heading),
-                                 std::pair(theirs.color - ours.color, Loss::cheaper_color),
-                                 std::pair(theirs.unevenness - ours.unevenness, Loss::cheaper_unevenness),
-                                 std::pair(theirs.facing - ours.facing, Loss::cheaper_facing),
-                                 std::pair(theirs.near_ends - ours.near_ends, Loss::cheaper_near_ends)};
-    return std::ranges::max(differences, {}, [](const auto& entry) { return entry.first; }).second;
+    constexpr std::array<Loss, kObjectiveTermCount> kCheaper{
+        Loss::cheaper_benefit, Loss::cheaper_spacing,    Loss::cheaper_angle,  Loss::cheaper_heading,
+        Loss::cheaper_color,   Loss::cheaper_unevenness, Loss::cheaper_facing, Loss::cheaper_near_ends};
+    const ObjectiveSums theirs = objective_sums(problem, ground_truth);
+    const ObjectiveSums ours = objective_sums(problem, answer);
+    std::size_t dearest = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
+        const double more = problem.parameters.*kObjectiveWeights[term] * (theirs[term] - ours[term]);
+        if (more <= most) continue;
+        most = more;
+        dearest = term;
+    }
+    return kCheaper[dearest];
 }
 
 bool contains(const std::vector<ConeId>& run, ConeId id) {
@@ -160,7 +111,7 @@ SceneLoss loss_on(const AnnotatedScene& annotated, const RldParameters& paramete
     }
     const LaneGraphProblem& problem = trial.problem;
     const RldReport& report = trial.report;
-    const LaneGraph graph = graph_of(*ground_truth_of(seen_count(options)), trial.seen);
+    const LaneGraph graph = *lane_graph_of(*ground_truth_of(seen_count(options)), trial.seen);
     if (!is_feasible(problem, graph)) {
         loss.cause = broken_constraint(problem, graph);
     } else if (!report.lane_graph || *report.objective > objective(problem, graph)) {

@@ -42,13 +42,12 @@ constexpr std::array<TunedParameter, kShape + kCosts + kLimits> kTuned{{
     {"t_crit", &P::t_crit, 3.5, 10.0, true},
 }};
 
-/// Short numbers in files, and the same ones on every machine, whose logarithms differ in the last bits.
+}  // namespace
+
 double rounded(double value) {
     constexpr double kStepsPerUnit = 1e4;
     return std::round(value * kStepsPerUnit) / kStepsPerUnit;
 }
-
-}  // namespace
 
 std::span<const TunedParameter> tuned_parameters(const RldParameters& start) {
     const std::span<const TunedParameter> all(kTuned);

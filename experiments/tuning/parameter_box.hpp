@@ -23,6 +23,10 @@ struct TunedParameter {
 /// Where the shape costs have a weight in `start`, their parameters are moved in place of the limits.
 [[nodiscard]] std::span<const TunedParameter> tuned_parameters(const RldParameters& start);
 
+/// To four decimals: short numbers in files, and the same ones on every machine, whose logarithms differ in
+/// the last bits.
+[[nodiscard]] double rounded(double value);
+
 /// The parameters that are tuned from this start as a point of the unit cube; what lies outside the box is
 /// moved to its border.
 [[nodiscard]] std::vector<double> to_unit_cube(const RldParameters& parameters);

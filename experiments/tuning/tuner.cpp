@@ -37,6 +37,14 @@ class Fit {
         best_ = mean_over_scenes(laps_of(evaluate_(start), tracks_));
     }
 
+    void try_out(const RldParameters& parameters) {
+        const double mean = mean_over_scenes(laps_of(evaluate_(parameters), tracks_));
+        if (mean <= best_) return;
+        best_ = mean;
+        best_point_ = to_unit_cube(parameters);
+        best_parameters_ = parameters;
+    }
+
     /// From the best point so far, at most `reach` away from it on each axis.
     void run(nlopt::algorithm algorithm, std::size_t evaluations, double reach) {
         if (evaluations == 0) return;
@@ -103,9 +111,12 @@ class Fit {
 };
 
 Fit fit(const Evaluate& evaluate, const RldParameters& start, const std::set<std::string>& tracks,
-        const TunerOptions& options) {
+        const TunerOptions& options, const Propose& propose) {
     nlopt::srand(options.seed);
     Fit result(evaluate, start, tracks);
+    if (propose) {
+        for (const RldParameters& parameters : propose(start, tracks)) result.try_out(parameters);
+    }
     const auto global = static_cast<std::size_t>(kGlobalShare * static_cast<double>(options.evaluations));
     constexpr double kWholeCube = 1.0;
     result.run(nlopt::GN_CRS2_LM, global, kReach);
@@ -125,7 +136,8 @@ double mean_over_scenes(std::span<const LapFigure> laps) {
     return scenes == 0 ? 0.0 : sum / static_cast<double>(scenes);
 }
 
-Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options) {
+Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options,
+           const Propose& propose) {
     const std::vector<LapFigure> laps_of_start = evaluate(start);
     std::vector<std::string> tracks;
     for (const LapFigure& lap : laps_of_start) {
@@ -140,14 +152,14 @@ Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOpti
         for (std::size_t i = 0; i < tracks.size(); ++i) {
             (i % options.folds == fold ? held_out : seen).insert(tracks[i]);
         }
-        const Fit result = fit(evaluate, start, seen, options);
+        const Fit result = fit(evaluate, start, seen, options, propose);
         tuned.folds.push_back({{held_out.begin(), held_out.end()},
                                result.parameters(),
                                result.figure(),
                                laps_of(evaluate(result.parameters()), held_out),
                                laps_of(laps_of_start, held_out)});
     }
-    const Fit all = fit(evaluate, start, {tracks.begin(), tracks.end()}, options);
+    const Fit all = fit(evaluate, start, {tracks.begin(), tracks.end()}, options, propose);
     tuned.parameters = all.parameters();
     tuned.laps = evaluate(all.parameters());
     tuned.laps_of_start = laps_of_start;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,16 +38,21 @@ struct Tuned {
 /// The figures of parameters on every lap; the same laps in each call.
 using Evaluate = std::function<std::vector<LapFigure>(const RldParameters&)>;
 
+/// Parameters that may be better than the start on the tracks named; see fit_weights_in_rounds.
+using Propose = std::function<std::vector<RldParameters>(const RldParameters& start,
+                                                         const std::set<std::string>& tracks)>;
+
 /// Mean over the scenes of the laps; 0 without laps.
 [[nodiscard]] double mean_over_scenes(std::span<const LapFigure> laps);
 
 /// Parameters that make the mean over scenes as large as the search finds, in the box of
-/// tuned_parameters(start). Each fit is NLopt's controlled random search (GN_CRS2_LM) around `start` on 30 %
-/// of the evaluations, then Subplex (LN_SBPLX) from the best point in the whole box; what counts is the best
-/// point evaluated. Track i, in the order of the laps, belongs to fold i modulo `folds`. Every fit draws the
-/// same first points, so that memory in `evaluate` saves most of a fold's work. The same seed and figures
-/// give the same answer. Throws InvalidInput where there are fewer tracks than folds, and what `evaluate`
-/// throws.
-[[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options);
+/// tuned_parameters(start). Each fit tries what is proposed, then from the best of these and the start
+/// NLopt's controlled random search (GN_CRS2_LM) around it on 30 % of the evaluations, then Subplex
+/// (LN_SBPLX) from the best point in the whole box; what counts is the best point evaluated. Track i, in the
+/// order of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that memory
+/// in `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
+/// InvalidInput where there are fewer tracks than folds, and what `evaluate` throws.
+[[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options,
+                         const Propose& propose = {});
 
 }  // namespace conelane::experiments

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "model/lane_graph.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace conelane::experiments {
+
+/// What each weight of objective (29), with the extras, multiplies.
+enum class ObjectiveTerm { benefit, spacing, angle, heading, color, unevenness, facing, near_ends };
+inline constexpr std::size_t kObjectiveTermCount = 8;
+
+/// The weights in the order of the terms.
+inline constexpr std::array<double RldParameters::*, kObjectiveTermCount> kObjectiveWeights{
+    &RldParameters::w_b,     &RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p,
+    &RldParameters::w_color, &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n};
+
+/// Each term of a lane graph's objective without its weight: the objective is the sum of weights times these.
+/// Benefit and near ends are at most zero.
+using ObjectiveSums = std::array<double, kObjectiveTermCount>;
+
+/// Zero for w_b, w_u and w_v where those are zero. Precondition: every edge is listed in the problem.
+[[nodiscard]] ObjectiveSums objective_sums(const LaneGraphProblem& problem, const LaneGraph& graph);
+
+}  // namespace conelane::experiments

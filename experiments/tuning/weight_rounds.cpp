@@ -1,0 +1,120 @@
+#include "experiments/tuning/weight_rounds.hpp"
+
+#include "experiments/comparison/answer_check.hpp"
+#include "experiments/scenes/ground_truth.hpp"
+#include "experiments/tuning/parameter_box.hpp"
+#include "experiments/tuning/weight_fit.hpp"
+#include "solvers/path_pair_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Besides the weights themselves: the first round has only the start to learn from.
+constexpr std::size_t kDrawnFirst = 5;
+constexpr std::size_t kDrawnLater = 2;
+/// Standard deviation of a drawn weight's logarithm.
+constexpr double kSpreadFirst = 0.5;
+constexpr double kSpreadLater = 0.25;
+
+/// What is known of one scene, from all rounds.
+struct KnownScene {
+    const AnnotatedScene* annotated;
+    std::vector<LaneGraph> graphs;
+    Candidates candidates;  ///< one for each graph
+};
+
+void add(KnownScene& known, const Scene& seen, const LaneGraphProblem& problem, const LaneGraph& graph,
+         const Evaluation& evaluation) {
+    if (std::ranges::find(known.graphs, graph) != known.graphs.end()) return;
+    const LaneAnswer answer = answer_of(graph, seen, evaluation.options());
+    known.graphs.push_back(graph);
+    known.candidates.push_back({objective_sums(problem, graph),
+                                worth_of(answer, *known.annotated, evaluation.boundaries_of(*known.annotated),
+                                         evaluation.options())});
+}
+
+void add_ground_truth(KnownScene& known, const Trial& trial, const Evaluation& evaluation) {
+    const std::optional<std::size_t> count = seen_count(evaluation.options());
+    const std::optional<Lane> lane =
+        count ? ground_truth_of_nearest(*known.annotated, *count) : known.annotated->ground_truth;
+    if (!lane) return;
+    const std::optional<LaneGraph> graph = lane_graph_of(*lane, trial.seen);
+    if (graph && is_feasible(trial.problem, *graph))
+        add(known, trial.seen, trial.problem, *graph, evaluation);
+}
+
+RldParameters drawn_around(RldParameters parameters, double spread, boost::random::mt19937_64& random) {
+    boost::random::normal_distribution<double> standard;
+    for (const TunedParameter& tuned : tuned_parameters(parameters)) {
+        if (std::ranges::find(kObjectiveWeights, tuned.value) == kObjectiveWeights.end()) continue;
+        const double drawn = parameters.*tuned.value * std::exp(spread * standard(random));
+        parameters.*tuned.value = std::clamp(rounded(drawn), tuned.lowest, tuned.highest);
+    }
+    return parameters;
+}
+
+}  // namespace
+
+std::size_t solves_in(std::size_t rounds) {
+    return rounds == 0 ? 0 : 1 + kDrawnFirst + (rounds - 1) * (1 + kDrawnLater);
+}
+
+std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, const RldParameters& start,
+                                                 const std::set<std::string>& tracks,
+                                                 const WeightRoundsOptions& options) {
+    std::vector<KnownScene> known;
+    for (const AnnotatedScene& scene : evaluation.scenes()) {
+        if (tracks.contains(scene.track)) known.push_back({&scene, {}, {}});
+    }
+    oneapi::tbb::enumerable_thread_specific<std::unique_ptr<RldSolver>> solvers(
+        [] { return make_path_pair_solver(); });
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(evaluation.options().threads), oneapi::tbb::info::default_concurrency()));
+    const auto solve_all = [&](const RldParameters& parameters) {
+        arena.execute([&] {
+            oneapi::tbb::parallel_for(std::size_t{0}, known.size(), [&](std::size_t i) {
+                KnownScene& scene = known[i];
+                const Trial trial =
+                    try_on(*solvers.local(), scene.annotated->scene, parameters, evaluation.options());
+                if (scene.graphs.empty()) add_ground_truth(scene, trial, evaluation);
+                if (!trial.report.lane_graph) return;
+                add(scene, trial.seen, trial.problem, *trial.report.lane_graph, evaluation);
+            });
+        });
+        options.on_solved();
+    };
+
+    boost::random::mt19937_64 random(options.seed);
+    std::vector<RldParameters> after_each;
+    RldParameters parameters = start;
+    for (std::size_t round = 0; round < options.rounds; ++round) {
+        solve_all(parameters);
+        for (std::size_t i = 0; i < (round == 0 ? kDrawnFirst : kDrawnLater); ++i) {
+            solve_all(drawn_around(parameters, round == 0 ? kSpreadFirst : kSpreadLater, random));
+        }
+        // A scene whose lane graphs are all worth the same has nothing to say on weights.
+        std::vector<Candidates> telling;
+        for (const KnownScene& scene : known) {
+            if (scene.candidates.empty()) continue;
+            const auto [least, most] = std::ranges::minmax(scene.candidates, {}, &Candidate::worth);
+            if (least.worth < most.worth) telling.push_back(scene.candidates);
+        }
+        parameters = fit_weights(telling, parameters);
+        after_each.push_back(parameters);
+    }
+    return after_each;
+}
+
+}  // namespace conelane::experiments
