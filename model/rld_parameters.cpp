@@ -73,6 +73,8 @@ RldParameters with_shape_costs(RldParameters parameters) {
     parameters.d_e = 2.8;
     parameters.w_s = 0.1;
     parameters.w_t = 0.7;
+    parameters.d_min = 2.8;
+    parameters.theta_heading = 1.3;
     parameters.s_crit = 7.0;
     parameters.w_u = 0.4;
     parameters.w_v = 0.8;

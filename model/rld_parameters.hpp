@@ -64,8 +64,8 @@ struct RldParameterField {
 [[nodiscard]] std::span<const RldParameterField> rld_extra_fields();
 
 /// The same with the costs of a lane's shape: hand-set weights, and hand-set values of w_s, w_t, d_e and
-/// s_crit, which mean another thing beside them: not a spacing or an angle but its neighbours tell a false
-/// edge. What has shape costs already stays as it is.
+/// three limits, which mean another thing beside them: not a spacing or an angle but its neighbours tell a
+/// false edge. What has shape costs already stays as it is.
 [[nodiscard]] RldParameters with_shape_costs(RldParameters parameters);
 /// Whether a shape cost has a weight.
 [[nodiscard]] bool has_shape_costs(const RldParameters& parameters);

@@ -418,7 +418,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
 TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
-        "--shape --folds 2 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
+        "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
     const Outcome tuned = run(tune);
     ASSERT_EQ(tuned.exit_code, 0) << tuned.errors;
     EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
@@ -426,6 +426,7 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
     EXPECT_EQ(record["nearest"], 8);
     EXPECT_EQ(record["context"], 16);
     EXPECT_EQ(record["shape"], true);
+    EXPECT_EQ(record["rounds"], 1);
     EXPECT_TRUE(has_shape_costs(read_rld_parameters(path("p.json"))));
     std::size_t counted = 0;
     for (const auto& [cause, scenes] : record["losses"]["0.3"].items()) counted += scenes.get<std::size_t>();
