@@ -222,7 +222,7 @@ TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     }
     expect_refused("score --scenes bad.scenes.jsonl --lanes x.lanes.jsonl --json nowhere/x",
                    {"--json", "nowhere/x"});
-    expect_refused("tune --tracks generated:nowhere --out nowhere/p.json", {"nowhere/p.json"});
+    expect_refused("tune --tracks generated:nowhere --out nowhere/p.json", {"--out", "nowhere/p.json"});
     expect_refused("scenes --tracks generated:circle --every 60 --out folder", {"--out", "folder"});
 }
 

@@ -39,7 +39,7 @@ struct Options {
     std::size_t rounds = 0;
     std::string start;
     bool shape = false;
-    std::filesystem::path out;
+    std::string out;
     std::filesystem::path log;
 };
 
@@ -185,7 +185,6 @@ void run(Options& options) {
     if (!std::isfinite(options.evaluation.time_limit_ms)) {
         throw InvalidInput("--time-limit", "a tuning records one, inf is none");
     }
-    require_writable(options.out);
     options.scenes.threads = options.evaluation.threads;
     options.tuner.seed = options.scenes.seed;
     RldParameters start = ParameterSource{options.start, {}}.load();
@@ -280,7 +279,7 @@ void add_tune_command(CLI::App& program) {
     command.add_option("--start", options->start, "parameters to start from");
     command.add_flag("--shape", options->shape, "with the costs of the lane's shape, tuned too");
     add_threads_option(command, options->evaluation.threads, "scenes at a time");
-    command.add_option("--out", options->out, "P.json; its record goes to P.record.json")->required();
+    add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
     command.add_option("--log", options->log, "*.jsonl of all evaluations; a tuning stopped there goes on");
     command.callback([options] { run(*options); });
 }
