@@ -4,6 +4,7 @@
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tracks/track_spec.hpp"
+#include "experiments/training/random_order.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
-#include <boost/random/seed_seq.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -107,11 +107,7 @@ void add_variants(const TrainingRunOptions& options, SceneSet& set) {
 
 Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
     track.name += fmt::format("_variant{}", number);
-    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
-                                     static_cast<std::uint32_t>(seed >> 32U)};
-    for (const char letter : track.name) words.push_back(static_cast<unsigned char>(letter));
-    boost::random::seed_seq sequence(words.begin(), words.end());
-    boost::random::mt19937_64 random(sequence);
+    boost::random::mt19937_64 random = generator_of(track.name, seed);
     const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
     boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);
     const double along = std::exp(log_stretch(random));
