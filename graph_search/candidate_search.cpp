@@ -3,6 +3,7 @@
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -161,12 +162,16 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
     std::size_t i = 0;
     for (const Seed& seed : seeds_) {
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
+        const std::array<double, kLaneFeatureCount - kStartPlaceFeatures> of_start{
+            measures.lead_m, measures.shift_m, measures.nearest_side_m, measures.nearest_ahead_m,
+            measures.farthest_ahead_m};
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];
             lane[kLongestShareFeature] = lane[0] / longest_m;
             lane[kStartAsymmetryFeature] = measures.asymmetry_m;
             lane[kStartDistanceFeature] = measures.distance_m;
             lane[kConesFeature] = static_cast<double>(scene.cones.size());
+            std::ranges::copy(of_start, lane.begin() + kStartPlaceFeatures);
         }
     }
 }

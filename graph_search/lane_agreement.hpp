@@ -23,7 +23,9 @@ class LaneAgreement {
   public:
     /// As many candidates as can be compared.
     static constexpr std::size_t kMostCandidates = 32;
-    static constexpr double kStrayingPenalty = 1.0;
+    /// On tracks left out of a training, fewer lanes leave the track within 20 m with 4 than with 1 (by a
+    /// tenth), for 0.4 % of the overlap.
+    static constexpr double kStrayingPenalty = 4.0;
 
     /// Returns the place in `pairs.found()`. The first `count` by score are compared; of equal ones, the one
     /// with the higher score wins, then the one met first. Keeps memory from call to call. Preconditions:

@@ -193,7 +193,7 @@ Side LaneBeam::next_side(const State& state) const {
 }
 
 std::size_t LaneBeam::add_start(StartPair start) {
-    const auto [asymmetry_m, distance_m] = start_pair_measures(*scene_, start);
+    const StartPairMeasures measures = start_pair_measures(*scene_, start);
     const Point across = graph_->position(start.left) - graph_->position(start.right);
     State state{};
     state.last = {start.left, start.right};
@@ -205,8 +205,8 @@ std::size_t LaneBeam::add_start(StartPair start) {
     state.parent = kNone;
     state.step.fill(kNotThere);
     state.step[kStartWidthMeasure] = state.width_m;
-    state.step[kStartAsymmetryMeasure] = asymmetry_m;
-    state.step[kStartDistanceMeasure] = distance_m;
+    state.step[kStartAsymmetryMeasure] = measures.asymmetry_m;
+    state.step[kStartDistanceMeasure] = measures.distance_m;
     state.step[kStartLeadMeasure] = std::abs(across.dot(heading_)) / state.width_m;
     state.score = scores_->score(state.step);
     states_.push_back(state);

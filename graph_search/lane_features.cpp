@@ -48,7 +48,11 @@ constexpr std::array<std::string_view, kLaneFeatureCount> kNames{
     "near_rms_skew", "near_curvature_difference_rad_per_m", "near_cones_inside", "near_cones_beside",
     // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
     "near_cones_close", "near_closeness", "near_vertices", "near_narrowest_m", "near_widest_m",
-    "near_mean_width_m", "near_width_deviation_m", "near_largest_width_change_m", "near_rms_width_change_m"};
+    "near_mean_width_m", "near_width_deviation_m", "near_largest_width_change_m", "near_rms_width_change_m",
+    // Of the two first cones again: where a false one stands in the place of one of them, a lane may be
+    // right in all the rest.
+    "start_lead_m", "start_shift_m", "start_nearest_side_m", "start_nearest_ahead_m",
+    "start_farthest_ahead_m"};
 
 constexpr std::size_t kWholeOffset = 33;
 constexpr std::size_t kWholeWidths = 36;

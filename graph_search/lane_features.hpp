@@ -20,7 +20,7 @@ namespace conelane {
 /// consecutive segments left, right [rad^2]. Variances are those of the whole population, 0 where there is
 /// nothing to vary. The others are this project's, see lane_feature_names.
 inline constexpr std::size_t kPaperFeatureCount = 8;
-inline constexpr std::size_t kLaneFeatureCount = 62;
+inline constexpr std::size_t kLaneFeatureCount = 67;
 using PaperFeatures = std::array<double, kPaperFeatureCount>;
 using LaneFeatures = std::array<double, kLaneFeatureCount>;
 
@@ -65,7 +65,7 @@ class LaneGrowth {
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
     /// All features but those of the width, which add_width_features sets, and what belongs to the scene
-    /// (`longest_share`, `start_*`, `cones`); these are left 0.
+    /// (`longest_share`, `cones`, of `start_*` all but `start_skew`); these are left 0.
     [[nodiscard]] LaneFeatures features() const;
     /// By side, the vertices of the near part, its first one included.
     [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;
@@ -127,5 +127,6 @@ inline constexpr std::size_t kLongestShareFeature = 8;
 inline constexpr std::size_t kStartAsymmetryFeature = 9;
 inline constexpr std::size_t kStartDistanceFeature = 10;
 inline constexpr std::size_t kConesFeature = 11;
+inline constexpr std::size_t kStartPlaceFeatures = 62;  ///< the first of five, see lane_feature_names
 
 }  // namespace conelane

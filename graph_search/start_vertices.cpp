@@ -34,8 +34,17 @@ StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair) {
     const Point heading = scene.pose.heading();
     const Point left = scene.cones[pair.left].position - scene.pose.position;
     const Point right = scene.cones[pair.right].position - scene.pose.position;
-    return {std::hypot(heading.dot(left) - heading.dot(right), cross(heading, left) + cross(heading, right)),
-            std::max(left.norm(), right.norm())};
+    const double left_ahead_m = heading.dot(left);
+    const double right_ahead_m = heading.dot(right);
+    const double left_side_m = cross(heading, left);
+    const double right_side_m = -cross(heading, right);
+    return {std::hypot(left_ahead_m - right_ahead_m, left_side_m - right_side_m),
+            std::max(left.norm(), right.norm()),
+            std::abs(left_ahead_m - right_ahead_m),
+            std::abs(left_side_m - right_side_m),
+            std::min(left_side_m, right_side_m),
+            std::min(left_ahead_m, right_ahead_m),
+            std::max(left_ahead_m, right_ahead_m)};
 }
 
 std::vector<RankedStartPair> ranked_start_pairs(const Scene& scene, const StartVertexRules& rules) {
@@ -46,8 +55,9 @@ std::vector<RankedStartPair> ranked_start_pairs(const Scene& scene, const StartV
             const double apart_m = std::hypot(l.ahead_m - r.ahead_m, l.left_m - r.left_m);
             if (apart_m <= rules.w_min_m || apart_m >= rules.w_max_m) continue;
             const StartPair pair{l.vertex, r.vertex};
-            const auto [asymmetry_m, distance_m] = start_pair_measures(scene, pair);
-            pairs.push_back({pair, asymmetry_m + rules.distance_weight * distance_m, distance_m});
+            const StartPairMeasures measures = start_pair_measures(scene, pair);
+            pairs.push_back({pair, measures.asymmetry_m + rules.distance_weight * measures.distance_m,
+                             measures.distance_m});
         }
     }
     std::ranges::sort(pairs, {}, [](const RankedStartPair& pair) {

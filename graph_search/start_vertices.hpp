@@ -18,10 +18,16 @@ struct StartVertexRules {
     double w_max_m = 6.5;           ///< a pair as far apart as this is none either
 };
 
-/// How a pair of start vertices stands to the car.
+/// How a pair of start vertices, one on each side of the car, stands to it. The same where the scene is
+/// mirrored.
 struct StartPairMeasures {
-    double asymmetry_m;  ///< between one vertex and the mirror image of the other in the car's axis
-    double distance_m;   ///< from the car to the farther vertex
+    double asymmetry_m;       ///< between one vertex and the mirror image of the other in the car's axis
+    double distance_m;        ///< from the car to the farther vertex
+    double lead_m;            ///< of one vertex ahead of the other, along the axis
+    double shift_m;           ///< by which one is farther from the axis than the other
+    double nearest_side_m;    ///< from the axis to the nearer vertex
+    double nearest_ahead_m;   ///< of the vertex that is less far ahead of the car
+    double farthest_ahead_m;  ///< of the other one
 };
 [[nodiscard]] StartPairMeasures start_pair_measures(const Scene& scene, StartPair pair);
 

@@ -1,5 +1,7 @@
 #include "graph_search/clc_detector.hpp"
 
+#include "graph_search/lane_features.hpp"
+#include "graph_search/start_vertices.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
@@ -307,6 +309,34 @@ TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
     }
     EXPECT_GE(found, 20u);
     EXPECT_GE(found, found_without + 5);
+}
+
+TEST(CandidateSearch, EveryCandidateHasTheFeaturesOfItsOwnStart) {
+    const Scene scene = with_false_positives(winding_lane(8, 0.3, 5), 12, 5);
+    CandidateSearch search(extended_search_options());
+    CandidateSearch::Request request;
+    request.with_features = true;
+    (void)search.run(scene, request);
+    const auto names = lane_feature_names();
+    const auto feature = [&](std::size_t i, std::string_view name) {
+        return search.pairs()
+            .features()[i][static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+    };
+    std::set<std::pair<Vertex, Vertex>> starts;
+    for (std::size_t i = 0; i < search.pairs().found().size(); ++i) {
+        const PathPairVertices vertices = search.pairs().vertices(search.pairs().found()[i]);
+        const StartPair start{vertices[kLeft].front(), vertices[kRight].front()};
+        starts.emplace(start.left, start.right);
+        const StartPairMeasures measures = start_pair_measures(scene, start);
+        ASSERT_EQ(feature(i, "start_asymmetry_m"), measures.asymmetry_m);
+        ASSERT_EQ(feature(i, "start_distance_m"), measures.distance_m);
+        ASSERT_EQ(feature(i, "start_lead_m"), measures.lead_m);
+        ASSERT_EQ(feature(i, "start_shift_m"), measures.shift_m);
+        ASSERT_EQ(feature(i, "start_nearest_side_m"), measures.nearest_side_m);
+        ASSERT_EQ(feature(i, "start_nearest_ahead_m"), measures.nearest_ahead_m);
+        ASSERT_EQ(feature(i, "start_farthest_ahead_m"), measures.farthest_ahead_m);
+    }
+    EXPECT_GT(starts.size(), 1u);
 }
 
 TEST(ClcDetector, ClosesACircuitThatIsSeenWhole) {

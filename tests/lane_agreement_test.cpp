@@ -69,7 +69,7 @@ TEST(LaneAgreement, LeavesALeaderThatGoesItsOwnWayAlone) {
     EXPECT_EQ(candidates.choose(scores, 1), leader);
     EXPECT_EQ(candidates.choose(scores, 24), early) << "strays from none";
     // Where the leader is surer, what the others agree on no longer counts.
-    scores[leader] = 4.0;
+    scores[leader] = 7.0;
     EXPECT_EQ(candidates.choose(scores, 24), leader);
 }
 

@@ -116,8 +116,11 @@ TEST_F(Program, BadOptionsAreNamed) {
                    {"--steps", "--extended"});
     expect_refused("train --tracks generated:circle --steps --step-scores s.json --out n.json",
                    {"--step-scores"});
+    expect_refused("train --tracks generated:circle --steps --variants 2 --out n.json",
+                   {"--steps", "--variants"});
     expect_refused("train --tracks generated:circle generated:circle --out n.json", {"circle", "twice"});
-    for (const char* option : {"--epochs", "--step-epochs", "--units", "--scenes-a-step", "--candidates"}) {
+    for (const char* option :
+         {"--epochs", "--step-epochs", "--units", "--scenes-a-step", "--candidates", "--variants"}) {
         expect_refused("train --tracks generated:circle --out n.json " + std::string(option) + " -1",
                        {option});
     }

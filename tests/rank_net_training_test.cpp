@@ -1,10 +1,12 @@
 #include "experiments/training/rank_net_training.hpp"
 
+#include "experiments/tracks/track_spec.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -162,6 +164,23 @@ TEST(RankNetTraining, LearnsWhatDecides) {
     EXPECT_EQ(figures.critical_share, 0.0);
 }
 
+TEST(RankNetTraining, DecayKeepsTheWeightsSmall) {
+    RankNetTrainingOptions options = quick();
+    options.epochs = 60;
+    const RankNetWeights without = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    options.weight_decay = 0.3;
+    const RankNetWeights with = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    EXPECT_LT(with.hidden.norm(), 0.8F * without.hidden.norm());
+    EXPECT_LT(with.output.norm(), 0.8F * without.output.norm());
+    // The seven inputs that decide nothing lose more of their weight than the one that does.
+    const auto share = [](const RankNetWeights& weights) {
+        return weights.hidden.col(3).squaredNorm() / weights.hidden.squaredNorm();
+    };
+    EXPECT_GT(share(with), share(without));
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(with));
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+}
+
 TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
     std::vector<CandidateList> lists = lists_by_fourth_feature(200, 3);
     for (CandidateList& list : lists) {
@@ -212,6 +231,9 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.scenes_a_step = 0; }), "scenes_a_step");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = -1.0; }), "weight_decay");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = 1.0 / o.learning_rate; }),
+              "weight_decay");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.late_divergence_penalty = -1.0; }),
@@ -263,6 +285,63 @@ TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {
     EXPECT_EQ(file(), first);
     options.training.seed = 1;
     EXPECT_NE(file(), first);
+}
+
+TEST(TrackVariant, IsStretchedAndEverySecondOneIsDrivenTheOtherWay) {
+    const Track track = load_tracks("generated:hairpins@3").front();
+    for (std::size_t number = 1; number <= 4; ++number) {
+        SCOPED_TRACE(number);
+        const Track variant = track_variant(track, number, 7);
+        EXPECT_EQ(variant.name, track.name + "_variant" + std::to_string(number));
+        EXPECT_EQ(variant.closed, track.closed);
+        if (number % 2 == 1) {
+            EXPECT_EQ(variant.left, track.left);
+            EXPECT_EQ(variant.right, track.right);
+        } else {
+            EXPECT_TRUE(
+                std::ranges::equal(variant.left, std::vector(track.right.rbegin(), track.right.rend())));
+            EXPECT_TRUE(
+                std::ranges::equal(variant.right, std::vector(track.left.rbegin(), track.left.rend())));
+        }
+        ASSERT_EQ(variant.cones.size(), track.cones.size());
+        double shortest = 1.0;
+        double longest = 1.0;
+        for (std::size_t i = 1; i < track.cones.size(); ++i) {
+            EXPECT_EQ(variant.cones[i].id, track.cones[i].id);
+            const double stretch = (variant.cones[i].position - variant.cones[i - 1].position).norm() /
+                                   (track.cones[i].position - track.cones[i - 1].position).norm();
+            shortest = std::min(shortest, stretch);
+            longest = std::max(longest, stretch);
+        }
+        EXPECT_GE(shortest, std::exp(-0.15) - 1e-9);
+        EXPECT_LE(longest, std::exp(0.15) + 1e-9);
+        EXPECT_GT(longest - shortest, 1e-3);
+        EXPECT_EQ(track_variant(track, number, 7).cones[5].position, variant.cones[5].position);
+        EXPECT_NE(track_variant(track, number, 8).cones[5].position, variant.cones[5].position);
+        EXPECT_NE(track_variant(track, number + 1, 7).cones[5].position, variant.cones[5].position);
+    }
+}
+
+TEST(TrainingRun, TrainsOnVariantsTooAndNamesTheTracksAlone) {
+    TrainingRunOptions options;
+    options.tracks = {"generated:circle@1"};
+    options.scenes.false_positive_rates = {0.2};
+    options.scenes.ranges_m = {20.0};
+    options.scenes.every_m = 20.0;
+    options.candidates.show_progress = false;
+    options.training = quick();
+    const TrainingRun alone = run_training(options);
+    options.variants = 2;
+    const TrainingRun varied = run_training(options);
+    EXPECT_GE(varied.trained.scenes, 2 * alone.trained.scenes);
+    EXPECT_NE(varied.record.find(R"("tracks":["circle@1"],"variants":2)"), std::string::npos)
+        << varied.record;
+    EXPECT_EQ(rank_net_json(varied.weights, varied.record), [&] {
+        options.candidates.threads = 2;
+        options.scenes.threads = 2;
+        const TrainingRun again = run_training(options);
+        return rank_net_json(again.weights, again.record);
+    }());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "graph_search/start_vertices.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -47,6 +48,21 @@ TEST(StartPairs, LeavesOutPairsThatNoLaneCanStartWith) {
     const Scene one_side_only = scene_of({{1, 1.2}, {5, 1.2}, {3, 0}});
     EXPECT_THAT(start_pairs(one_side_only, 3, {}), IsEmpty());
     EXPECT_THAT(start_pairs(scene_of({}), 3, {}), IsEmpty());
+}
+
+TEST(StartPairMeasures, ByHand) {
+    for (const double sign : {1.0, -1.0}) {  // the scene and its mirror image
+        const Scene scene = scene_of({{3.0, sign * 1.5}, {-1.0, sign * -4.5}});
+        const StartPairMeasures measures =
+            start_pair_measures(scene, sign > 0.0 ? StartPair{0, 1} : StartPair{1, 0});
+        EXPECT_DOUBLE_EQ(measures.asymmetry_m, 5.0);
+        EXPECT_DOUBLE_EQ(measures.distance_m, std::hypot(1.0, 4.5));
+        EXPECT_DOUBLE_EQ(measures.lead_m, 4.0);
+        EXPECT_DOUBLE_EQ(measures.shift_m, 3.0);
+        EXPECT_DOUBLE_EQ(measures.nearest_side_m, 1.5);
+        EXPECT_DOUBLE_EQ(measures.nearest_ahead_m, -1.0);
+        EXPECT_DOUBLE_EQ(measures.farthest_ahead_m, 3.0);
+    }
 }
 
 TEST(StartPairs, OfAMirroredSceneAreMirrored) {

@@ -128,6 +128,12 @@ void add_train_command(CLI::App& program) {
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
+    CLI::Option& variants =
+        *command
+             .add_option("--variants", run.variants,
+                         "of each track, trained on too: stretched, every second one driven the other way")
+             ->check(CLI::Range(0, kMost))
+             ->capture_default_str();
     add_scene_options(command, run.scenes);
     command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
         ->capture_default_str();
@@ -146,7 +152,8 @@ void add_train_command(CLI::App& program) {
         *command
              .add_flag("--steps", options->steps,
                        "not a network, but the step scores that the beam search of clc goes by")
-             ->excludes(&extended);
+             ->excludes(&extended)
+             ->excludes(&variants);
     command
         .add_option("--step-scores", options->step_scores,
                     "step scores (JSON) of the beam search that finds candidates, with --extended; "
@@ -177,6 +184,10 @@ void add_train_command(CLI::App& program) {
         ->check(CLI::Range(1, kMost))
         ->capture_default_str();
     command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
+    command
+        .add_option("--decay", run.training.weight_decay,
+                    "decay of the network's weights by each step, times the rate")
+        ->capture_default_str();
     command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
         ->capture_default_str();
     command

@@ -4,6 +4,7 @@
 #include "experiments/scoring/divergence.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/scoring/score.hpp"
+#include "experiments/training/random_order.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -12,7 +13,6 @@
 #include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
-#include <boost/random/seed_seq.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -29,11 +29,7 @@ std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::st
     std::vector<std::size_t> numbers(size);
     std::iota(numbers.begin(), numbers.end(), std::size_t{0});
     if (count == 0 || count >= size) return numbers;
-    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
-                                     static_cast<std::uint32_t>(seed >> 32U)};
-    for (const char letter : scene_id) words.push_back(static_cast<unsigned char>(letter));
-    boost::random::seed_seq sequence(words.begin(), words.end());
-    boost::random::mt19937_64 random(sequence);
+    boost::random::mt19937_64 random = generator_of(scene_id, seed);
     for (std::size_t i = 0; i < count; ++i) {
         boost::random::uniform_int_distribution<std::size_t> rest(i, size - 1);
         std::swap(numbers[i], numbers[rest(random)]);

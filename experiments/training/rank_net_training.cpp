@@ -131,13 +131,16 @@ double sigmoid(double value) {
 
 class Adam {
   public:
-    explicit Adam(const RankNetParameters& parameters)
-        : first_{parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0},
+    Adam(const RankNetParameters& parameters, double weight_decay)
+        : weight_decay_(weight_decay),
+          first_{parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0},
           second_(first_) {}
 
     void step(const RankNetParameters& gradient, double learning_rate, RankNetParameters& parameters) {
         first_power_ *= kFirstDecay;
         second_power_ *= kSecondDecay;
+        parameters.hidden *= 1.0 - learning_rate * weight_decay_;
+        parameters.output *= 1.0 - learning_rate * weight_decay_;
         move(gradient.hidden, learning_rate, first_.hidden, second_.hidden, parameters.hidden);
         move(gradient.hidden_bias, learning_rate, first_.hidden_bias, second_.hidden_bias,
              parameters.hidden_bias);
@@ -154,6 +157,7 @@ class Adam {
                               ((second.array() / (1.0 - second_power_)).sqrt() + kSmallest);
     }
 
+    double weight_decay_;
     RankNetParameters first_;
     RankNetParameters second_;
     double first_power_ = 1.0;
@@ -253,6 +257,8 @@ void validate(const RankNetTrainingOptions& options) {
     require(options.scenes_a_step > 0, "scenes_a_step", "must be positive");
     require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
             "must be positive");
+    require(options.weight_decay >= 0.0 && options.weight_decay * options.learning_rate < 1.0, "weight_decay",
+            "must not be negative, and below 1 times the learning rate");
     require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
     require(options.divergence_penalty >= 0.0 && std::isfinite(options.divergence_penalty),
             "divergence_penalty", "must not be negative");
@@ -315,7 +321,7 @@ RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNe
     const auto [mean, deviation] = standardise(all.inputs);
     Generator random(options.seed);
     RankNetParameters parameters = initial(options, random);
-    Adam adam(parameters);
+    Adam adam(parameters, options.weight_decay);
     Progress progress("training", options.show_progress ? options.epochs : 0);
     for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
         // The rate falls along a cosine from the first step to the last.

@@ -58,7 +58,10 @@ struct RankNetTrainingOptions {
     std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
     std::size_t scenes_a_step = 64;   ///< for choice_loss
     double learning_rate = 0.008;     ///< of Adam; falls to 0 along a cosine
-    double iou_factor = 50.0;         ///< lambda_iou of equation (14); pairs only
+    /// Each step takes this share of the learning rate off every weight but the units' biases (decoupled
+    /// weight decay).
+    double weight_decay = 0.0;
+    double iou_factor = 50.0;  ///< lambda_iou of equation (14); pairs only
     /// Subtracted from the IoU, which is else the quality of a candidate, where it diverges below
     /// kCriticalDivergence_m, ...
     double divergence_penalty = 0.0;

@@ -3,16 +3,27 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "experiments/tracks/track_spec.hpp"
+#include "experiments/training/random_order.hpp"
+#include "model/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
 #include <utility>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double kLargestLogStretch = 0.15;
 
 Json track_names(const SceneSet& set) {
     Json names = Json::array();
@@ -50,6 +61,7 @@ Json describe(const RankNetTrainingOptions& training) {
             {"pairs_a_step", training.pairs_a_step},
             {"scenes_a_step", training.scenes_a_step},
             {"learning_rate", training.learning_rate},
+            {"weight_decay", training.weight_decay},
             {"iou_factor", training.iou_factor},
             {"divergence_penalty", training.divergence_penalty},
             {"late_divergence_penalty", training.late_divergence_penalty},
@@ -79,10 +91,44 @@ std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
     return sets;
 }
 
+void add_variants(const TrainingRunOptions& options, SceneSet& set) {
+    for (const std::string& spec : options.tracks) {
+        for (const Track& track : load_tracks(spec)) {
+            for (std::size_t number = 1; number <= options.variants; ++number) {
+                const Track variant = track_variant(track, number, options.scenes.seed);
+                set.tracks.emplace(variant.name, boundaries(variant));
+                std::ranges::move(generate_scenes(variant, options.scenes), std::back_inserter(set.scenes));
+            }
+        }
+    }
+}
+
 }  // namespace
 
+Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
+    track.name += fmt::format("_variant{}", number);
+    boost::random::mt19937_64 random = generator_of(track.name, seed);
+    const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
+    boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);
+    const double along = std::exp(log_stretch(random));
+    const double across = std::exp(log_stretch(random));
+    const Point axis(std::cos(axis_rad), std::sin(axis_rad));
+    const Point normal(-axis.y(), axis.x());
+    for (Cone& cone : track.cones) {
+        cone.position = along * axis.dot(cone.position) * axis + across * normal.dot(cone.position) * normal;
+    }
+    if (number % 2 == 0) {
+        std::swap(track.left, track.right);
+        std::ranges::reverse(track.left);
+        std::ranges::reverse(track.right);
+    }
+    return track;
+}
+
 TrainingRun run_training(const TrainingRunOptions& options) {
-    const auto [set, held_out] = make_scene_sets(options);
+    auto [set, held_out] = make_scene_sets(options);
+    const Json trained_on = track_names(set);
+    add_variants(options, set);
     const std::vector<CandidateList> lists = enumerate_candidates(set, options.candidates);
     TrainingRun run;
     run.weights = train_rank_net(lists, options.training);
@@ -92,7 +138,8 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     all_candidates.most_per_scene = 0;
     run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
 
-    const Json record{{"tracks", track_names(set)},
+    const Json record{{"tracks", trained_on},
+                      {"variants", options.variants},
                       {"hold_out_tracks", track_names(held_out)},
                       {"scenes", describe(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
