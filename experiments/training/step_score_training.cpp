@@ -32,7 +32,7 @@ constexpr double kLeastProbability = 1e-3;
 /// A scene in the search graph with its ground truth, and the beam that is to keep it.
 class RightLane {
   public:
-    RightLane(const CandidateSearchOptions& search) : search_(search) {
+    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {
         search_.start.w_min_m = search.bounds.w_min_m;
         search_.start.w_max_m = search.bounds.w_max_m;
     }
