@@ -153,6 +153,15 @@ TEST(WeightRounds, LearnFromTheTracksNamedAloneOnAnyNumberOfThreads) {
     EXPECT_EQ(weights_of(fit_weights_in_rounds(both, start, tracks, {2, 3})), weights_of(one));
 }
 
+TEST(WeightRounds, GiveAWeightToATermThatHadNone) {
+    const Evaluation evaluation(scenes_of({"generated:curvy"}, 0.5),
+                                {.nearest = 12, .context = 24, .time_limit_ms = 1e5});
+    RldParameters start = with_shape_costs({});
+    start.w_u = 0.0;
+    const auto rounds = fit_weights_in_rounds(evaluation, start, {"curvy"}, {2, 3});
+    EXPECT_GE(rounds.back().w_u, 0.01) << "the lowest of the box";
+}
+
 TEST(WeightRounds, DoNotLoseWorthOnWhatTheyLearnFrom) {
     const Evaluation evaluation(scenes_of({"generated:curvy", "generated:circle"}, 0.5),
                                 {.nearest = 12, .context = 24, .time_limit_ms = 1e5});

@@ -55,10 +55,26 @@ void add_ground_truth(KnownScene& known, const Trial& trial, const Evaluation& e
         add(known, trial.seen, trial.problem, *graph, evaluation);
 }
 
+std::vector<TunedParameter> tuned_weights(const RldParameters& parameters) {
+    std::vector<TunedParameter> weights;
+    for (const TunedParameter& tuned : tuned_parameters(parameters)) {
+        if (std::ranges::find(kObjectiveWeights, tuned.value) != kObjectiveWeights.end())
+            weights.push_back(tuned);
+    }
+    return weights;
+}
+
+/// A problem has no number of a term whose weight is zero: one that is fitted is not.
+RldParameters moved_into_the_box(RldParameters parameters) {
+    for (const TunedParameter& tuned : tuned_weights(parameters)) {
+        parameters.*tuned.value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
+    }
+    return parameters;
+}
+
 RldParameters drawn_around(RldParameters parameters, double spread, boost::random::mt19937_64& random) {
     boost::random::normal_distribution<double> standard;
-    for (const TunedParameter& tuned : tuned_parameters(parameters)) {
-        if (std::ranges::find(kObjectiveWeights, tuned.value) == kObjectiveWeights.end()) continue;
+    for (const TunedParameter& tuned : tuned_weights(parameters)) {
         const double drawn = parameters.*tuned.value * std::exp(spread * standard(random));
         parameters.*tuned.value = std::clamp(rounded(drawn), tuned.lowest, tuned.highest);
     }
@@ -98,7 +114,7 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
 
     boost::random::mt19937_64 random(options.seed);
     std::vector<RldParameters> after_each;
-    RldParameters parameters = start;
+    RldParameters parameters = moved_into_the_box(start);
     for (std::size_t round = 0; round < options.rounds; ++round) {
         solve_all(parameters);
         for (std::size_t i = 0; i < (round == 0 ? kDrawnFirst : kDrawnLater); ++i) {
