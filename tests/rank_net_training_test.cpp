@@ -1,6 +1,7 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "experiments/tracks/track_spec.hpp"
+#include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/rank_net_file.hpp"

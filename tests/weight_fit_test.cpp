@@ -7,6 +7,7 @@
 #include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
+#include "model/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <cmath>
@@ -67,8 +68,8 @@ TEST(ObjectiveSums, TimesTheWeightsAreTheObjective) {
     EXPECT_GT(solved, 5U);
 }
 
-Candidate candidate(double spacing, double facing, double worth) {
-    Candidate result;
+RatedGraph rated(double spacing, double facing, double worth) {
+    RatedGraph result;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::benefit)] = -0.1 * spacing;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::spacing)] = spacing;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::facing)] = facing;
@@ -79,18 +80,17 @@ Candidate candidate(double spacing, double facing, double worth) {
 TEST(ExpectedWorth, IsHalfOfTwoThatCostTheSameAndAllOfOneThatIsFarCheaper) {
     RldParameters parameters = with_shape_costs({});
     parameters.w_s = parameters.w_v = 1.0;
-    const std::vector<Candidates> same{{candidate(1.0, 0.0, 1.0), candidate(1.0, 0.0, 0.0)}};
+    const std::vector<RatedGraphs> same{{rated(1.0, 0.0, 1.0), rated(1.0, 0.0, 0.0)}};
     EXPECT_DOUBLE_EQ(expected_worth(same, parameters, nullptr), 0.5);
-    const std::vector<Candidates> cheaper{{candidate(1.0, 0.0, 1.0), candidate(9.0, 1.0, 0.0)}};
+    const std::vector<RatedGraphs> cheaper{{rated(1.0, 0.0, 1.0), rated(9.0, 1.0, 0.0)}};
     EXPECT_NEAR(expected_worth(cheaper, parameters, nullptr), 1.0, 1e-9);
     EXPECT_EQ(expected_worth({}, parameters, nullptr), 0.0);
 }
 
 TEST(ExpectedWorth, HasTheGradientOfItsDifferences) {
-    const std::vector<Candidates> scenes{
-        {candidate(0.3, 0.2, 1.0), candidate(0.1, 0.4, 0.2), candidate(0.2, 0.1, 0.0)},
-        {candidate(0.9, 0.1, 0.0), candidate(0.7, 0.6, 0.7)},
-        {candidate(5.0, 5.0, 0.4)}};
+    const std::vector<RatedGraphs> scenes{{rated(0.3, 0.2, 1.0), rated(0.1, 0.4, 0.2), rated(0.2, 0.1, 0.0)},
+                                          {rated(0.9, 0.1, 0.0), rated(0.7, 0.6, 0.7)},
+                                          {rated(5.0, 5.0, 0.4)}};
     RldParameters parameters = with_shape_costs({});
     parameters.w_b = 1.5;
     ObjectiveSums gradient;
@@ -110,8 +110,8 @@ TEST(ExpectedWorth, HasTheGradientOfItsDifferences) {
 /// In both scenes the right lane is spaced worse and faced better: by 1 and 1, and by 2 and 1. Its benefit is
 /// greater by 0.1 and 0.2. Both are right where w_v > 2 w_s - 0.2.
 TEST(FitWeights, MakesTheRightOnesCheapest) {
-    const std::vector<Candidates> scenes{{candidate(1.0, 0.0, 1.0), candidate(0.0, 1.0, 0.0)},
-                                         {candidate(2.0, 0.0, 1.0), candidate(0.0, 1.0, 0.0)}};
+    const std::vector<RatedGraphs> scenes{{rated(1.0, 0.0, 1.0), rated(0.0, 1.0, 0.0)},
+                                          {rated(2.0, 0.0, 1.0), rated(0.0, 1.0, 0.0)}};
     RldParameters start = with_shape_costs({});
     start.w_s = 1.0;
     start.w_v = 0.5;
@@ -123,7 +123,7 @@ TEST(FitWeights, MakesTheRightOnesCheapest) {
 }
 
 TEST(FitWeights, StaysWhereNothingIsBetter) {
-    const std::vector<Candidates> scenes{{candidate(1.0, 0.0, 0.5), candidate(0.0, 1.0, 0.5)}};
+    const std::vector<RatedGraphs> scenes{{rated(1.0, 0.0, 0.5), rated(0.0, 1.0, 0.5)}};
     const RldParameters start = with_shape_costs({});
     EXPECT_EQ(fit_weights(scenes, start).w_v, start.w_v);
     EXPECT_EQ(fit_weights({}, start).w_v, start.w_v);
@@ -160,6 +160,15 @@ TEST(WeightRounds, GiveAWeightToATermThatHadNone) {
     start.w_u = 0.0;
     const auto rounds = fit_weights_in_rounds(evaluation, start, {"curvy"}, {2, 3});
     EXPECT_GE(rounds.back().w_u, 0.01) << "the lowest of the box";
+}
+
+TEST(WeightRounds, RefuseABenefitOfZero) {
+    const Evaluation evaluation(scenes_of({"generated:curvy"}, 0.5), {.nearest = 12});
+    RldParameters start = with_shape_costs({});
+    start.w_b = 0.0;
+    EXPECT_THROW(static_cast<void>(fit_weights_in_rounds(evaluation, start, {"curvy"}, {1, 3})),
+                 InvalidInput);
+    EXPECT_TRUE(fit_weights_in_rounds(evaluation, start, {"curvy"}, {0, 3}).empty());
 }
 
 TEST(WeightRounds, DoNotLoseWorthOnWhatTheyLearnFrom) {

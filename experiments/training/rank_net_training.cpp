@@ -258,7 +258,7 @@ void validate(const RankNetTrainingOptions& options) {
     require(std::isfinite(options.learning_rate) && options.learning_rate > 0.0, "learning_rate",
             "must be positive");
     require(options.weight_decay >= 0.0 && options.weight_decay * options.learning_rate < 1.0, "weight_decay",
-            "must not be negative, and below 1 times the learning rate");
+            "must not be negative, and its product with the learning rate below 1");
     require(std::isfinite(options.iou_factor) && options.iou_factor > 0.0, "iou_factor", "must be positive");
     require(options.divergence_penalty >= 0.0 && std::isfinite(options.divergence_penalty),
             "divergence_penalty", "must not be negative");

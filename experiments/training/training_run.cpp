@@ -4,26 +4,19 @@
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tracks/track_spec.hpp"
-#include "experiments/training/random_order.hpp"
-#include "model/geometry.hpp"
+#include "experiments/training/track_variant.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <utility>
 
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kLargestLogStretch = 0.15;
 
 Json track_names(const SceneSet& set) {
     Json names = Json::array();
@@ -104,26 +97,6 @@ void add_variants(const TrainingRunOptions& options, SceneSet& set) {
 }
 
 }  // namespace
-
-Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
-    track.name += fmt::format("_variant{}", number);
-    boost::random::mt19937_64 random = generator_of(track.name, seed);
-    const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
-    boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);
-    const double along = std::exp(log_stretch(random));
-    const double across = std::exp(log_stretch(random));
-    const Point axis(std::cos(axis_rad), std::sin(axis_rad));
-    const Point normal(-axis.y(), axis.x());
-    for (Cone& cone : track.cones) {
-        cone.position = along * axis.dot(cone.position) * axis + across * normal.dot(cone.position) * normal;
-    }
-    if (number % 2 == 0) {
-        std::swap(track.left, track.right);
-        std::ranges::reverse(track.left);
-        std::ranges::reverse(track.right);
-    }
-    return track;
-}
 
 TrainingRun run_training(const TrainingRunOptions& options) {
     auto [set, held_out] = make_scene_sets(options);

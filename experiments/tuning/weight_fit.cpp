@@ -1,10 +1,7 @@
 #include "experiments/tuning/weight_fit.hpp"
 
-#include "experiments/tuning/parameter_box.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <stdexcept>
 
 #include <nlopt.hpp>
@@ -12,34 +9,18 @@
 namespace conelane::experiments {
 namespace {
 
-double objective_of(const Candidate& candidate, const RldParameters& parameters) {
+double objective_of(const RatedGraph& graph, const RldParameters& parameters) {
     double sum = 0.0;
     for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
-        sum += parameters.*kObjectiveWeights[term] * candidate.sums[term];
+        sum += parameters.*kObjectiveWeights[term] * graph.sums[term];
     }
     return sum;
-}
-
-/// A tuned parameter that is a weight of the objective, and the term it multiplies.
-struct TunedWeight {
-    TunedParameter parameter;
-    std::size_t term;
-};
-
-std::vector<TunedWeight> tuned_weights(const RldParameters& start) {
-    std::vector<TunedWeight> weights;
-    for (const TunedParameter& parameter : tuned_parameters(start)) {
-        const auto weight = std::ranges::find(kObjectiveWeights, parameter.value);
-        if (weight == kObjectiveWeights.end()) continue;
-        weights.push_back({parameter, static_cast<std::size_t>(weight - kObjectiveWeights.begin())});
-    }
-    return weights;
 }
 
 /// Keeps the best point evaluated, whatever the algorithm returns.
 class Fit {
   public:
-    Fit(std::span<const Candidates> scenes, const RldParameters& start)
+    Fit(std::span<const RatedGraphs> scenes, const RldParameters& start)
         : scenes_(scenes), weights_(tuned_weights(start)), parameters_(start) {
         for (const auto& [parameter, term] : weights_) {
             lower_.push_back(std::log(parameter.lowest));
@@ -96,7 +77,7 @@ class Fit {
         }
     }
 
-    std::span<const Candidates> scenes_;
+    std::span<const RatedGraphs> scenes_;
     std::vector<TunedWeight> weights_;
     RldParameters parameters_;
     std::vector<double> lower_;
@@ -107,30 +88,40 @@ class Fit {
 
 }  // namespace
 
-double expected_worth(std::span<const Candidates> scenes, const RldParameters& parameters,
+std::vector<TunedWeight> tuned_weights(const RldParameters& start) {
+    std::vector<TunedWeight> weights;
+    for (const TunedParameter& parameter : tuned_parameters(start)) {
+        const auto weight = std::ranges::find(kObjectiveWeights, parameter.value);
+        if (weight == kObjectiveWeights.end()) continue;
+        weights.push_back({parameter, static_cast<std::size_t>(weight - kObjectiveWeights.begin())});
+    }
+    return weights;
+}
+
+double expected_worth(std::span<const RatedGraphs> scenes, const RldParameters& parameters,
                       ObjectiveSums* gradient) {
     if (gradient != nullptr) gradient->fill(0.0);
     if (scenes.empty()) return 0.0;
     const double sharpness = kSharpness / parameters.w_b;
     double total = 0.0;
     std::vector<double> shares;
-    for (const Candidates& candidates : scenes) {
+    for (const RatedGraphs& graphs : scenes) {
         shares.clear();
-        for (const Candidate& candidate : candidates) shares.push_back(objective_of(candidate, parameters));
+        for (const RatedGraph& graph : graphs) shares.push_back(objective_of(graph, parameters));
         const double least = std::ranges::min(shares);
         double sum = 0.0;
         for (double& share : shares) sum += share = std::exp(-sharpness * (share - least));
         double expected = 0.0;
-        for (std::size_t i = 0; i < candidates.size(); ++i) {
+        for (std::size_t i = 0; i < graphs.size(); ++i) {
             shares[i] /= sum;
-            expected += shares[i] * candidates[i].worth;
+            expected += shares[i] * graphs[i].worth;
         }
         total += expected;
         if (gradient == nullptr) continue;
-        for (std::size_t i = 0; i < candidates.size(); ++i) {
-            const double pull = sharpness * shares[i] * (expected - candidates[i].worth);
+        for (std::size_t i = 0; i < graphs.size(); ++i) {
+            const double pull = sharpness * shares[i] * (expected - graphs[i].worth);
             for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
-                (*gradient)[term] += pull * candidates[i].sums[term];
+                (*gradient)[term] += pull * graphs[i].sums[term];
             }
         }
     }
@@ -144,7 +135,7 @@ double expected_worth(std::span<const Candidates> scenes, const RldParameters& p
     return total / count;
 }
 
-RldParameters fit_weights(std::span<const Candidates> scenes, const RldParameters& start) {
+RldParameters fit_weights(std::span<const RatedGraphs> scenes, const RldParameters& start) {
     Fit fit(scenes, start);
     fit.run();
     return fit.parameters();

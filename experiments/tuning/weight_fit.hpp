@@ -1,31 +1,41 @@
 #pragma once
 
 #include "experiments/tuning/objective_sums.hpp"
+#include "experiments/tuning/parameter_box.hpp"
 #include "model/rld_parameters.hpp"
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 namespace conelane::experiments {
 
+/// A tuned parameter that is a weight of the objective, and the term it multiplies.
+struct TunedWeight {
+    TunedParameter parameter;
+    std::size_t term;
+};
+/// Those among tuned_parameters(start).
+[[nodiscard]] std::vector<TunedWeight> tuned_weights(const RldParameters& start);
+
 /// One lane graph that a scene allows.
-struct Candidate {
+struct RatedGraph {
     ObjectiveSums sums{};
     double worth = 0.0;  ///< of its lane, in [0, 1]
 };
 /// Some of a scene's lane graphs.
-using Candidates = std::vector<Candidate>;
+using RatedGraphs = std::vector<RatedGraph>;
 
 /// Mean over the scenes of the worth to be expected where each scene's lane graph is drawn with probability
 /// proportional to exp(-kSharpness objective / w_b): the worth of the cheapest one, made smooth. 0 without
 /// scenes. Writes the derivatives by the logarithms of the weights to `gradient` where that is not null; 0
-/// for w_b, the unit, which no fit moves. Preconditions: no scene without candidates; w_b > 0.
+/// for w_b, the unit, which no fit moves. Preconditions: no scene without lane graphs; w_b > 0.
 inline constexpr double kSharpness = 8.0;
-[[nodiscard]] double expected_worth(std::span<const Candidates> scenes, const RldParameters& parameters,
+[[nodiscard]] double expected_worth(std::span<const RatedGraphs> scenes, const RldParameters& parameters,
                                     ObjectiveSums* gradient);
 
 /// The parameters with weights that make expected_worth as large as NLopt's MMA finds from those of
 /// `start`, among the weights that tuned_parameters(start) moves and in its box, rounded to four decimals.
-[[nodiscard]] RldParameters fit_weights(std::span<const Candidates> scenes, const RldParameters& start);
+[[nodiscard]] RldParameters fit_weights(std::span<const RatedGraphs> scenes, const RldParameters& start);
 
 }  // namespace conelane::experiments

@@ -2,8 +2,8 @@
 
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/scenes/ground_truth.hpp"
-#include "experiments/tuning/parameter_box.hpp"
 #include "experiments/tuning/weight_fit.hpp"
+#include "model/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ constexpr double kSpreadLater = 0.25;
 struct KnownScene {
     const AnnotatedScene* annotated;
     std::vector<LaneGraph> graphs;
-    Candidates candidates;  ///< one for each graph
+    RatedGraphs rated;  ///< one for each graph
 };
 
 void add(KnownScene& known, const Scene& seen, const LaneGraphProblem& problem, const LaneGraph& graph,
@@ -40,9 +40,9 @@ void add(KnownScene& known, const Scene& seen, const LaneGraphProblem& problem, 
     if (std::ranges::find(known.graphs, graph) != known.graphs.end()) return;
     const LaneAnswer answer = answer_of(graph, seen, evaluation.options());
     known.graphs.push_back(graph);
-    known.candidates.push_back({objective_sums(problem, graph),
-                                worth_of(answer, *known.annotated, evaluation.boundaries_of(*known.annotated),
-                                         evaluation.options())});
+    known.rated.push_back({objective_sums(problem, graph),
+                           worth_of(answer, *known.annotated, evaluation.boundaries_of(*known.annotated),
+                                    evaluation.options())});
 }
 
 void add_ground_truth(KnownScene& known, const Trial& trial, const Evaluation& evaluation) {
@@ -55,18 +55,9 @@ void add_ground_truth(KnownScene& known, const Trial& trial, const Evaluation& e
         add(known, trial.seen, trial.problem, *graph, evaluation);
 }
 
-std::vector<TunedParameter> tuned_weights(const RldParameters& parameters) {
-    std::vector<TunedParameter> weights;
-    for (const TunedParameter& tuned : tuned_parameters(parameters)) {
-        if (std::ranges::find(kObjectiveWeights, tuned.value) != kObjectiveWeights.end())
-            weights.push_back(tuned);
-    }
-    return weights;
-}
-
 /// A problem has no number of a term whose weight is zero: one that is fitted is not.
 RldParameters moved_into_the_box(RldParameters parameters) {
-    for (const TunedParameter& tuned : tuned_weights(parameters)) {
+    for (const auto& [tuned, term] : tuned_weights(parameters)) {
         parameters.*tuned.value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
     }
     return parameters;
@@ -74,7 +65,7 @@ RldParameters moved_into_the_box(RldParameters parameters) {
 
 RldParameters drawn_around(RldParameters parameters, double spread, boost::random::mt19937_64& random) {
     boost::random::normal_distribution<double> standard;
-    for (const TunedParameter& tuned : tuned_weights(parameters)) {
+    for (const auto& [tuned, term] : tuned_weights(parameters)) {
         const double drawn = parameters.*tuned.value * std::exp(spread * standard(random));
         parameters.*tuned.value = std::clamp(rounded(drawn), tuned.lowest, tuned.highest);
     }
@@ -90,6 +81,9 @@ std::size_t solves_in(std::size_t rounds) {
 std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, const RldParameters& start,
                                                  const std::set<std::string>& tracks,
                                                  const WeightRoundsOptions& options) {
+    if (options.rounds > 0 && start.w_b <= 0.0) {
+        throw InvalidInput("w_b", "must be positive where weights are fitted: it is their unit");
+    }
     std::vector<KnownScene> known;
     for (const AnnotatedScene& scene : evaluation.scenes()) {
         if (tracks.contains(scene.track)) known.push_back({&scene, {}, {}});
@@ -121,11 +115,11 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
             solve_all(drawn_around(parameters, round == 0 ? kSpreadFirst : kSpreadLater, random));
         }
         // A scene whose lane graphs are all worth the same has nothing to say on weights.
-        std::vector<Candidates> telling;
+        std::vector<RatedGraphs> telling;
         for (const KnownScene& scene : known) {
-            if (scene.candidates.empty()) continue;
-            const auto [least, most] = std::ranges::minmax(scene.candidates, {}, &Candidate::worth);
-            if (least.worth < most.worth) telling.push_back(scene.candidates);
+            if (scene.rated.empty()) continue;
+            const auto [least, most] = std::ranges::minmax(scene.rated, {}, &RatedGraph::worth);
+            if (least.worth < most.worth) telling.push_back(scene.rated);
         }
         parameters = fit_weights(telling, parameters);
         after_each.push_back(parameters);

@@ -1,0 +1,42 @@
+#include "experiments/training/track_variant.hpp"
+
+#include "experiments/training/random_order.hpp"
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kLargestLogStretch = 0.15;
+
+}  // namespace
+
+Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
+    track.name += fmt::format("_variant{}", number);
+    boost::random::mt19937_64 random = generator_of(track.name, seed);
+    const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
+    boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);
+    const double along = std::exp(log_stretch(random));
+    const double across = std::exp(log_stretch(random));
+    const Point axis(std::cos(axis_rad), std::sin(axis_rad));
+    const Point normal(-axis.y(), axis.x());
+    for (Cone& cone : track.cones) {
+        cone.position = along * axis.dot(cone.position) * axis + across * normal.dot(cone.position) * normal;
+    }
+    if (number % 2 == 0) {
+        std::swap(track.left, track.right);
+        std::ranges::reverse(track.left);
+        std::ranges::reverse(track.right);
+    }
+    return track;
+}
+
+}  // namespace conelane::experiments
