@@ -5,7 +5,7 @@
 #include "experiments/scoring/statistics.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
 

@@ -7,7 +7,7 @@
 #include "experiments/scoring/statistics.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

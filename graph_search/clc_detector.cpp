@@ -51,7 +51,8 @@ class ClcDetector final : public LaneDetector {
             }
         }
         if (found.empty()) {
-            answer.status = report.out_of_time ? LaneStatus::time_limit : LaneStatus::none;
+            answer.status = report.out_of_time ? LaneStatus::stopped : LaneStatus::none;
+            if (report.out_of_time) answer.stopped_by = StopReason::time;
             return answer;
         }
         answer.status = LaneStatus::found;

@@ -48,18 +48,4 @@ Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest) {
     return lane;
 }
 
-std::string_view to_string(LaneStatus status) {
-    switch (status) {
-        case LaneStatus::found:
-            return "found";
-        case LaneStatus::none:
-            return "none";
-        case LaneStatus::time_limit:
-            return "time_limit";
-        case LaneStatus::error:
-            break;
-    }
-    return "error";
-}
-
 }  // namespace conelane

@@ -1,6 +1,6 @@
 #include "solvers/cbc_main_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/detail/cbc_deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 #include "solvers/detail/turn.hpp"
@@ -38,7 +38,8 @@ class CbcMainSession : public MilpSession {
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
         MilpReport report;
-        report.status = SolveStatus::time_limit;
+        report.status = SolveStatus::stopped;
+        report.stopped_by = StopReason::time;
         const auto turn = detail::take_turn(one_at_a_time, deadline);
         if (!turn.owns_lock()) return report;
 
@@ -98,7 +99,8 @@ class CbcMainSession : public MilpSession {
         } else if (model.isProvenInfeasible() && !deadline.half_passed()) {
             report.status = SolveStatus::infeasible;
         } else if (stopped || model.isProvenInfeasible()) {
-            report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
         } else {
             report.status = SolveStatus::error;
             report.message = "CBC stopped without a result, status " + std::to_string(model.status()) + "/" +

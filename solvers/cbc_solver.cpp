@@ -1,6 +1,6 @@
 #include "solvers/cbc_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/detail/cbc_deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 
@@ -41,7 +41,8 @@ class CbcSession : public MilpSession {
             return report;
         }
         if (!lp_.isProvenOptimal()) {
-            report.status = deadline.passed() ? SolveStatus::time_limit : SolveStatus::error;
+            report.status = deadline.passed() ? SolveStatus::stopped : SolveStatus::error;
+            if (deadline.passed()) report.stopped_by = StopReason::time;
             if (report.status == SolveStatus::error) report.message = "Clp could not solve the relaxation";
             return report;
         }
@@ -94,7 +95,8 @@ class CbcSession : public MilpSession {
             report.status = SolveStatus::infeasible;
             report.bound.reset();
         } else if (deadline.passed() || model.isSecondsLimitReached()) {
-            report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
         } else {
             report.message = "CBC stopped without a result, status " + std::to_string(model.status());
             report.status = SolveStatus::error;

@@ -1,6 +1,6 @@
 #include "solvers/clp_bb_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 
 #include <algorithm>
@@ -145,7 +145,8 @@ class ClpBranchAndBound : public MilpSession {
             report.point.clear();
             return;
         }
-        report.status = report.point.empty() ? SolveStatus::time_limit : SolveStatus::feasible;
+        report.status = report.point.empty() ? SolveStatus::stopped : SolveStatus::feasible;
+        report.stopped_by = StopReason::time;
         if (path_.empty()) return;
         double bound = path_.back().bound;
         for (const Branching& branching : path_) {

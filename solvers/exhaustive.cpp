@@ -1,6 +1,6 @@
 #include "solvers/exhaustive.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -67,8 +67,9 @@ class Enumeration {
                 }
             }
         }
+        if (stopped_) report.stopped_by = StopReason::time;
         if (best_first == nullptr) {
-            report.status = stopped_ ? SolveStatus::time_limit : SolveStatus::infeasible;
+            report.status = stopped_ ? SolveStatus::stopped : SolveStatus::infeasible;
             return;
         }
         report.status = stopped_ ? SolveStatus::feasible : SolveStatus::optimal;
@@ -139,7 +140,8 @@ class Enumeration {
 
 class ExhaustiveSolver : public RldSolver {
   public:
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* /*start*/) override {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch watch;
         RldReport report;

@@ -1,6 +1,6 @@
 #include "solvers/glpk_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -131,7 +131,8 @@ class GlpkSession : public MilpSession {
         if (failure == 0 && status == GLP_NOFEAS) {
             report.status = SolveStatus::infeasible;
         } else if (failure == GLP_ETMLIM || deadline.passed()) {
-            report.status = SolveStatus::time_limit;
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
         } else {
             report.message = "GLPK could not solve the relaxation, " + std::to_string(failure);
         }
@@ -167,7 +168,8 @@ class GlpkSession : public MilpSession {
             if (finished) report.bound = best_value;
             if (!has_point) report.bound.reset();
         } else if (watch.stopped_at_deadline || failure == GLP_ETMLIM || deadline.passed()) {
-            report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
         } else {
             report.status = SolveStatus::error;
             report.message = "GLPK stopped without a result, " + std::to_string(failure);

@@ -1,6 +1,6 @@
 #include "solvers/ipopt_relaxation.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 

@@ -1,7 +1,7 @@
 #include "solvers/milp_rld_solver.hpp"
 
 #include "model/lane_graph_model.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -18,7 +18,8 @@ class MilpRldSolver : public RldSolver {
 
     EdgeExtent extent() const override { return parts(formulation_).extent; }
 
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch build_watch;
         RldReport report;
@@ -35,8 +36,8 @@ class MilpRldSolver : public RldSolver {
         report.build_ms = build_watch.elapsed_ms();
 
         const Stopwatch solve_watch;
-        const bool has_start = limits.start != nullptr && is_feasible(problem, *limits.start);
-        if (has_start) take(problem, *limits.start, report);
+        const bool has_start = start != nullptr && is_feasible(problem, *start);
+        if (has_start) take(problem, *start, report);
         solve_and_separate(problem, *session, limits, deadline, report);
         report.solve_ms = solve_watch.elapsed_ms();
         return report;
@@ -57,13 +58,15 @@ class MilpRldSolver : public RldSolver {
         while (true) {
             round_limits.time_limit_ms = deadline.remaining_ms();
             if (round_limits.time_limit_ms <= 0.0) {
-                report.status = has_start ? SolveStatus::feasible : SolveStatus::time_limit;
+                report.status = has_start ? SolveStatus::feasible : SolveStatus::stopped;
+                report.stopped_by = StopReason::time;
                 return;
             }
             const MilpReport round = session.solve(round_limits);
             ++report.rounds;
             report.nodes += round.nodes;
             report.status = round.status;
+            report.stopped_by = round.stopped_by;
             report.message = round.message;
             // Rows only ever tighten the program: every round's bound holds for the problem.
             if (round.bound) report.bound = std::max(report.bound.value_or(*round.bound), *round.bound);
@@ -96,7 +99,7 @@ class MilpRldSolver : public RldSolver {
         if (report.status == SolveStatus::infeasible) {
             report.status = SolveStatus::optimal;
             report.bound = cutoff;
-        } else if (report.status == SolveStatus::time_limit) {
+        } else if (report.status == SolveStatus::stopped) {
             report.status = SolveStatus::feasible;
             // With a cutoff, what a solver proved is that no point below its bound is left, up to the cutoff.
             if (report.bound) report.bound = std::min(*report.bound, cutoff);

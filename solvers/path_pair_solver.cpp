@@ -1,6 +1,6 @@
 #include "solvers/path_pair_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/branch_and_bound.hpp"
 #include "solvers/path_pair/incumbent.hpp"
@@ -23,7 +23,8 @@ class PathPairSolver : public RldSolver {
     explicit PathPairSolver(const PathPairOptions& options)
         : options_(options), search_(graph_, incumbent_, options_) {}
 
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch build_watch;
         RldReport report;
@@ -33,24 +34,25 @@ class PathPairSolver : public RldSolver {
         const double tolerance = std::max(limits.absolute_gap, kLeastGap);
         search_.reset_nodes();
 
-        const bool start_is_feasible = limits.start != nullptr && is_feasible(problem, *limits.start);
+        const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
         // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
         Outcome outcome{};
         for (const double cutoff : {0.0, cost_limit(problem)}) {
             incumbent_.reset(graph_, cutoff);
-            if (start_is_feasible) offer(problem, *limits.start);
+            if (start_is_feasible) offer(problem, *start);
             outcome = search(problem, tolerance, deadline);
             ++report.rounds;
             if (incumbent_.found() || !outcome.complete) break;
         }
         report.nodes = search_.nodes();
+        if (!outcome.complete) report.stopped_by = StopReason::time;
         if (incumbent_.found()) {
             report.status = outcome.complete ? SolveStatus::optimal : SolveStatus::feasible;
             report.lane_graph = lane_graph(problem);
             report.objective = objective(problem, *report.lane_graph);
             report.bound = std::min(outcome.bound, *report.objective);
         } else {
-            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::time_limit;
+            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::stopped;
             if (!outcome.complete) report.bound = outcome.bound;
         }
         report.solve_ms = solve_watch.elapsed_ms();

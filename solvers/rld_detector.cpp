@@ -1,7 +1,7 @@
 #include "solvers/rld_detector.hpp"
 
 #include "model/lane_graph_problem.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -16,8 +16,8 @@ LaneStatus lane_status(SolveStatus status) {
             return LaneStatus::found;
         case SolveStatus::infeasible:
             return LaneStatus::none;
-        case SolveStatus::time_limit:
-            return LaneStatus::time_limit;
+        case SolveStatus::stopped:
+            return LaneStatus::stopped;
         case SolveStatus::error:
             break;
     }
@@ -52,11 +52,12 @@ class RldDetector : public LaneDetector {
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, scene);
         const RldReport report = solver_->solve(
-            problem, {deadline.remaining_ms(), options_.absolute_gap, start ? &*start : nullptr});
+            problem, {deadline.remaining_ms(), options_.absolute_gap}, start ? &*start : nullptr);
         if (options_.warm_start && report.lane_graph) previous_ = Solution{scene, *report.lane_graph};
         LaneAnswer answer;
         answer.status = lane_status(report.status);
         answer.message = report.message;
+        answer.stopped_by = report.stopped_by;
         if (answer.status != LaneStatus::found) return answer;
         std::optional<Lane> lane = report.lane_graph ? to_lane(*report.lane_graph, scene) : std::nullopt;
         if (!lane) {

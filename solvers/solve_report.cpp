@@ -10,7 +10,7 @@ std::string_view to_string(SolveStatus status) {
             return "feasible";
         case SolveStatus::infeasible:
             return "infeasible";
-        case SolveStatus::time_limit:
+        case SolveStatus::stopped:
             return "time_limit";
         case SolveStatus::error:
             break;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "model/lane_graph.hpp"
+#include "model/stop_reason.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -13,10 +14,11 @@ namespace conelane {
 
 enum class SolveStatus {
     optimal,     ///< the objective is within the absolute gap of the bound
-    feasible,    ///< stopped at the time limit with an incumbent
+    feasible,    ///< an incumbent that is not proven optimal; cut off by a limit where `stopped_by` is there,
+                 ///< else the best that a heuristic can do
     infeasible,  ///< proven to have no solution
-    time_limit,  ///< stopped at the time limit without an incumbent
-    error,       ///< see the message
+    stopped,     ///< no incumbent, no proof; at a limit where `stopped_by` is there, else by a heuristic
+    error,       ///< see the message; a start that is feasible is kept
 };
 [[nodiscard]] std::string_view to_string(SolveStatus status);
 
@@ -27,14 +29,12 @@ enum class SolveStatus {
 struct SolveLimits {
     double time_limit_ms = std::numeric_limits<double>::infinity();  ///< wall clock, from the call
     double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal
-    /// A lane graph to start from, or nullptr: a hint that solvers may use as their first incumbent. One that
-    /// is not feasible for the problem is dropped.
-    const LaneGraph* start = nullptr;
 };
 
 /// What a MILP solver answers. Absent values are unknown.
 struct MilpReport {
     SolveStatus status = SolveStatus::error;
+    std::optional<StopReason> stopped_by;
     std::vector<double> point;    ///< the incumbent by column; empty without one
     std::optional<double> bound;  ///< proven lower bound of the objective
     std::int64_t nodes = 0;       ///< branch-and-bound nodes; 0 where the first relaxation was integral
@@ -44,7 +44,8 @@ struct MilpReport {
 /// What an RLD solver answers.
 struct RldReport {
     SolveStatus status = SolveStatus::error;
-    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible
+    std::optional<StopReason> stopped_by;
+    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible, and of a start with error
     std::optional<double> objective;      ///< recomputed from the lane graph
     std::optional<double> bound;          ///< proven lower bound
     std::int64_t nodes = 0;

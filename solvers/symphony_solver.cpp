@@ -1,6 +1,6 @@
 #include "solvers/symphony_solver.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/detail/child_process.hpp"
 
 #include <algorithm>
@@ -141,7 +141,8 @@ class SymphonySession : public MilpSession {
             report.status = SolveStatus::optimal;
             report.bound = value;
         } else if (sym_is_time_limit_reached(env) || deadline.passed()) {
-            report.status = has_point ? SolveStatus::feasible : SolveStatus::time_limit;
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
         } else {
             report.status = SolveStatus::error;
             return;

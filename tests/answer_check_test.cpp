@@ -5,6 +5,7 @@
 #include "experiments/comparison/runner.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "tests/no_time_limit.hpp"
 #include "tests/straight_scene.hpp"
 
 #include <string>
@@ -23,7 +24,7 @@ using testing::StartsWith;
 /// What rld-pair answers on the straight lane, unchecked.
 LaneRecord answer_on(const AnnotatedScene& scene) {
     LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
-    record.answer = find_method("rld-pair").make({})->detect(scene.scene, {});
+    record.answer = find_method("rld-pair").make({})->detect(scene.scene, tests::kNoTimeLimit);
     return record;
 }
 
@@ -85,7 +86,7 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
 TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     const AnnotatedScene scene = straight_scene();
     const MethodEntry& method = find_method("rld-context");
-    LaneRecord right{scene.scene.id, "rld-context", method.make({})->detect(scene.scene, {}), 1.0,
+    LaneRecord right{scene.scene.id, "rld-context", method.make({})->detect(scene.scene, tests::kNoTimeLimit), 1.0,
                      method.nearest};
     ASSERT_TRUE(right.answer.uncut);
     LaneRecord record = right;

@@ -3,6 +3,7 @@
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/invalid_input.hpp"
+#include "tests/no_time_limit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-LaneAnswer detect(const Scene& scene, const ClcOptions& options = {}, const DetectionLimits& limits = {}) {
+LaneAnswer detect(const Scene& scene, const ClcOptions& options = {}, const DetectionLimits& limits = tests::kNoTimeLimit) {
     return make_clc_detector(options)->detect(scene, limits);
 }
 
@@ -102,7 +103,7 @@ TEST(ClcDetector, FindsAWindingLaneWhollyWhereverTheCarStands) {
 }
 
 TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
-    DetectionLimits limits;
+    DetectionLimits limits = tests::kNoTimeLimit;
     limits.keep_candidates = true;
     for (unsigned seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
@@ -168,7 +169,7 @@ TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
     options.iteration_limit = 1'000'000;
     options.starting_pairs = 1;
     options.warm_start = true;
-    DetectionLimits limits;
+    DetectionLimits limits = tests::kNoTimeLimit;
     limits.keep_candidates = true;
     const auto candidates = [](const LaneAnswer& answer) {
         std::set<std::pair<std::vector<ConeId>, std::vector<ConeId>>> lanes;
@@ -199,7 +200,7 @@ TEST(ClcDetector, ResetForgetsTheLastLane) {
     ClcOptions options;
     options.warm_start = true;
     const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
-    DetectionLimits limits;
+    DetectionLimits limits = tests::kNoTimeLimit;
     limits.keep_candidates = true;
     const Scene scene = with_false_positives(winding_lane(10, 0.4, 2), 20, 2);
     const auto order = [&] {
@@ -232,10 +233,10 @@ TEST(ClcDetector, AnswersTheSameOnEachCallAndInAnyOrderOfTheCones) {
         for (unsigned seed = 0; seed < 20; ++seed) {
             SCOPED_TRACE(seed);
             Scene scene = with_false_positives(winding_lane(8, 0.4, seed), 15, seed);
-            const LaneAnswer first = detector->detect(scene, {});
-            EXPECT_EQ(detector->detect(scene, {}).lane, first.lane);
+            const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);
+            EXPECT_EQ(detector->detect(scene, tests::kNoTimeLimit).lane, first.lane);
             std::ranges::reverse(scene.cones);
-            const LaneAnswer reversed = detector->detect(scene, {});
+            const LaneAnswer reversed = detector->detect(scene, tests::kNoTimeLimit);
             EXPECT_EQ(reversed.lane, first.lane);
             EXPECT_EQ(reversed.enumeration->iterations, first.enumeration->iterations);
         }
@@ -366,7 +367,7 @@ TEST(ClcDetector, SaysWhyThereIsNoLane) {
     DetectionLimits no_time;
     no_time.time_limit_ms = 0.0;
     const LaneAnswer late = detect(winding_lane(8, 0.4, 1), {}, no_time);
-    EXPECT_EQ(late.status, LaneStatus::time_limit);
+    EXPECT_EQ(late.status, LaneStatus::stopped);
     EXPECT_THAT(late.lane.left, IsEmpty());
     EXPECT_FALSE(late.enumeration->complete);
 }
@@ -374,7 +375,7 @@ TEST(ClcDetector, SaysWhyThereIsNoLane) {
 TEST(ClcDetector, WhatWasFoundInTimeIsAnAnswer) {
     ClcOptions endless;
     endless.iteration_limit = std::numeric_limits<std::int64_t>::max();
-    DetectionLimits limits;
+    DetectionLimits limits = tests::kNoTimeLimit;
     limits.time_limit_ms = 20.0;
     const LaneAnswer answer = detect(with_false_positives(winding_lane(20, 0.3, 3), 60, 3), endless, limits);
     EXPECT_EQ(answer.status, LaneStatus::found);

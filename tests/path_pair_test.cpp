@@ -305,18 +305,15 @@ TEST(PathPair, StartsFromALaneGraph) {
         const RldReport cold = solver->solve(problem, {});
         if (!cold.lane_graph) continue;
         ++started;
-        SolveLimits limits;
-        limits.start = &*cold.lane_graph;
-        EXPECT_EQ(solver->solve(problem, limits).lane_graph, cold.lane_graph);
-        limits.time_limit_ms = 0.0;  // nothing but the start
-        const RldReport stopped = solver->solve(problem, limits);
+        const LaneGraph& optimum = *cold.lane_graph;
+        EXPECT_EQ(solver->solve(problem, {}, &optimum).lane_graph, cold.lane_graph);
+        const RldReport stopped = solver->solve(problem, {.time_limit_ms = 0.0}, &optimum);
         EXPECT_EQ(stopped.status, SolveStatus::feasible);
         EXPECT_EQ(stopped.objective, cold.objective);
-        LaneGraph torn = *cold.lane_graph;
+        EXPECT_EQ(stopped.stopped_by, StopReason::time);
+        LaneGraph torn = optimum;
         torn.edges.erase(torn.edges.begin() + static_cast<std::ptrdiff_t>(torn.edges.size() / 2));
-        limits = {};
-        limits.start = &torn;
-        EXPECT_NEAR(*solver->solve(problem, limits).objective, *cold.objective, 1e-9);
+        EXPECT_NEAR(*solver->solve(problem, {}, &torn).objective, *cold.objective, 1e-9);
     }
     EXPECT_GT(started, 20);
 }

@@ -3,6 +3,7 @@
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
 #include "model/invalid_input.hpp"
+#include "tests/no_time_limit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -284,11 +285,11 @@ TEST(RankNet, DecidesWhichCandidateTheDetectorAnswers) {
     const auto cones_with = [&](std::size_t feature, float weight) {
         ClcOptions options;
         options.ranking = make_rank_net(only_input(feature, weight));
-        const LaneAnswer answer = make_clc_detector(options)->detect(scene, {});
+        const LaneAnswer answer = make_clc_detector(options)->detect(scene, tests::kNoTimeLimit);
         return std::pair(answer.lane.left.size(), answer.lane.right.size());
     };
     EXPECT_EQ(cones_with(0, -1.0F), (std::pair<std::size_t, std::size_t>(2, 2))) << "the shortest lane";
-    const Lane longest = make_clc_detector({})->detect(scene, {}).lane;
+    const Lane longest = make_clc_detector({})->detect(scene, tests::kNoTimeLimit).lane;
     EXPECT_EQ(cones_with(0, 1.0F), std::pair(longest.left.size(), longest.right.size()));
 }
 

@@ -137,7 +137,7 @@ TEST(Relaxations, StopAtTheTimeLimit) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(1, 16), {});
         SolveLimits limits;
         limits.time_limit_ms = 0.0;
-        EXPECT_EQ(entry->make(Formulation::tight)->solve(problem, limits).status, SolveStatus::time_limit)
+        EXPECT_EQ(entry->make(Formulation::tight)->solve(problem, limits).status, SolveStatus::stopped)
             << entry->name;
     }
 }

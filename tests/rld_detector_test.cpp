@@ -3,6 +3,7 @@
 #include "solvers/rld_detector.hpp"
 
 #include "solvers/registry.hpp"
+#include "tests/no_time_limit.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -31,7 +32,7 @@ LaneAnswer detect(const Scene& scene, std::optional<std::size_t> nearest,
                   std::optional<std::size_t> context) {
     return make_rld_detector(find_rld_solver("path-pair")->make(Formulation::tight),
                              {.parameters = {}, .nearest = nearest, .context = context})
-        ->detect(scene, {});
+        ->detect(scene, tests::kNoTimeLimit);
 }
 
 /// Left of the sixth gap's end a false cone, nearer to the car than the true cones 4 and 104 at x = 9.6.

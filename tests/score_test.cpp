@@ -168,7 +168,7 @@ TEST(Score, AClosedCircuitInBothDrivingDirections) {
 
 TEST(Score, FailuresScoreNothing) {
     const AnnotatedScene scene = straight_scene();
-    for (const LaneStatus status : {LaneStatus::none, LaneStatus::time_limit, LaneStatus::error}) {
+    for (const LaneStatus status : {LaneStatus::none, LaneStatus::stopped, LaneStatus::error}) {
         SCOPED_TRACE(to_string(status));
         LaneAnswer answer;
         answer.status = status;

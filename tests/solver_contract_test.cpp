@@ -50,9 +50,9 @@ Scene scene_of(const std::vector<Point>& positions) {
 class SolverContract : public testing::TestWithParam<Contestant> {
   protected:
     RldReport solve(const Scene& scene, const RldParameters& parameters = {},
-                    const SolveLimits& limits = {}) {
+                    const SolveLimits& limits = {}, const LaneGraph* start = nullptr) {
         const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
-        return solver->solve(make_problem(scene, parameters, solver->extent()), limits);
+        return solver->solve(make_problem(scene, parameters, solver->extent()), limits, start);
     }
 };
 
@@ -222,7 +222,7 @@ TEST_P(SolverContract, ATimeLimitNeverMakesAClaimWrong) {
                             .violations,
                         testing::IsEmpty());
                     break;
-                case SolveStatus::time_limit:
+                case SolveStatus::stopped:
                     ++stopped;
                     EXPECT_FALSE(report.lane_graph.has_value());
                     break;
@@ -300,7 +300,7 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         const RldParameters parameters;
         const RldReport cold = solve(scene_now, parameters);
         LaneGraph strange{{{0, 1}}};
-        const RldReport dropped = solve(scene_now, parameters, {.start = &strange});
+        const RldReport dropped = solve(scene_now, parameters, {}, &strange);
         ASSERT_EQ(dropped.status, cold.status);
         if (cold.status != SolveStatus::optimal) continue;
         EXPECT_NEAR(*dropped.objective, *cold.objective, 1e-6);
@@ -310,7 +310,7 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
         const LaneGraph other = *solve(scene_now, other_weights).lane_graph;
         for (const LaneGraph& start : {*cold.lane_graph, other}) {
             ++started;
-            const RldReport warm = solve(scene_now, parameters, {.start = &start});
+            const RldReport warm = solve(scene_now, parameters, {}, &start);
             ASSERT_EQ(warm.status, SolveStatus::optimal) << warm.message;
             EXPECT_NEAR(*warm.objective, *cold.objective, 1e-6);
             EXPECT_THAT(check(scene_now, parameters, *warm.lane_graph, {true, *warm.objective, warm.bound})

@@ -4,6 +4,7 @@
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/scoring/score.hpp"
 #include "graph_search/clc_detector.hpp"
+#include "tests/no_time_limit.hpp"
 
 #include <memory>
 
@@ -24,7 +25,7 @@ std::size_t successes(const char* method, const SceneSet& set) {
     const std::unique_ptr<LaneDetector> detector = find_method(method).make({});
     std::size_t count = 0;
     for (const AnnotatedScene& scene : set.scenes) {
-        const LaneAnswer answer = detector->detect(scene.scene, {});
+        const LaneAnswer answer = detector->detect(scene.scene, tests::kNoTimeLimit);
         if (score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track)).success()) ++count;
     }
     return count;
@@ -50,7 +51,7 @@ TEST(WarmStart, GoesAlongTheLastLaneFirst) {
     // The same scene twice: what was found first is met again on the way and not lost.
     const AnnotatedScene& scene = set.scenes[10];
     const auto length_m = [&] {
-        return score(scene, detector->detect(scene.scene, {}), 0.0, std::nullopt, nullptr).lane_length_m;
+        return score(scene, detector->detect(scene.scene, tests::kNoTimeLimit), 0.0, std::nullopt, nullptr).lane_length_m;
     };
     const double first_m = length_m();
     const double second_m = length_m();

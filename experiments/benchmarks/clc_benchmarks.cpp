@@ -8,6 +8,7 @@
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/search_graph.hpp"
 
+#include <limits>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -101,7 +102,8 @@ void detect(benchmark::State& state, const ClcOptions& options) {
     const auto detector = make_clc_detector(options);
     std::size_t turn = 0;
     for ([[maybe_unused]] auto iteration : state) {
-        LaneAnswer answer = detector->detect(scenes()[turn++ % scenes().size()], {});
+        LaneAnswer answer = detector->detect(scenes()[turn++ % scenes().size()],
+                                               {.time_limit_ms = std::numeric_limits<double>::infinity()});
         benchmark::DoNotOptimize(answer);
     }
 }

@@ -5,7 +5,7 @@
 #include "experiments/progress.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/registry.hpp"
 
 #include <exception>
@@ -33,14 +33,14 @@ struct Options {
 };
 
 RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                const SolveLimits& limits) {
+                const SolveLimits& limits, const LaneGraph* start) {
     try {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch problem_watch;
         const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
         const double problem_ms = problem_watch.elapsed_ms();
         RldReport report =
-            solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap, limits.start});
+            solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
         report.build_ms += problem_ms;
         return report;
     } catch (const std::bad_alloc&) {
@@ -70,9 +70,8 @@ void solve_all(const Options& options) {
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
-        SolveLimits limits = options.limits;
-        if (start) limits.start = &*start;
-        const RldReport report = solve(*solver, scene, parameters, limits);
+        const RldReport report =
+            solve(*solver, scene, parameters, options.limits, start ? &*start : nullptr);
         SolutionRecord record{scene.id,
                               options.solver,
                               options.formulation,

@@ -7,7 +7,7 @@
 #include "experiments/scoring/statistics.hpp"
 #include "model/check.hpp"
 #include "model/invalid_input.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -44,9 +44,8 @@ class Driver {
         const LaneGraphProblem problem = make_problem(cones, options_.parameters, solver_->extent());
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->first, previous_->second, cones);
-        SolveLimits limits{deadline.remaining_ms()};
-        if (start) limits.start = &*start;
-        const RldReport report = solver_->solve(problem, limits);
+        const RldReport report =
+            solver_->solve(problem, {deadline.remaining_ms()}, start ? &*start : nullptr);
         BackendRow row{&annotated,     cones.cones.size(), backend_,     report.status,
                        report.message, report.objective,   report.nodes, watch.elapsed_ms()};
         if (!report.lane_graph) return row;

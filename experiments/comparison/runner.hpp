@@ -3,8 +3,9 @@
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
-#include "model/lane.hpp"
+#include "model/lane_detector.hpp"
 
+#include <limits>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -14,7 +15,7 @@ namespace conelane::experiments {
 
 struct RunOptions {
     MethodOptions method;
-    DetectionLimits limits;
+    DetectionLimits limits{.time_limit_ms = std::numeric_limits<double>::infinity()};
     /// One: on one processor. More disturb the latencies by contention.
     unsigned threads = 1;
     bool show_progress = true;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -16,8 +17,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array kStatuses{LaneStatus::found, LaneStatus::none, LaneStatus::time_limit,
-                               LaneStatus::error};
+constexpr std::array kStatuses{LaneStatus::found, LaneStatus::none, LaneStatus::stopped, LaneStatus::error};
+/// How files of version 0.1 spell "stopped by time".
+constexpr std::string_view kStoppedByTime = "time_limit";
+constexpr std::array kStopReasons{StopReason::time, StopReason::iterations, StopReason::memory};
 
 std::vector<ConeId> read_ids(const JsonNode& json) {
     std::vector<ConeId> ids;
@@ -60,7 +63,13 @@ LaneRecord read_record(const JsonNode& json) {
     record.scene = json.member("scene").string();
     record.method = json.member("method").string();
     LaneAnswer& answer = record.answer;
-    answer.status = json.member("status").one_of(kStatuses);
+    if (json.member("status").string() == kStoppedByTime) {
+        answer.status = LaneStatus::stopped;
+        answer.stopped_by = StopReason::time;
+    } else {
+        answer.status = json.member("status").one_of(kStatuses);
+    }
+    if (const auto reason = json.find("stopped_by")) answer.stopped_by = reason->one_of(kStopReasons);
     answer.lane = read_lane(json);
     if (answer.status != LaneStatus::found) {
         const std::string reason = "must be empty where status is " + std::string(to_string(answer.status));
@@ -89,6 +98,7 @@ ordered_json to_json(const LaneRecord& record, const std::string& key) {
                       {"right", answer.lane.right},
                       {"closed", answer.lane.closed},
                       {"latency_ms", require_finite(record.latency_ms, key + "latency_ms")}};
+    if (answer.stopped_by) json["stopped_by"] = to_string(*answer.stopped_by);
     if (!answer.message.empty()) json["message"] = answer.message;
     if (answer.confidence) json["confidence"] = require_finite(*answer.confidence, key + "confidence");
     if (answer.trusted_m) json["trusted_m"] = require_finite(*answer.trusted_m, key + "trusted_m");

@@ -2,7 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/statistics.hpp"
-#include "model/lane.hpp"
+#include "model/lane_detector.hpp"
 
 #include <array>
 #include <cstddef>

@@ -4,7 +4,7 @@
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "model/invalid_input.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct SceneWorth {
 SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
                  const RldParameters& parameters, const EvaluationOptions& options) {
     const Trial trial = try_on(solver, annotated.scene, parameters, options);
-    if (trial.report.status == SolveStatus::feasible || trial.report.status == SolveStatus::time_limit)
+    if (trial.report.status == SolveStatus::feasible || trial.report.status == SolveStatus::stopped)
         return {0.0, true};
     if (trial.report.nodes > options.most_nodes) return {};
     return {worth_of(trial.answer, annotated, boundaries, options)};

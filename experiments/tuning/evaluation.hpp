@@ -1,7 +1,7 @@
 #pragma once
 
 #include "experiments/scenes/scene_set.hpp"
-#include "model/lane.hpp"
+#include "model/lane_detector.hpp"
 #include "model/lane_graph_problem.hpp"
 #include "model/rld_parameters.hpp"
 #include "solvers/rld_solver.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <chrono>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "model/lane_graph_problem.hpp"
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <optional>
 #include <vector>

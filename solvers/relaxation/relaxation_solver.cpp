@@ -13,12 +13,14 @@ class RelaxationSolver : public RldSolver {
   public:
     explicit RelaxationSolver(Relax relax) : relax_(std::move(relax)) {}
 
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits) override {
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* /*start*/) override {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch watch;
         const LpRelaxation linear = solve_lp_relaxation(problem, deadline);
         RldReport report;
-        report.status = linear.infeasible ? SolveStatus::infeasible : SolveStatus::time_limit;
+        report.status = linear.infeasible ? SolveStatus::infeasible : SolveStatus::stopped;
+        if (!linear.infeasible) report.stopped_by = StopReason::time;
         if (linear.bound) {
             if (const auto values = relax_(problem, linear.edge_values, deadline)) {
                 report = round_by_search(problem, *values, *path_pair_,

@@ -1,6 +1,6 @@
 #include "solvers/relaxation/rounding.hpp"
 
-#include "solvers/deadline.hpp"
+#include "model/deadline.hpp"
 
 #include <array>
 #include <utility>
@@ -16,9 +16,12 @@ RldReport round_by_search(const LaneGraphProblem& problem, std::span<const doubl
                           RldSolver& path_pair, const SolveLimits& limits) {
     const Deadline deadline(limits.time_limit_ms);
     RldReport rounded;
-    rounded.status = SolveStatus::time_limit;
+    rounded.status = SolveStatus::stopped;
     for (const double least : kFavoured) {
-        if (deadline.passed()) return rounded;
+        if (deadline.passed()) {
+            rounded.stopped_by = StopReason::time;
+            return rounded;
+        }
         LaneGraphProblem favoured = problem;
         for (std::size_t e = 0; e < problem.edges.size(); ++e) {
             if (edge_values[e] < least) favoured.edges[e].high_cost = true;
