@@ -1,5 +1,6 @@
 #include "experiments/methods.hpp"
 
+#include "experiments/delaunay.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
@@ -111,7 +112,7 @@ constexpr std::array<MethodEntry, 13> kMethods{{
      false, false,
      [](const MethodOptions& options) {
          ClcOptions clc = paper_clc_options();
-         clc.graph = SearchGraphKind::delaunay;
+         clc.edge_rule = delaunay_edges;
          return make_clc(clc, options);
      }},
     {"clc-longest", "CLC without network: the longest of the enumerated lanes", std::nullopt, std::nullopt,
