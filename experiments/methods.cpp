@@ -1,5 +1,6 @@
 #include "experiments/methods.hpp"
 
+#include "experiments/delaunay.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
@@ -36,7 +37,7 @@ ClcOptions without_agreement() {
 
 ClcOptions on_delaunay_graph() {
     ClcOptions clc = paper_clc_options();
-    clc.graph = SearchGraphKind::delaunay;
+    clc.edge_rule = delaunay_edges;
     return clc;
 }
 

@@ -96,7 +96,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     budget_.deadline = deadline(request.time_limit_ms);
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
-    graph_.build(points_, options_.d_max_m, options_.graph);
+    graph_.build(points_, options_.d_max_m, options_.edge_rule);
     pairs_.clear();
 
     find_seeds(scene, request.last_lane);

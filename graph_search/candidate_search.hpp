@@ -21,7 +21,7 @@ namespace conelane {
 struct CandidateSearchOptions {
     std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, of all starting pairs
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
-    SearchGraphKind graph = SearchGraphKind::all_pairs;
+    EdgeRule edge_rule;  ///< none: all pairs within d_max, equation (2)
     LaneBounds bounds;
     StartVertexRules start;          ///< its w_min_m and w_max_m are taken from `bounds`
     std::size_t starting_pairs = 3;  ///< how many are tried

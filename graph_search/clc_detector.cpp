@@ -1,7 +1,6 @@
 #include "graph_search/clc_detector.hpp"
 
-#include "graph_search/rank_net_file.hpp"
-#include "graph_search/step_score_file.hpp"
+#include "graph_search/shipped_weights.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>

@@ -2,42 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <utility>
 
-#include <boost/polygon/voronoi.hpp>
-
 namespace conelane {
-namespace {
 
-using GridPoint = boost::polygon::point_data<std::int32_t>;
-
-/// Half the extent of the points in units of the grid.
-constexpr double kGridRadius = 536870912.0;
-
-std::vector<GridPoint> on_grid(std::span<const Point> points) {
-    Point lowest = points.front();
-    Point highest = points.front();
-    for (const Point& point : points) {
-        lowest = lowest.cwiseMin(point);
-        highest = highest.cwiseMax(point);
-    }
-    const Point centre = 0.5 * (lowest + highest);
-    const double radius = std::max(0.5 * (highest - lowest).maxCoeff(), std::numeric_limits<double>::min());
-    std::vector<GridPoint> rounded;
-    rounded.reserve(points.size());
-    for (const Point& point : points) {
-        const Point units = kGridRadius * ((point - centre) / radius);
-        rounded.emplace_back(static_cast<std::int32_t>(std::lround(units.x())),
-                             static_cast<std::int32_t>(std::lround(units.y())));
-    }
-    return rounded;
-}
-
-}  // namespace
-
-void SearchGraph::build(std::span<const Point> points, double d_max_m, SearchGraphKind kind) {
+void SearchGraph::build(std::span<const Point> points, double d_max_m, const EdgeRule& rule) {
     points_.assign(points.begin(), points.end());
     neighbours_.clear();
     first_edge_.assign(1, 0);
@@ -72,7 +41,7 @@ void SearchGraph::build(std::span<const Point> points, double d_max_m, SearchGra
         neighbours_.erase(std::unique(neighbours_.begin() + first, neighbours_.end()), neighbours_.end());
         first_edge_.push_back(static_cast<DirectedEdge>(neighbours_.size()));
     }
-    if (kind == SearchGraphKind::delaunay && !points.empty()) keep_delaunay_edges();
+    if (rule) keep_pairs(rule(points));
     neighbour_x_.resize(neighbours_.size() + kSpare);
     neighbour_y_.resize(neighbours_.size() + kSpare);
     for (std::size_t i = 0; i < neighbours_.size(); ++i) {
@@ -81,21 +50,17 @@ void SearchGraph::build(std::span<const Point> points, double d_max_m, SearchGra
     }
 }
 
-void SearchGraph::keep_delaunay_edges() {
-    const std::vector<GridPoint> sites = on_grid(points_);
-    boost::polygon::voronoi_diagram<double> diagram;
-    boost::polygon::construct_voronoi(sites.begin(), sites.end(), &diagram);
-    std::vector<std::pair<Vertex, Vertex>> joined;
-    for (const auto& edge : diagram.edges()) {
-        joined.emplace_back(static_cast<Vertex>(edge.cell()->source_index()),
-                            static_cast<Vertex>(edge.twin()->cell()->source_index()));
+void SearchGraph::keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs) {
+    for (auto& [low, high] : pairs) {
+        if (low > high) std::swap(low, high);
     }
-    std::ranges::sort(joined);
+    std::ranges::sort(pairs);
     std::vector<Vertex> kept;
     std::vector<DirectedEdge> first_kept(1, 0);
     for (Vertex vertex = 0; vertex < vertex_count(); ++vertex) {
         for (const Vertex neighbour : neighbours(vertex)) {
-            if (std::ranges::binary_search(joined, std::pair(vertex, neighbour))) kept.push_back(neighbour);
+            const std::pair<Vertex, Vertex> pair = std::minmax(vertex, neighbour);
+            if (std::ranges::binary_search(pairs, pair)) kept.push_back(neighbour);
         }
         first_kept.push_back(static_cast<DirectedEdge>(kept.size()));
     }

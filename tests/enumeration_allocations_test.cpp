@@ -1,7 +1,7 @@
 #include "graph_search/lane_beam.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/shipped_weights.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "graph_search/step_score_file.hpp"
 
 #include <cstdlib>
 #include <new>

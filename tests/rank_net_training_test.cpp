@@ -1,10 +1,10 @@
 #include "experiments/training/rank_net_training.hpp"
 
+#include "experiments/files/rank_net_file.hpp"
 #include "experiments/tracks/track_spec.hpp"
 #include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>

@@ -2,10 +2,10 @@
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/rank_net_file.hpp"
+#include "experiments/files/step_score_file.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "graph_search/rank_net_file.hpp"
-#include "graph_search/step_score_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <cstdint>
@@ -95,7 +95,7 @@ void train(Options& options) {
     run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
     if (options.extended) {
         run.candidates.search = extended_search_options();
-        run.steps_record = step_scores_training(shipped_step_scores_json());
+        run.steps_record = step_scores_training(shipped_step_score_file());
         run.training.loss = RankLoss::choice;
     }
     if (!options.step_scores.empty()) {

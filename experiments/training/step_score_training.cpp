@@ -94,7 +94,7 @@ class RightLane {
             vertex_of.emplace(cone.id, static_cast<Vertex>(points.size()));
             points.push_back(cone.position);
         }
-        graph_.build(points, search_.d_max_m, search_.graph);
+        graph_.build(points, search_.d_max_m, search_.edge_rule);
         starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start);
         for (const Side side : {kLeft, kRight}) {
             truth_[side].clear();

@@ -1,4 +1,4 @@
-#include "graph_search/step_score_file.hpp"
+#include "experiments/files/step_score_file.hpp"
 
 #include "model/invalid_input.hpp"
 
@@ -6,11 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace conelane {
-
-// In a source file that the build makes of weights/.
-extern const char* const kStepScoresJson;
-
+namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -99,12 +95,4 @@ std::string step_scores_json(const StepScores& scores, std::string_view training
     return text + "}\n}\n";
 }
 
-std::shared_ptr<const StepScores> shipped_step_scores() {
-    return std::make_shared<const StepScores>(parse_step_scores(shipped_step_scores_json()));
-}
-
-std::string_view shipped_step_scores_json() {
-    return kStepScoresJson;
-}
-
-}  // namespace conelane
+}  // namespace conelane::experiments

@@ -1,4 +1,4 @@
-#include "graph_search/rank_net_file.hpp"
+#include "experiments/files/rank_net_file.hpp"
 
 #include "graph_search/lane_features.hpp"
 #include "model/invalid_input.hpp"
@@ -12,12 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace conelane {
-
-// In a source file that the build makes of weights/.
-extern const char* const kPaperRankNetJson;
-extern const char* const kExtendedRankNetJson;
-
+namespace conelane::experiments {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -163,12 +158,4 @@ std::string rank_net_json(const RankNetWeights& weights, std::string_view traini
     return text + "\n}\n";
 }
 
-std::shared_ptr<const LaneRanking> paper_rank_net() {
-    return make_rank_net(parse_rank_net(kPaperRankNetJson));
-}
-
-std::shared_ptr<const LaneRanking> extended_rank_net() {
-    return make_rank_net(parse_rank_net(kExtendedRankNetJson));
-}
-
-}  // namespace conelane
+}  // namespace conelane::experiments

@@ -2,11 +2,10 @@
 
 #include "graph_search/lane_beam.hpp"
 
-#include <memory>
 #include <string>
 #include <string_view>
 
-namespace conelane {
+namespace conelane::experiments {
 
 /// Scores from their file: a JSON object with `version` 1 and `measures`, which has an object for each of
 /// step_measures(), in its order: `first` and `spacing`, as the program has them, and `scores`. Other keys,
@@ -20,9 +19,7 @@ namespace conelane {
 /// The `training` of such a file. Throws as parse_step_scores, of which it reads no more.
 [[nodiscard]] std::string step_scores_training(std::string_view json);
 
-/// The scores that come with the library, trained by `conelane train --steps`, and their file, which tells on
-/// what.
-[[nodiscard]] std::shared_ptr<const StepScores> shipped_step_scores();
-[[nodiscard]] std::string_view shipped_step_scores_json();
+/// The file of the scores that come with the library.
+[[nodiscard]] std::string_view shipped_step_score_file();
 
-}  // namespace conelane
+}  // namespace conelane::experiments

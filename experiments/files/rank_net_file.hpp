@@ -2,11 +2,10 @@
 
 #include "graph_search/ranking.hpp"
 
-#include <memory>
 #include <string>
 #include <string_view>
 
-namespace conelane {
+namespace conelane::experiments {
 
 /// Weights from their file: a JSON object with `version` 1, `features` (the names of the inputs, which must
 /// be the first ones of lane_feature_names), `mean`, `deviation`, `hidden` (an array for each unit),
@@ -18,9 +17,4 @@ namespace conelane {
 /// Throws InvalidInput where the weights are none that make_rank_net takes or `training` is no JSON.
 [[nodiscard]] std::string rank_net_json(const RankNetWeights& weights, std::string_view training);
 
-/// The networks that come with the library, trained by `conelane train`; their files in weights/ tell on
-/// what.
-[[nodiscard]] std::shared_ptr<const LaneRanking> paper_rank_net();     ///< on the paper's features
-[[nodiscard]] std::shared_ptr<const LaneRanking> extended_rank_net();  ///< on all features
-
-}  // namespace conelane
+}  // namespace conelane::experiments
