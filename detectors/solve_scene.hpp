@@ -9,7 +9,7 @@ namespace conelane {
 
 /// A scene, solved: the numbers that it became, and what the solver answered.
 struct SolvedScene {
-    LaneGraphProblem problem;
+    LaneGraphProblem problem;  ///< without cones where a limit ended its making
     RldReport report;       ///< build_ms counts making the problem too
     double total_ms = 0.0;  ///< from the scene in memory to the report
 };
