@@ -97,8 +97,8 @@ void require_boundary(const LaneBoundary& boundary, bool closed, const char* key
 /// Parameters are those of the spline, arc lengths start at its first rung.
 class CentreLine {
   public:
-    CentreLine(const LaneBoundary& left, const LaneBoundary& right, RungLadder ladder, double smoothing_m)
-        : left_(left), right_(right), ladder_(std::move(ladder)), spline_(fit(smoothing_m)) {
+    CentreLine(RungLadder ladder, double smoothing_m)
+        : ladder_(std::move(ladder)), spline_(fit(smoothing_m)) {
         measure();
     }
 
@@ -108,7 +108,7 @@ class CentreLine {
     /// line, or around a closed one; 0 where there is none at the place itself.
     [[nodiscard]] double usable_length_m(double from_m) const;
     [[nodiscard]] double length_m() const { return arc_m_.back(); }
-    [[nodiscard]] bool closed() const { return left_.closed() || right_.closed(); }
+    [[nodiscard]] bool closed() const { return ladder_.left.closed(); }
     /// The point at an arc length, which wraps on a closed line. Widths are absent where a boundary is on
     /// the wrong side or nearer than it may.
     [[nodiscard]] DrivablePoint at(double arc_m) const;
@@ -126,12 +126,10 @@ class CentreLine {
     [[nodiscard]] double arc_between(double from, double to) const;
     [[nodiscard]] double parameter_at(double arc_m) const;
     [[nodiscard]] double width_m(const LaneBoundary& boundary, double place_m, const Point& from,
-                                 const Point& normal) const;
+                                 const Point& normal, double most_m) const;
     void add_gaps(const LaneBoundary& boundary, bool on_left, double longest_gap_m,
                   std::vector<BridgedGap>& gaps) const;
 
-    const LaneBoundary& left_;
-    const LaneBoundary& right_;
     RungLadder ladder_;
     std::vector<double>
         room_m_;  ///< how far the spline may be from the middle of each rung; negative: no lane
@@ -147,8 +145,8 @@ SmoothingSpline CentreLine::fit(double smoothing_m) {
     std::vector<Point> middles;
     for (const Rung& rung : ladder_.rungs) {
         middles.push_back(rung.middle());
-        const double half_m = std::min(left_.distance_m(middles.back(), rung.left_m, kReach_m),
-                                       right_.distance_m(middles.back(), rung.right_m, kReach_m));
+        const double half_m = std::min(ladder_.left.distance_m(middles.back(), rung.left_m, kReach_m),
+                                       ladder_.right.distance_m(middles.back(), rung.right_m, kReach_m));
         room_m_.push_back(half_m >= kNarrowestHalf_m ? half_m - kClearance_m : -1.0);
     }
     const std::size_t n = count();
@@ -266,8 +264,9 @@ double CentreLine::usable_length_m(double from_m) const {
 }
 
 double CentreLine::width_m(const LaneBoundary& boundary, double place_m, const Point& from,
-                           const Point& normal) const {
-    if (const auto hit_m = boundary.ray_hit_m(from, normal, place_m, kReach_m)) return *hit_m;
+                           const Point& normal, double most_m) const {
+    const auto hit_m = boundary.ray_hit_m(from, normal, place_m, kReach_m);
+    if (hit_m && *hit_m <= most_m) return *hit_m;
     const Point& first = boundary.vertices().front();
     const Point& last = boundary.vertices().back();
     const Point& end = (first - from).squaredNorm() < (last - from).squaredNorm() ? first : last;
@@ -281,11 +280,12 @@ DrivablePoint CentreLine::at(double arc_m) const {
     const Point normal = Point(-jet.first.y(), jet.first.x()) / speed;
     const auto nearest = static_cast<std::size_t>(std::lround(parameter_m / ladder_.spacing_m)) % count();
     const Rung& rung = ladder_.rungs[nearest];
+    const double most_m = 2.0 * (rung.left - rung.right).norm();  // farther is another stretch of the lane
     return {.position = jet.position,
             .heading_rad = turning_angle({1.0, 0.0}, jet.first),
             .curvature_1pm = cross(jet.first, jet.second) / (speed * speed * speed),
-            .width_left_m = width_m(left_, rung.left_m, jet.position, normal),
-            .width_right_m = width_m(right_, rung.right_m, jet.position, -normal)};
+            .width_left_m = width_m(ladder_.left, rung.left_m, jet.position, normal, most_m),
+            .width_right_m = width_m(ladder_.right, rung.right_m, jet.position, -normal, most_m)};
 }
 
 void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double longest_gap_m,
@@ -322,8 +322,8 @@ void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double lon
 
 std::vector<BridgedGap> CentreLine::gaps(double longest_gap_m) const {
     std::vector<BridgedGap> result;
-    add_gaps(left_, true, longest_gap_m, result);
-    add_gaps(right_, false, longest_gap_m, result);
+    add_gaps(ladder_.left, true, longest_gap_m, result);
+    add_gaps(ladder_.right, false, longest_gap_m, result);
     return result;
 }
 
@@ -363,7 +363,7 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
     require_boundary(right, lane.closed, "right");
     RungLadder ladder = lane_rungs(left, right, kWidestLane_m);
     if (ladder.rungs.empty()) return {};
-    const CentreLine line(left, right, std::move(ladder), options.smoothing_m);
+    const CentreLine line(std::move(ladder), options.smoothing_m);
     const double foot_m = line.foot_m(scene.pose.heading());
     const double usable_m = line.usable_length_m(foot_m);
 
@@ -381,7 +381,7 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
     for (std::size_t i = 0; i < count; ++i) {
         const double s_m = static_cast<double>(i) * step_m;
         DrivablePoint point = line.at(foot_m + s_m);
-        if (!(std::min(point.width_left_m, point.width_right_m) > 0.0)) {  // only beside an ended boundary
+        if (!(std::min(point.width_left_m, point.width_right_m) >= kClearance_m)) {  // past a boundary's end
             result.closed = false;
             result.length_m = i > 0 ? s_m - step_m : 0.0;
             break;
