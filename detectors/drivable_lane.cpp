@@ -26,11 +26,16 @@ constexpr double kNarrowestHalf_m = 0.4;
 /// hairpin.
 constexpr double kReach_m = 12.0;
 constexpr double kSlowest = 0.1;  ///< below it the spline has a cusp; 1 is a spline measured by arc length
-constexpr int kRounds = 15;
-constexpr int kTurningRounds = 3;  ///< the turning expected in a round is that of the round before
+constexpr int kRounds = 20;
+constexpr int kTurningRounds = 3;  ///< at least: the turning expected in a round is that of the round before
 constexpr double kFastestTurn_1pm = 1.0;
-constexpr double kWeightGrowth = 6.0;
-constexpr std::size_t kWeightSpread = 2;  ///< rungs to either side of one that was missed
+/// Bends that are sharper are smoothed more, where there is room. Outer hairpins of 9 m give 1 / (3 m).
+constexpr double kSharpest_1pm = 0.4;
+constexpr int kSharpRounds = 8;  ///< after them only staying in the lane counts
+constexpr double kSharpFactor = 0.4;
+constexpr std::size_t kSharpReach = 4;  ///< rungs to either side of one that weigh less
+constexpr double kMissedFactor = 6.0;
+constexpr std::size_t kMissedReach = 2;  ///< rungs to either side of one that weigh more
 
 void validate(const DrivableOptions& options) {
     const auto require = [](double value, double least, double most, const char* key) {
@@ -140,7 +145,8 @@ class CentreLine {
 
 /// A spline that stays within room_m_ of every middle keeps its clearance: no point within that distance of
 /// the middle is nearer to a boundary. Where it does not, the middles about that rung weigh more in the next
-/// round, so that the spline nears the line of middles there and stays smooth elsewhere.
+/// round, so that the spline nears the line of middles there and stays smooth elsewhere. Where it bends too
+/// sharply, they weigh less.
 SmoothingSpline CentreLine::fit(double smoothing_m) {
     std::vector<Point> middles;
     for (const Rung& rung : ladder_.rungs) {
@@ -152,21 +158,31 @@ SmoothingSpline CentreLine::fit(double smoothing_m) {
     const std::size_t n = count();
     std::vector<double> weights(n, 1.0);
     SmoothingSpline spline(middles, weights, ladder_.spacing_m, smoothing_m, closed());
-    std::vector<bool> missed(n);
+    std::vector<double> factors(n);
+    const auto spread = [&](std::size_t k, std::size_t reach, double factor) {
+        for (std::size_t d = 0; d <= reach; ++d) {
+            if (closed() || k + d < n) factors[(k + d) % n] = factor;
+            if (closed() || k >= d) factors[(k + n - d) % n] = factor;
+        }
+    };
     for (int round = 0; round < kRounds; ++round) {
-        bool any = false;
-        std::fill(missed.begin(), missed.end(), false);
+        bool good = true;
+        std::fill(factors.begin(), factors.end(), 1.0);
+        for (std::size_t k = 0; round < kSharpRounds && k < n; ++k) {
+            const SmoothingSpline::Jet jet = spline.at(parameter(k));
+            const double speed = jet.first.norm();
+            if (std::abs(cross(jet.first, jet.second)) <= kSharpest_1pm * speed * speed * speed) continue;
+            good = false;
+            spread(k, kSharpReach, kSharpFactor);
+        }
         for (std::size_t k = 0; k < n; ++k) {
             const double off_m = (spline.at(parameter(k)).position - middles[k]).norm();
             if (room_m_[k] < 0.0 || off_m <= room_m_[k]) continue;
-            any = true;
-            for (std::size_t d = 0; d <= kWeightSpread; ++d) {
-                if (closed() || k + d < n) missed[(k + d) % n] = true;
-                if (closed() || k >= d) missed[(k + n - d) % n] = true;
-            }
+            good = false;
+            spread(k, kMissedReach, kMissedFactor);
         }
-        if (!any && round >= kTurningRounds) break;
-        for (std::size_t k = 0; k < n; ++k) weights[k] *= missed[k] ? kWeightGrowth : 1.0;
+        if (good && round >= kTurningRounds) break;
+        for (std::size_t k = 0; k < n; ++k) weights[k] *= factors[k];
         const std::vector<double> turning_1pm = spline.turning_1pm(kFastestTurn_1pm);
         spline = SmoothingSpline(middles, weights, ladder_.spacing_m, smoothing_m, closed(), turning_1pm);
     }

@@ -14,6 +14,7 @@ constexpr double kSample_m = 0.5;          ///< between matched places of a boun
 constexpr double kSamplesAtMost = 2000.0;  ///< of a boundary; a longer one is sampled more coarsely
 constexpr double kRungSpacing_m = 0.25;    ///< at most
 constexpr double kShortestMidline_m = 0.5;
+constexpr double kLeastAdvance = 0.2;      ///< of an extended lane, as a share of the boundary's
 constexpr double kDirectionReach_m = 2.5;  ///< to either side, of the direction along an extended lane
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -165,6 +166,7 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
     const auto side_of_line = [&](const Point& point) { return cross(along[last].point - end, point - end); };
     const double inside = side_of_line(along[from].point);
     KeptWidth kept;
+    Point last_middle = 0.5 * (along[from].point + end);
     std::size_t behind = from;
     std::size_t ahead = from;
     for (std::size_t k = from + 1; k <= last; ++k) {
@@ -176,7 +178,12 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
         const Point direction = (along[ahead].point - along[behind].point).normalized();
         const Point across = left_normal * Point(-direction.y(), direction.x());
         const Point opposite = along[k].point + width_m * across;
-        if (side_of_line(0.5 * (opposite + along[k].point)) * inside < 0.0) break;
+        const Point middle = 0.5 * (opposite + along[k].point);
+        if (side_of_line(middle) * inside < 0.0) break;
+        // In a sharp corner, seen from outside, the way back is no lane.
+        const double travelled_m = (along[k].point - along[k - 1].point).norm();
+        if ((middle - last_middle).dot(direction) < kLeastAdvance * travelled_m) break;
+        last_middle = middle;
         kept.ended.push_back(opposite);
         kept.beside.push_back(along[k]);
     }
