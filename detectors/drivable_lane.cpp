@@ -28,7 +28,6 @@ constexpr double kReach_m = 12.0;
 constexpr double kSlowest = 0.1;  ///< below it the spline has a cusp; 1 is a spline measured by arc length
 constexpr int kRounds = 20;
 constexpr int kTurningRounds = 3;  ///< at least: the turning expected in a round is that of the round before
-constexpr double kFastestTurn_1pm = 1.0;
 /// Bends that are sharper are smoothed more, where there is room. Outer hairpins of 9 m give 1 / (3 m).
 constexpr double kSharpest_1pm = 0.4;
 constexpr int kSharpRounds = 8;  ///< after them only staying in the lane counts
@@ -183,7 +182,7 @@ SmoothingSpline CentreLine::fit(double smoothing_m) {
         }
         if (good && round >= kTurningRounds) break;
         for (std::size_t k = 0; k < n; ++k) weights[k] *= factors[k];
-        const std::vector<double> turning_1pm = spline.turning_1pm(kFastestTurn_1pm);
+        const std::vector<double> turning_1pm = spline.turning_1pm(kSharpest_1pm);
         spline = SmoothingSpline(middles, weights, ladder_.spacing_m, smoothing_m, closed(), turning_1pm);
     }
     return spline;

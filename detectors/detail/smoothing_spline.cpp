@@ -111,13 +111,14 @@ SmoothingSpline::Jet SmoothingSpline::at(double parameter_m) const {
             (rest * (middle - from) + t * (to - middle)) / (knot_spacing_m_ * knot_spacing_m_)};
 }
 
-std::vector<double> SmoothingSpline::turning_1pm(double most) const {
+std::vector<double> SmoothingSpline::turning_1pm(double sharpest_1pm) const {
     std::vector<double> rates(intervals_);
     for (std::size_t i = 0; i < intervals_; ++i) {
         const Jet jet = at((static_cast<double>(i) + 0.5) * knot_spacing_m_);
+        const double speed = jet.first.norm();
         const double turned = cross(jet.first, jet.second);
-        const double limit = most * jet.first.squaredNorm();
-        rates[i] = std::abs(turned) < limit ? turned / jet.first.squaredNorm() : std::copysign(most, turned);
+        const bool sharp = std::abs(turned) > sharpest_1pm * speed * speed * speed;
+        rates[i] = sharp ? std::copysign(sharpest_1pm * speed, turned) : turned / (speed * speed);
     }
     return rates;
 }

@@ -31,9 +31,9 @@ class SmoothingSpline {
     /// Precondition: 0 <= parameter <= the parameter of the last point, or of the first one after a turn.
     [[nodiscard]] Jet at(double parameter_m) const;
 
-    /// How fast the direction turns [rad per unit of the parameter] in the middle of each interval, at most
-    /// `most` to either side. An interval reaches over two spacings.
-    [[nodiscard]] std::vector<double> turning_1pm(double most) const;
+    /// How fast the direction turns [rad per unit of the parameter] in the middle of each interval, which
+    /// reaches over two spacings; a curvature above `sharpest_1pm` counts as that.
+    [[nodiscard]] std::vector<double> turning_1pm(double sharpest_1pm) const;
 
   private:
     std::vector<Point> control_;
