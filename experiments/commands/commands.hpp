@@ -18,6 +18,7 @@ void add_formulations_command(CLI::App& program);
 void add_backends_command(CLI::App& program);
 void add_optimality_command(CLI::App& program);
 void add_relaxations_command(CLI::App& program);
+void add_drive_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_report_command(CLI::App& program);
