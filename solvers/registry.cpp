@@ -35,7 +35,7 @@ constexpr RldSolverEntry kSolvers[]{
      make_milp<make_symphony_solver>},
 #endif
     {"exhaustive", "every pair of paths, at most 9 cones", false, true,
-     [](Formulation) { return make_exhaustive_solver(); }},
+     [](Formulation) { return make_exhaustive_solver(); }, kExhaustiveMostCones},
     {"path-pair", "exact branch and bound over pairs of paths", false, true,
      [](Formulation) { return make_path_pair_solver(); }},
     {"lp-rounding", "Clp's relaxation, rounded; no proof", false, false,

@@ -1,5 +1,5 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"

@@ -1,45 +1,27 @@
-#include "experiments/relaxation_table.hpp"
+#include "experiments/studies/relaxations.hpp"
 
-#include "experiments/files/figure_file.hpp"
+#include "experiments/files/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/study_options.hpp"
+#include "experiments/studies/text_table.hpp"
+#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "model/deadline.hpp"
 #include "solvers/registry.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
 
 constexpr std::string_view kExact = "path-pair";
-constexpr double kAgreement = 1e-6;
-
-std::vector<const AnnotatedScene*> scenes_of_size(std::span<const AnnotatedScene> scenes, std::size_t size,
-                                                  std::optional<std::size_t> limit) {
-    std::vector<const AnnotatedScene*> all;
-    for (const AnnotatedScene& scene : scenes) {
-        if (counts(scene) && nearest_ahead(scene.scene, size).cones.size() == size &&
-            ground_truth_of_nearest(scene, size)) {
-            all.push_back(&scene);
-        }
-    }
-    if (!limit || all.size() <= *limit) return all;
-    std::vector<const AnnotatedScene*> some;
-    for (std::size_t i = 0; i < *limit; ++i) some.push_back(all[i * all.size() / *limit]);
-    return some;
-}
-
 /// What the scenes of one row add up to.
 class RowSums {
   public:
@@ -70,13 +52,13 @@ class RowSums {
         if (!least) return std::nullopt;
         ++row_.feasible;
         if (!report.objective) return least;
-        if (*report.objective < *least - kAgreement) {
+        if (*report.objective < *least - kObjectiveTolerance) {
             throw InvalidInput(scene.id, fmt::format("{} answers {}, below the least cost {}", row_.solver,
                                                      *report.objective, *least));
         }
         ++row_.answered;
-        if (*report.objective <= *least + kAgreement) ++row_.optimal;
-        gaps_.push_back(std::max(0.0, *report.objective - *least) / std::max(1.0, std::abs(*least)));
+        if (*report.objective <= *least + kObjectiveTolerance) ++row_.optimal;
+        gaps_.push_back(relative_gap(*report.objective, *least));
         return least;
     }
 
@@ -100,13 +82,46 @@ class RowSums {
     std::vector<double> gaps_, times_ms_;
 };
 
-double share(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+nlohmann::ordered_json to_json(const RelaxationRow& row) {
+    nlohmann::ordered_json json{{"cones", row.cones},       {"solver", row.solver},
+                                {"scenes", row.scenes},     {"feasible", row.feasible},
+                                {"answered", row.answered}, {"optimal", row.optimal}};
+    if (row.mean_gap) json["mean_gap"] = *row.mean_gap;
+    if (row.worst_gap) json["worst_gap"] = *row.worst_gap;
+    json["accurate"] = row.accurate;
+    json["median_ms"] = row.median_ms;
+    json["p95_ms"] = row.p95_ms;
+    json["worst_ms"] = row.worst_ms;
+    return json;
 }
 
-std::string percent(const std::optional<double>& value) {
-    return value ? fmt::format("{:.2f}", 100.0 * *value) : "-";
-}
+class RelaxationsStudy : public Study {
+  public:
+    RelaxationsStudy()
+        : Study(
+              {"relaxations",
+               "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
+               "cost in accuracy?",
+               "The nearest cones of each scene that has as many and holds a ground truth among them; every "
+               "solver that proves nothing, and path-pair, which gives the optimum; one thread. Times are "
+               "wall clock with the making of the problem. Gap: (objective - optimum) / max(1, |optimum|), "
+               "over the answers."}) {}
+
+    void add_options(CLI::App& command) override {
+        add_input_options(command, input_);
+        add_cone_set_options(command, options_);
+    }
+
+    StudyResult run() override {
+        options_.parameters = input_.parameters.load();
+        const std::vector<RelaxationRow> rows = relaxation_rows(read_scenes(input_.scenes), options_);
+        return study_result(relaxation_table(rows), rows, to_json);
+    }
+
+  private:
+    StudyInput input_;
+    RelaxationOptions options_;
+};
 
 }  // namespace
 
@@ -114,7 +129,11 @@ std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scene
                                            const RelaxationOptions& options) {
     std::vector<RelaxationRow> rows;
     for (const std::size_t size : options.sizes) {
-        const std::vector<const AnnotatedScene*> of_size = scenes_of_size(scenes, size, options.limit);
+        const auto has_ground_truth = [&](const AnnotatedScene& scene) {
+            return counts(scene) && ground_truth_of_nearest(scene, size).has_value();
+        };
+        const std::vector<const AnnotatedScene*> of_size =
+            scenes_of_size(scenes, size, options.limit, has_ground_truth);
         if (of_size.empty()) continue;
         Progress progress(fmt::format("n = {}", size), of_size.size());
         RowSums exact(size, *find_rld_solver(kExact), options);
@@ -134,35 +153,30 @@ std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scene
 }
 
 std::string relaxation_table(std::span<const RelaxationRow> rows) {
-    std::string table =
-        fmt::format("{:>3} {:<12} {:>6} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10} {:>9} {:>9} {:>9}\n", "n",
-                    "solver", "scenes", "feasible", "answered %", "optimal %", "gap avg %", "gap worst %",
-                    "accurate %", "median ms", "p95 ms", "worst ms");
+    TextTable table({{"n"},
+                     {"solver", true},
+                     {"scenes"},
+                     {"feasible"},
+                     {"answered %"},
+                     {"optimal %"},
+                     {"gap avg %"},
+                     {"gap worst %"},
+                     {"accurate %"},
+                     {"median ms"},
+                     {"p95 ms"},
+                     {"worst ms"}});
     for (const RelaxationRow& row : rows) {
-        table += fmt::format(
-            "{:>3} {:<12} {:>6} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10} {:>9.3f} {:>9.3f} {:>9.3f}\n",
-            row.cones, row.solver, row.scenes, row.feasible, percent(share(row.answered, row.feasible)),
-            percent(share(row.optimal, row.feasible)), percent(row.mean_gap), percent(row.worst_gap),
-            percent(row.accurate), row.median_ms, row.p95_ms, row.worst_ms);
+        table.add({std::to_string(row.cones), row.solver, std::to_string(row.scenes),
+                   std::to_string(row.feasible), percent(share(row.answered, row.feasible), 2),
+                   percent(share(row.optimal, row.feasible), 2), percent(row.mean_gap, 2),
+                   percent(row.worst_gap, 2), percent(row.accurate, 2), fixed(row.median_ms, 3),
+                   fixed(row.p95_ms, 3), fixed(row.worst_ms, 3)});
     }
-    return table;
+    return table.text();
 }
 
-void write_relaxation_rows(const std::filesystem::path& file, std::span<const RelaxationRow> rows) {
-    FigureFile output(file);
-    for (const RelaxationRow& row : rows) {
-        nlohmann::ordered_json json{{"cones", row.cones},       {"solver", row.solver},
-                                    {"scenes", row.scenes},     {"feasible", row.feasible},
-                                    {"answered", row.answered}, {"optimal", row.optimal}};
-        if (row.mean_gap) json["mean_gap"] = *row.mean_gap;
-        if (row.worst_gap) json["worst_gap"] = *row.worst_gap;
-        json["accurate"] = row.accurate;
-        json["median_ms"] = row.median_ms;
-        json["p95_ms"] = row.p95_ms;
-        json["worst_ms"] = row.worst_ms;
-        output.add(std::move(json));
-    }
-    output.commit();
+std::unique_ptr<Study> make_relaxations_study() {
+    return std::make_unique<RelaxationsStudy>();
 }
 
 }  // namespace conelane::experiments

@@ -1,47 +1,33 @@
-#include "experiments/formulation_table.hpp"
+#include "experiments/studies/formulations.hpp"
 
-#include "experiments/files/figure_file.hpp"
+#include "experiments/files/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/study_options.hpp"
+#include "experiments/studies/text_table.hpp"
+#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "model/deadline.hpp"
 #include "solvers/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
 
+/// A formulation and who solves it.
 struct Contestant {
     Formulation formulation;
     std::string_view solver;
 };
 constexpr std::array kContestants{Contestant{Formulation::tight, "cbc"},
                                   Contestant{Formulation::paper, "cbc-main"}};
-constexpr double kAgreement = 1e-6;
-
-std::vector<Scene> scenes_of_size(std::span<const AnnotatedScene> scenes, std::size_t size,
-                                  std::optional<std::size_t> limit) {
-    std::vector<Scene> all;
-    for (const AnnotatedScene& annotated : scenes) {
-        Scene scene = nearest_ahead(annotated.scene, size);
-        if (scene.cones.size() == size) all.push_back(std::move(scene));
-    }
-    if (!limit || all.size() <= *limit) return all;
-    std::vector<Scene> some;
-    for (std::size_t i = 0; i < *limit; ++i) some.push_back(std::move(all[i * all.size() / *limit]));
-    return some;
-}
-
 /// What the scenes of one row add up to.
 class RowSums {
   public:
@@ -103,9 +89,47 @@ class RowSums {
     std::vector<double> gaps_, build_ms_, total_ms_;
 };
 
-std::string percent(const std::optional<double>& share) {
-    return share ? fmt::format("{:.2f}", 100.0 * *share) : "-";
+nlohmann::ordered_json to_json(const FormulationRow& row) {
+    nlohmann::ordered_json json{{"cones", row.cones},     {"formulation", to_string(row.formulation)},
+                                {"solver", row.solver},   {"scenes", row.scenes},
+                                {"optimal", row.optimal}, {"infeasible", row.infeasible},
+                                {"columns", row.columns}, {"rows", row.rows},
+                                {"entries", row.entries}};
+    if (row.median_gap) json["median_gap"] = *row.median_gap;
+    if (row.mean_gap) json["mean_gap"] = *row.mean_gap;
+    json["mean_nodes"] = row.mean_nodes;
+    json["median_build_ms"] = row.median_build_ms;
+    json["median_ms"] = row.median_ms;
+    json["p95_ms"] = row.p95_ms;
+    return json;
 }
+
+class FormulationsStudy : public Study {
+  public:
+    FormulationsStudy()
+        : Study(
+              {"formulations",
+               "what does the tight formulation gain over the printed one: size, LP gap, nodes, time?",
+               "The nearest cones of each scene that has as many; the tight formulation by cbc, the printed "
+               "one by cbc-main, each the faster of the two on it; one thread. Times are wall clock with "
+               "the making of the program. LP gap: (optimum - relaxation) / max(1, |optimum|), over the "
+               "scenes with a proven optimum. The optima of both must be the same."}) {}
+
+    void add_options(CLI::App& command) override {
+        add_input_options(command, input_);
+        add_cone_set_options(command, options_);
+    }
+
+    StudyResult run() override {
+        options_.parameters = input_.parameters.load();
+        const std::vector<FormulationRow> rows = formulation_rows(read_scenes(input_.scenes), options_);
+        return study_result(formulation_table(rows), rows, to_json);
+    }
+
+  private:
+    StudyInput input_;
+    FormulationOptions options_;
+};
 
 }  // namespace
 
@@ -113,15 +137,17 @@ std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> sce
                                              const FormulationOptions& options) {
     std::vector<FormulationRow> rows;
     for (const std::size_t size : options.sizes) {
-        const std::vector<Scene> of_size = scenes_of_size(scenes, size, options.limit);
+        const std::vector<const AnnotatedScene*> of_size =
+            scenes_of_size(scenes, size, options.limit, [](const AnnotatedScene&) { return true; });
         if (of_size.empty()) continue;
         Progress progress(fmt::format("n = {}", size), of_size.size());
         RowSums tight(size, kContestants[0], options);
         RowSums paper(size, kContestants[1], options);
-        for (const Scene& scene : of_size) {
+        for (const AnnotatedScene* annotated : of_size) {
+            const Scene scene = nearest_ahead(annotated->scene, size);
             const std::optional<double> ours = tight.add(scene);
             const std::optional<double> printed = paper.add(scene);
-            if (ours && printed && std::abs(*ours - *printed) > kAgreement) {
+            if (ours && printed && std::abs(*ours - *printed) > kObjectiveTolerance) {
                 throw InvalidInput(scene.id,
                                    fmt::format("the optima differ: tight {}, paper {}", *ours, *printed));
             }
@@ -134,39 +160,33 @@ std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> sce
 }
 
 std::string formulation_table(std::span<const FormulationRow> rows) {
-    std::string table = fmt::format(
-        "{:>3} {:<6} {:<9} {:>6} {:>8} {:>10} {:>8} {:>8} {:>9} {:>9} {:>9} {:>8} {:>9} {:>9} {:>9}\n", "n",
-        "form", "solver", "scenes", "optimal", "infeasible", "columns", "rows", "entries", "gap med %",
-        "gap avg %", "nodes", "build ms", "median ms", "p95 ms");
+    TextTable table({{"n"},
+                     {"form", true},
+                     {"solver", true},
+                     {"scenes"},
+                     {"optimal"},
+                     {"infeasible"},
+                     {"columns"},
+                     {"rows"},
+                     {"entries"},
+                     {"gap med %"},
+                     {"gap avg %"},
+                     {"nodes"},
+                     {"build ms"},
+                     {"median ms"},
+                     {"p95 ms"}});
     for (const FormulationRow& row : rows) {
-        table += fmt::format(
-            "{:>3} {:<6} {:<9} {:>6} {:>8} {:>10} {:>8.0f} {:>8.0f} {:>9.0f} {:>9} {:>9} {:>8.1f} {:>9.3f} "
-            "{:>9.3f} "
-            "{:>9.3f}\n",
-            row.cones, to_string(row.formulation), row.solver, row.scenes, row.optimal, row.infeasible,
-            row.columns, row.rows, row.entries, percent(row.median_gap), percent(row.mean_gap),
-            row.mean_nodes, row.median_build_ms, row.median_ms, row.p95_ms);
+        table.add({std::to_string(row.cones), std::string(to_string(row.formulation)), row.solver,
+                   std::to_string(row.scenes), std::to_string(row.optimal), std::to_string(row.infeasible),
+                   fixed(row.columns, 0), fixed(row.rows, 0), fixed(row.entries, 0),
+                   percent(row.median_gap, 2), percent(row.mean_gap, 2), fixed(row.mean_nodes, 1),
+                   fixed(row.median_build_ms, 3), fixed(row.median_ms, 3), fixed(row.p95_ms, 3)});
     }
-    return table;
+    return table.text();
 }
 
-void write_formulation_rows(const std::filesystem::path& file, std::span<const FormulationRow> rows) {
-    FigureFile output(file);
-    for (const FormulationRow& row : rows) {
-        nlohmann::ordered_json json{{"cones", row.cones},     {"formulation", to_string(row.formulation)},
-                                    {"solver", row.solver},   {"scenes", row.scenes},
-                                    {"optimal", row.optimal}, {"infeasible", row.infeasible},
-                                    {"columns", row.columns}, {"rows", row.rows},
-                                    {"entries", row.entries}};
-        if (row.median_gap) json["median_gap"] = *row.median_gap;
-        if (row.mean_gap) json["mean_gap"] = *row.mean_gap;
-        json["mean_nodes"] = row.mean_nodes;
-        json["median_build_ms"] = row.median_build_ms;
-        json["median_ms"] = row.median_ms;
-        json["p95_ms"] = row.p95_ms;
-        output.add(std::move(json));
-    }
-    output.commit();
+std::unique_ptr<Study> make_formulations_study() {
+    return std::make_unique<FormulationsStudy>();
 }
 
 }  // namespace conelane::experiments
