@@ -78,7 +78,7 @@ TEST(Optimality, NoCandidateBeatsTheProvenOptimum) {
 
 TEST(Optimality, DoesNotDependOnThreads) {
     const SceneSet set = some_scenes({0.2});
-    const auto prices = [&](unsigned threads) {
+    const auto gaps = [&](unsigned threads) {
         OptimalityOptions options;
         options.threads = threads;
         std::vector<double> all;
@@ -87,7 +87,7 @@ TEST(Optimality, DoesNotDependOnThreads) {
         }
         return all;
     };
-    EXPECT_EQ(prices(1), prices(3));
+    EXPECT_EQ(gaps(1), gaps(3));
 }
 
 TEST(Optimality, WantsAMethodThatEnumerates) {

@@ -2,7 +2,7 @@
 
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/parameter_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "tests/file_test.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/files/certificate_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "model/bound_certificate.hpp"
 #include "model/invalid_input.hpp"

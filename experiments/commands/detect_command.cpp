@@ -2,7 +2,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/methods.hpp"
 
 #include <memory>

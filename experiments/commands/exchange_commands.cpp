@@ -2,7 +2,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"

@@ -2,7 +2,7 @@
 
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/studies/formulations.hpp"
 
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"

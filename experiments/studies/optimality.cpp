@@ -3,7 +3,7 @@
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/json_node.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/statistics.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/studies/relaxations.hpp"
 
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
