@@ -1,9 +1,10 @@
 #include "experiments/studies/backends.hpp"
 
+#include "detectors/solve_scene.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/scenes/scene_file.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
@@ -38,15 +39,15 @@ class Driver {
     void forget() { previous_.reset(); }
 
     BackendRow solve(const AnnotatedScene& annotated, const Scene& cones) {
-        const Stopwatch watch;
-        const Deadline deadline(options_.time_limit_ms);
-        const LaneGraphProblem problem = make_problem(cones, options_.parameters, solver_->extent());
         std::optional<LaneGraph> start;
+        const Stopwatch watch;
         if (previous_) start = map_by_cone_id(previous_->first, previous_->second, cones);
-        const RldReport report =
-            solver_->solve(problem, {deadline.remaining_ms()}, start ? &*start : nullptr);
+        const double mapped_ms = watch.elapsed_ms();
+        const auto [problem, report, solved_ms] =
+            solve_scene(*solver_, cones, options_.parameters, {options_.time_limit_ms - mapped_ms},
+                        start ? &*start : nullptr);
         BackendRow row{&annotated,     cones.cones.size(), backend_,     report.status,
-                       report.message, report.objective,   report.nodes, watch.elapsed_ms()};
+                       report.message, report.objective,   report.nodes, mapped_ms + solved_ms};
         if (!report.lane_graph) return row;
         const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
         const CheckReport checked = check(cones, options_.parameters, *report.lane_graph, claim);

@@ -1,12 +1,12 @@
 #include "experiments/studies/formulations.hpp"
 
-#include "experiments/scenes/scene_file.hpp"
+#include "detectors/solve_scene.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/linear_relaxation.hpp"
@@ -28,11 +28,20 @@ struct Contestant {
 };
 constexpr std::array kContestants{Contestant{Formulation::tight, "cbc"},
                                   Contestant{Formulation::paper, "cbc-main"}};
+
+std::unique_ptr<RldSolver> solver_of(const Contestant& contestant) {
+    const RldSolverEntry* entry = find_rld_solver(contestant.solver);
+    if (entry == nullptr) {
+        throw InvalidInput("solver", fmt::format("'{}' is not in this build", contestant.solver));
+    }
+    return entry->make(contestant.formulation);
+}
+
 /// What the scenes of one row add up to.
 class RowSums {
   public:
     RowSums(std::size_t cones, const Contestant& contestant, const FormulationOptions& options)
-        : options_(options), solver_(find_rld_solver(contestant.solver)->make(contestant.formulation)) {
+        : options_(options), solver_(solver_of(contestant)) {
         row_.cones = cones;
         row_.formulation = contestant.formulation;
         row_.solver = contestant.solver;
@@ -40,16 +49,14 @@ class RowSums {
 
     /// The optimum, where it was proven.
     std::optional<double> add(const Scene& scene) {
-        const Stopwatch watch;
-        const LaneGraphProblem problem = make_problem(scene, options_.parameters, solver_->extent());
-        const double problem_ms = watch.elapsed_ms();
-        const RldReport report = solver_->solve(problem, {options_.time_limit_ms});
+        const auto [problem, report, solved_ms] =
+            solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});
         if (report.status == SolveStatus::error) {
             throw InvalidInput(scene.id, row_.solver + " failed: " + report.message);
         }
         ++row_.scenes;
-        build_ms_.push_back(problem_ms + report.build_ms);
-        total_ms_.push_back(problem_ms + report.build_ms + report.solve_ms);
+        build_ms_.push_back(report.build_ms);
+        total_ms_.push_back(solved_ms);
         row_.mean_nodes += static_cast<double>(report.nodes);
         const LaneGraphModel model(problem, row_.formulation);
         const BinaryProgram& program = model.program();

@@ -1,11 +1,12 @@
 #include "experiments/studies/optimality.hpp"
 
+#include "detectors/solve_scene.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/json_node.hpp"
-#include "experiments/scenes/scene_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"
@@ -17,6 +18,7 @@
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -36,16 +38,19 @@ class Lap {
         : tracks_(tracks),
           options_(options),
           solver_(find_rld_solver("path-pair")->make(Formulation::tight)),
-          detector_(find_method(options.method).make({options.parameters, {}, options.nearest})) {}
+          detector_(make_detector(find_method(options.method), {options.parameters, {}, options.nearest})) {}
 
     OptimalityRow drive(const AnnotatedScene& annotated) {
         const Scene cones =
             options_.nearest ? nearest_ahead(annotated.scene, *options_.nearest) : annotated.scene;
-        const LaneGraphProblem problem = make_problem(cones, options_.parameters, solver_->extent());
         OptimalityRow row;
         row.scene = &annotated;
-        solve(row, problem, cones);
-        const LaneAnswer answer = detector_->detect(annotated.scene, {.keep_candidates = true});
+        const auto [problem, report, solved_ms] =
+            solve_scene(*solver_, cones, options_.parameters, {options_.time_limit_ms});
+        if (report.status == SolveStatus::error) throw InvalidInput(cones.id, report.message);
+        take_optimum(row, report, cones);
+        const LaneAnswer answer =
+            detector_->detect(annotated.scene, {std::numeric_limits<double>::infinity(), true});
         if (!answer.enumeration) throw InvalidInput("method", "'" + options_.method + "' does not enumerate");
         if (answer.status == LaneStatus::found)
             row.choice = with_objective(answer.lane, problem, cones, annotated);
@@ -54,8 +59,7 @@ class Lap {
     }
 
   private:
-    void solve(OptimalityRow& row, const LaneGraphProblem& problem, const Scene& cones) {
-        const RldReport report = solver_->solve(problem, {options_.time_limit_ms});
+    void take_optimum(OptimalityRow& row, const RldReport& report, const Scene& cones) const {
         row.status = report.status;
         row.bound = report.bound;
         if (!report.lane_graph) return;

@@ -1,16 +1,15 @@
 #include "experiments/studies/relaxations.hpp"
 
-#include "experiments/scenes/scene_file.hpp"
+#include "detectors/solve_scene.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/ground_truth.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
-#include "model/lane_graph_problem.hpp"
 #include "solvers/registry.hpp"
 
 #include <string_view>
@@ -34,11 +33,12 @@ class RowSums {
     /// `least`: the proven least cost; nothing in the exact solver's own row, which then gives it.
     std::optional<double> add(const AnnotatedScene& annotated, std::optional<double> least) {
         const Scene scene = nearest_ahead(annotated.scene, row_.cones);
-        const Deadline deadline(options_.time_limit_ms);
-        const Stopwatch watch;
-        const LaneGraphProblem problem = make_problem(scene, options_.parameters, solver_->extent());
-        const RldReport report = solver_->solve(problem, {deadline.remaining_ms()});
-        times_ms_.push_back(watch.elapsed_ms());
+        const auto [problem, report, solved_ms] =
+            solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});
+        if (report.status == SolveStatus::error && row_.solver == kExact) {
+            throw InvalidInput(scene.id, report.message);
+        }
+        times_ms_.push_back(solved_ms);
         ++row_.scenes;
         if (report.status == SolveStatus::optimal) least = report.objective;
         LaneAnswer answer;

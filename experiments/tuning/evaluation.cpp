@@ -4,7 +4,6 @@
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "model/invalid_input.hpp"
-#include "model/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -26,7 +25,7 @@ struct SceneValue {
 };
 
 SceneValue value_on(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
-                 const RldParameters& parameters, const EvaluationOptions& options) {
+                    const RldParameters& parameters, const EvaluationOptions& options) {
     const EvaluatedScene evaluated = evaluate(solver, annotated.scene, parameters, options);
     if (evaluated.report.status == SolveStatus::feasible || evaluated.report.status == SolveStatus::stopped)
         return {0.0, true};
@@ -42,12 +41,13 @@ std::optional<std::size_t> seen_count(const EvaluationOptions& options) {
 }
 
 EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-             const EvaluationOptions& options) {
-    const Deadline deadline(options.time_limit_ms);
+                        const EvaluationOptions& options) {
     const std::optional<std::size_t> count = seen_count(options);
-    EvaluatedScene evaluated{count ? nearest_ahead(scene, *count) : scene, {}, {}, {}};
-    evaluated.problem = make_problem(evaluated.seen, parameters, solver.extent());
-    evaluated.report = solver.solve(evaluated.problem, {deadline.remaining_ms()});
+    EvaluatedScene evaluated;
+    evaluated.seen = count ? nearest_ahead(scene, *count) : scene;
+    static_cast<SolvedScene&>(evaluated) =
+        solve_scene(solver, evaluated.seen, parameters, {options.time_limit_ms});
+    if (evaluated.report.status == SolveStatus::error) throw InvalidInput(scene.id, evaluated.report.message);
     if (!evaluated.report.lane_graph) return evaluated;
     evaluated.answer = answer_of(*evaluated.report.lane_graph, evaluated.seen, options);
     return evaluated;

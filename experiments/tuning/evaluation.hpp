@@ -1,8 +1,8 @@
 #pragma once
 
+#include "detectors/solve_scene.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "model/lane_detector.hpp"
-#include "model/lane_graph_problem.hpp"
 #include "model/rld_parameters.hpp"
 #include "solvers/rld_solver.hpp"
 
@@ -35,15 +35,13 @@ struct EvaluationOptions {
     unsigned threads = 1;
 };
 
-/// What parameters answer on a scene, and how.
-struct EvaluatedScene {
+/// A scene solved under some parameters, and what is answered.
+struct EvaluatedScene : SolvedScene {
     Scene seen;  ///< the cone set, or the context where that is larger
-    LaneGraphProblem problem;
-    RldReport report;
     LaneAnswer answer;
 };
 [[nodiscard]] EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                           const EvaluationOptions& options);
+                                      const EvaluationOptions& options);
 
 /// The lane of a lane graph over the cones seen, cut to the cone set; not found where nothing is left of it.
 [[nodiscard]] LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen,

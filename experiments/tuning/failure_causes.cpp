@@ -41,10 +41,12 @@ FailureCause broken_constraint(const LaneGraphProblem& problem, const LaneGraph&
 }
 
 /// The term in which the cost of the ground truth is most above that of the answer.
-FailureCause most_expensive_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth, const LaneGraph& answer) {
+FailureCause most_expensive_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth,
+                                 const LaneGraph& answer) {
     constexpr std::array<FailureCause, kObjectiveTermCount> kCheaper{
-        FailureCause::cheaper_benefit, FailureCause::cheaper_spacing,    FailureCause::cheaper_angle,  FailureCause::cheaper_heading,
-        FailureCause::cheaper_color,   FailureCause::cheaper_unevenness, FailureCause::cheaper_facing, FailureCause::cheaper_near_ends};
+        FailureCause::cheaper_benefit, FailureCause::cheaper_spacing,  FailureCause::cheaper_angle,
+        FailureCause::cheaper_heading, FailureCause::cheaper_color,    FailureCause::cheaper_unevenness,
+        FailureCause::cheaper_facing,  FailureCause::cheaper_near_ends};
     const ObjectiveSums theirs = objective_sums(problem, ground_truth);
     const ObjectiveSums ours = objective_sums(problem, answer);
     std::size_t most_expensive = 0;
@@ -95,7 +97,7 @@ WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth) {
 }
 
 Diagnosis diagnose(const AnnotatedScene& annotated, const RldParameters& parameters,
-                  const EvaluationOptions& options) {
+                   const EvaluationOptions& options) {
     const auto ground_truth_of = [&](std::optional<std::size_t> count) {
         return count ? ground_truth_of_nearest(annotated, *count) : annotated.ground_truth;
     };

@@ -58,6 +58,6 @@ struct Diagnosis {
 /// Solves one scene by path-pair, with the cone set, context and time limit of the options. With a context
 /// the cause refers to the ground truth of the context. Precondition: counts(annotated).
 [[nodiscard]] Diagnosis diagnose(const AnnotatedScene& annotated, const RldParameters& parameters,
-                                const EvaluationOptions& options);
+                                 const EvaluationOptions& options);
 
 }  // namespace conelane::experiments
