@@ -44,7 +44,6 @@ int run(int argument_count, char** arguments) {
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);
-    experiments::add_extras_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
     experiments::add_methods_command(program);
@@ -55,10 +54,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
-    experiments::add_formulations_command(program);
-    experiments::add_backends_command(program);
-    experiments::add_optimality_command(program);
-    experiments::add_relaxations_command(program);
+    experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);
     try {

@@ -1,5 +1,5 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"
@@ -8,7 +8,7 @@
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/losses.hpp"
+#include "experiments/tuning/failure_causes.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
 #include "model/invalid_input.hpp"
@@ -119,7 +119,7 @@ Losses losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& pa
     Losses losses;
     for (const AnnotatedScene& scene : scenes) {
         const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
-        const SceneLoss loss = loss_on(scene, parameters, options);
+        const Diagnosis loss = diagnose(scene, parameters, options);
         count_one(losses.causes[rate], to_string(loss.cause));
         if (!loss.wrong) continue;
         ordered_json& places = losses.places[rate];
@@ -134,7 +134,7 @@ Losses losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& pa
 
 /// Two lines for each rate: shares of the scenes that count.
 void print_losses(const Losses& losses) {
-    const std::string not_counted(to_string(Loss::no_ground_truth));
+    const std::string not_counted(to_string(FailureCause::no_ground_truth));
     for (const auto& [rate, causes] : losses.causes.items()) {
         double scenes = 0.0;
         for (const auto& [cause, count] : causes.items()) {

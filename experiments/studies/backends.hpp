@@ -7,13 +7,19 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace conelane::experiments {
+
+class Study;
+
+/// Every exact solver of the registry on the same cone sets.
+[[nodiscard]] std::unique_ptr<Study> make_backends_study();
 
 /// A solver on a formulation, from nothing or from the lane graph of the scene before.
 struct Backend {
@@ -25,14 +31,13 @@ struct Backend {
     [[nodiscard]] std::string label() const;
 };
 
-/// The exact solvers of this build that cope with any cone set, from nothing: each on the tight formulation,
-/// CBC's full machinery on the printed one.
+/// Every exact solver of the registry, from nothing, those that use a formulation on the tight one.
 [[nodiscard]] std::vector<Backend> exact_backends();
 
-/// The claim measured: all exact backends have the same optimum; they differ in time. Protocol: every backend
-/// on the same cone sets, scene after scene in travel order, one thread, pinned; the time is from the scene
-/// in memory to the lane graph in memory. A warm start is the last lane graph of the lap, its cones found
-/// again by id.
+/// "SOLVER" or "SOLVER/FORMULATION", tight where none is named. Throws InvalidInput where the registry has no
+/// such exact solver, there is no such formulation, or the solver uses none.
+[[nodiscard]] Backend backend_of(std::string_view name);
+
 struct BackendOptions {
     std::vector<Backend> backends;
     std::vector<std::size_t> sizes{12, 30};
@@ -52,16 +57,14 @@ struct BackendRow {
     double latency_ms = 0.0;
 };
 
-/// Rows by size, backend and scene; scenes with fewer cones than a size are left out of it. Throws
-/// InvalidInput where a backend's solver is not in this build.
+/// Rows by size, backend and scene, in the order of the scenes. Left out are of each size the scenes with
+/// fewer cones and the backends whose solver takes no more (RldSolverEntry::most_cones). Throws InvalidInput
+/// where a backend's solver is not in this build.
 [[nodiscard]] std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes,
                                                    const BackendOptions& options);
 
-/// A line per size and backend for a terminal. "differ": scenes whose proven optimum is more than 1e-6 off
-/// the lowest that any backend proved.
+/// A line per size and backend for a terminal. "differ": scenes whose proven optimum is more than
+/// kObjectiveTolerance above the lowest that any backend proved.
 [[nodiscard]] std::string backend_table(std::span<const BackendRow> rows);
-
-/// A JSON object a line and row, with commit. Throws InputError where the file cannot be written.
-void write_backend_rows(const std::filesystem::path& file, std::span<const BackendRow> rows);
 
 }  // namespace conelane::experiments

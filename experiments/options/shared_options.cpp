@@ -1,4 +1,4 @@
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 
 #include "detectors/rld_parameter_sets.hpp"
 #include "experiments/files/atomic_file.hpp"

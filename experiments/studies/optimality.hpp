@@ -6,7 +6,7 @@
 #include "solvers/solve_report.hpp"
 
 #include <cstddef>
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,10 +14,11 @@
 
 namespace conelane::experiments {
 
-/// The question: how far from the optimum of RLD's objective is the best lane that CLC's search enumerates,
-/// and does the optimum drive better than it? Protocol: every scene is solved by `path-pair` on the cone set
-/// that the enumerating method gets; of the method's candidates those that RLD's constraints allow are priced
-/// by objective (29). Nothing is timed.
+class Study;
+
+/// The best lane that CLC's search enumerates against the proven optimum of RLD's objective.
+[[nodiscard]] std::unique_ptr<Study> make_optimality_study();
+
 struct OptimalityOptions {
     std::string method = "clc";          ///< one that enumerates
     std::optional<std::size_t> nearest;  ///< cone set of both; all cones where absent
@@ -26,8 +27,8 @@ struct OptimalityOptions {
     unsigned threads = 1;
 };
 
-/// A lane's price and what it is worth against the ground truth.
-struct PricedLane {
+/// A lane under RLD's objective and against the ground truth.
+struct JudgedLane {
     std::optional<double> objective;  ///< (29); absent where RLD's constraints forbid the lane
     Category category = Category::none;
     double iou = 0.0;
@@ -40,9 +41,9 @@ struct OptimalityRow {
     std::optional<double> bound;
     std::size_t candidates = 0;
     std::size_t feasible = 0;             ///< of them, under RLD's constraints
-    std::optional<PricedLane> optimum;    ///< with status optimal and feasible
-    std::optional<PricedLane> candidate;  ///< the cheapest feasible one; of equal ones the first met
-    std::optional<PricedLane> choice;     ///< the lane that the method's own ranking chose
+    std::optional<JudgedLane> optimum;    ///< with status optimal and feasible
+    std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
+    std::optional<JudgedLane> choice;     ///< the lane that the method's own ranking chose
 
     /// (candidate - optimum) / max(1, |optimum|), at least 0; where the optimum is proven and a candidate
     /// feasible.
@@ -52,18 +53,13 @@ struct OptimalityRow {
 };
 
 /// A row per scene that has a ground truth, in order. Throws InvalidInput where the method does not
-/// enumerate, and naming the scene where a candidate is cheaper than an optimum said to be proven or the
-/// independent checker rejects the optimum or the cheapest candidate.
+/// enumerate, and naming the scene where a candidate has a lower objective than an optimum said to be proven
+/// or the independent checker rejects the optimum or the best candidate.
 [[nodiscard]] std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,
                                                          const TrackBoundariesByName& tracks,
                                                          const OptimalityOptions& options);
 
 /// A line per rate of false positives for a terminal.
 [[nodiscard]] std::string optimality_table(std::span<const OptimalityRow> rows);
-
-/// A JSON object a line and row, with method, cone set and commit. Throws InputError where the file cannot be
-/// written.
-void write_optimality_rows(const std::filesystem::path& file, std::span<const OptimalityRow> rows,
-                           const OptimalityOptions& options);
 
 }  // namespace conelane::experiments

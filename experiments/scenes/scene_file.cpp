@@ -1,4 +1,4 @@
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"

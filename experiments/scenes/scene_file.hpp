@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 
 #include <filesystem>
 #include <span>

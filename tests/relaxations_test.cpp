@@ -1,6 +1,6 @@
 // The table of relaxations against the optimum, on a course without false positives.
 
-#include "experiments/relaxation_table.hpp"
+#include "experiments/studies/relaxations.hpp"
 
 #include "experiments/scenes/scene_set.hpp"
 #include "solvers/registry.hpp"

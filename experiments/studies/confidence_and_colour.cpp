@@ -1,15 +1,18 @@
-#include "experiments/tuning/extras.hpp"
+#include "experiments/studies/confidence_and_colour.hpp"
 
-#include "experiments/files/figure_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/text_table.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -49,7 +52,7 @@ void add_held_out(ByRate& sums, const HeldOut& fold, const std::vector<std::stri
     }
 }
 
-double share(const LapFigure& sums) {
+double mean_of(const LapFigure& sums) {
     return sums.scenes == 0 ? 0.0 : sums.sum / static_cast<double>(sums.scenes);
 }
 
@@ -58,7 +61,7 @@ double mean_of_others(const HeldOut& fold, std::vector<LapFigure> laps) {
     return mean_over_scenes(laps);
 }
 
-SceneSet scenes_with(const ExtraKnowledge& knowledge, const ExtrasOptions& options) {
+SceneSet scenes_with(const SimulatedKnowledge& knowledge, const ConfidenceColorOptions& options) {
     SceneOptions scenes = options.scenes;
     scenes.with_confidence = knowledge.confidence;
     scenes.with_color = knowledge.color_error.has_value();
@@ -66,13 +69,14 @@ SceneSet scenes_with(const ExtraKnowledge& knowledge, const ExtrasOptions& optio
     return make_scene_set(options.tracks, scenes);
 }
 
-Evaluation evaluation_of(const SceneSet& set, TuningObjective objective, const ExtrasOptions& options) {
+Evaluation evaluation_of(const SceneSet& set, TuningObjective objective,
+                         const ConfidenceColorOptions& options) {
     EvaluationOptions evaluation = options.evaluation;
     evaluation.objective = objective;
     return {set, evaluation};
 }
 
-void require_held_out_tracks(const SceneSet& set, const ExtrasOptions& options) {
+void require_held_out_tracks(const SceneSet& set, const ConfidenceColorOptions& options) {
     for (const std::string& track : options.only) {
         if (std::ranges::none_of(options.folds, [&](const HeldOut& fold) { return holds_out(fold, track); }))
             throw InvalidInput("--only", "no fold holds out '" + track + "'");
@@ -86,8 +90,8 @@ void require_held_out_tracks(const SceneSet& set, const ExtrasOptions& options) 
 }
 
 /// The fold's parameters under each weight of what is known.
-std::vector<RldParameters> choices(const ExtraKnowledge& knowledge, const HeldOut& fold,
-                                   const ExtrasOptions& options) {
+std::vector<RldParameters> choices(const SimulatedKnowledge& knowledge, const HeldOut& fold,
+                                   const ConfidenceColorOptions& options) {
     std::vector<RldParameters> choices;
     const auto add = [&](const std::vector<double>& weights, double RldParameters::*weight) {
         for (const double value : weights) {
@@ -102,8 +106,8 @@ std::vector<RldParameters> choices(const ExtraKnowledge& knowledge, const HeldOu
     return choices;
 }
 
-std::vector<ExtrasRow> rows_with(const ExtraKnowledge& knowledge, const ExtrasOptions& options,
-                                 Progress& progress) {
+std::vector<ConfidenceColorRow> rows_with(const SimulatedKnowledge& knowledge,
+                                          const ConfidenceColorOptions& options, Progress& progress) {
     const SceneSet set = scenes_with(knowledge, options);
     require_held_out_tracks(set, options);
     const Evaluation accuracy = evaluation_of(set, TuningObjective::accuracy, options);
@@ -128,17 +132,74 @@ std::vector<ExtrasRow> rows_with(const ExtraKnowledge& knowledge, const ExtrasOp
         if (knowledge.confidence) chosen.push_back(best.w_b);
         if (knowledge.color_error) chosen.push_back(best.w_color);
     }
-    std::vector<ExtrasRow> rows;
+    std::vector<ConfidenceColorRow> rows;
     for (const auto& [rate, sums] : accurate) {
-        rows.push_back({knowledge, rate, sums.scenes, share(sums), share(successful[rate]), chosen});
+        rows.push_back({knowledge, rate, sums.scenes, mean_of(sums), mean_of(successful[rate]), chosen});
     }
     return rows;
 }
 
+nlohmann::ordered_json to_json(const ConfidenceColorRow& row, const ConfidenceColorOptions& options) {
+    nlohmann::ordered_json json{{"known", to_string(row.knowledge)},
+                                {"confidence", row.knowledge.confidence}};
+    if (row.knowledge.color_error) json["color_error"] = *row.knowledge.color_error;
+    json["false_positive_rate"] = row.false_positive_rate;
+    json["scenes"] = row.scenes;
+    json["accurate"] = row.accurate;
+    json["success"] = row.success;
+    if (!row.weights.empty()) json["weights"] = row.weights;
+    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
+    if (options.evaluation.context) json["context"] = *options.evaluation.context;
+    return json;
+}
+
+class ConfidenceAndColourStudy : public Study {
+  public:
+    ConfidenceAndColourStudy()
+        : Study({"confidence-and-colour",
+                 "how much more accurate is RLD with detection confidences, or with cone colours of which "
+                 "some are wrong?",
+                 "Confidences and colours are simulated on the scenes of a tuning whose parameters were "
+                 "fitted to geometry alone. Each fold answers for the tracks that it held out; the weight of "
+                 "what is simulated (w_b with confidences, w_color with colours) is chosen on the others."}) {
+    }
+
+    void add_options(CLI::App& command) override {
+        command.add_option("--record", record_, "P.record.json of `conelane tune`, with folds")->required();
+        command.add_option("--tracks", tracks_,
+                           "the record's tracks where they lie elsewhere; without it as in the record");
+        command.add_option("--only", only_, "names of the tracks that count; all without it");
+        command.add_option("--every", every_m_, "travel between poses instead of the record's [m]");
+        add_seed_option(command, seed_, "base seed instead of the record's");
+        add_threads_option(command, threads_, "nothing is timed");
+    }
+
+    StudyResult run() override {
+        ConfidenceColorOptions options = read_tuning_record(record_);
+        if (!tracks_.empty()) options.tracks = tracks_;
+        options.only = only_;
+        options.scenes.every_m = every_m_.value_or(options.scenes.every_m);
+        options.scenes.seed = seed_.value_or(options.scenes.seed);
+        options.scenes.threads = threads_;
+        options.evaluation.threads = threads_;
+        const std::vector<ConfidenceColorRow> rows = confidence_color_rows(options);
+        return study_result(confidence_color_table(rows), rows,
+                            [&](const ConfidenceColorRow& row) { return to_json(row, options); });
+    }
+
+  private:
+    std::string record_;
+    std::vector<std::string> tracks_;
+    std::vector<std::string> only_;
+    std::optional<double> every_m_;
+    std::optional<std::uint64_t> seed_;
+    unsigned threads_ = 1;
+};
+
 }  // namespace
 
-ExtrasOptions read_tuning_record(const std::filesystem::path& file) {
-    ExtrasOptions options;
+ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file) {
+    ConfidenceColorOptions options;
     with_json_file(file, [&](const JsonNode& json) {
         options.tracks = strings_of(json.member("tracks"));
         SceneOptions& scenes = options.scenes;
@@ -175,7 +236,7 @@ ExtrasOptions read_tuning_record(const std::filesystem::path& file) {
     return options;
 }
 
-std::string to_string(const ExtraKnowledge& knowledge) {
+std::string to_string(const SimulatedKnowledge& knowledge) {
     std::vector<std::string> parts;
     if (knowledge.confidence) parts.emplace_back("confidences");
     if (knowledge.color_error) {
@@ -186,49 +247,37 @@ std::string to_string(const ExtraKnowledge& knowledge) {
     return parts.empty() ? "geometry alone" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::vector<ExtrasRow> extras_rows(const ExtrasOptions& options) {
-    std::vector<ExtraKnowledge> all{{}, {.confidence = true, .color_error = {}}};
+std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options) {
+    std::vector<SimulatedKnowledge> all{{}, {.confidence = true, .color_error = {}}};
     for (const double error : options.color_errors)
         all.push_back({.confidence = false, .color_error = error});
     const std::size_t evaluations =
         1 + options.benefits.size() + options.color_errors.size() * options.color_weights.size();
-    Progress progress("extras", options.folds.size() * evaluations);
-    std::vector<ExtrasRow> rows;
-    for (const ExtraKnowledge& knowledge : all) {
+    Progress progress("confidence and colour", options.folds.size() * evaluations);
+    std::vector<ConfidenceColorRow> rows;
+    for (const SimulatedKnowledge& knowledge : all) {
         std::ranges::move(rows_with(knowledge, options, progress), std::back_inserter(rows));
     }
     return rows;
 }
 
-std::string extras_table(std::span<const ExtrasRow> rows) {
-    std::string table = fmt::format("{:<20} {:>5} {:>7} {:>10} {:>9}  {}\n", "known", "fp %", "scenes",
-                                    "accurate %", "success %", "w_b or w_color by fold");
-    for (const ExtrasRow& row : rows) {
-        table += fmt::format("{:<20} {:>5.1f} {:>7} {:>10.1f} {:>9.1f}  {}\n", to_string(row.knowledge),
-                             100.0 * row.false_positive_rate, row.scenes, 100.0 * row.accurate,
-                             100.0 * row.success,
-                             row.weights.empty() ? "-" : fmt::format("{}", fmt::join(row.weights, " ")));
+std::string confidence_color_table(std::span<const ConfidenceColorRow> rows) {
+    TextTable table({{"known", true},
+                     {"fp %"},
+                     {"scenes"},
+                     {"accurate %"},
+                     {"success %"},
+                     {"w_b or w_color by fold", true}});
+    for (const ConfidenceColorRow& row : rows) {
+        table.add({to_string(row.knowledge), percent(row.false_positive_rate, 1), std::to_string(row.scenes),
+                   percent(row.accurate, 1), percent(row.success, 1),
+                   row.weights.empty() ? "-" : fmt::format("{}", fmt::join(row.weights, " "))});
     }
-    return table;
+    return table.text();
 }
 
-void write_extras_rows(const std::filesystem::path& file, std::span<const ExtrasRow> rows,
-                       const ExtrasOptions& options) {
-    FigureFile output(file);
-    for (const ExtrasRow& row : rows) {
-        nlohmann::ordered_json json{{"known", to_string(row.knowledge)},
-                                    {"confidence", row.knowledge.confidence}};
-        if (row.knowledge.color_error) json["color_error"] = *row.knowledge.color_error;
-        json["false_positive_rate"] = row.false_positive_rate;
-        json["scenes"] = row.scenes;
-        json["accurate"] = row.accurate;
-        json["success"] = row.success;
-        if (!row.weights.empty()) json["weights"] = row.weights;
-        if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
-        if (options.evaluation.context) json["context"] = *options.evaluation.context;
-        output.add(std::move(json));
-    }
-    output.commit();
+std::unique_ptr<Study> make_confidence_and_colour_study() {
+    return std::make_unique<ConfidenceAndColourStudy>();
 }
 
 }  // namespace conelane::experiments

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "experiments/scenes/annotated_scene.hpp"
-#include "model/rld_parameters.hpp"
+#include "experiments/studies/cone_sets.hpp"
 
 #include <cstddef>
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,15 +12,16 @@
 
 namespace conelane::experiments {
 
-/// The question measured: does relaxing the binary constraints decrease latency (RLD paper, V), and at what
-/// price? Protocol: the n nearest cones of each scene that has as many and still holds a ground truth; every
-/// solver of the registry that proves nothing, and path-pair, which gives the optimum; one thread; wall clock
-/// with the problem's making included.
-struct RelaxationOptions {
-    RldParameters parameters;
-    std::vector<std::size_t> sizes{8, 12, 16, 20, 30};
-    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
-    double time_limit_ms = 400.0;      ///< a solve; as in the RLD paper
+class Study;
+
+/// Every solver of the registry that proves nothing, and path-pair, which gives the optimum.
+[[nodiscard]] std::unique_ptr<Study> make_relaxations_study();
+
+struct RelaxationOptions : ConeSetOptions {
+    RelaxationOptions() {
+        sizes = {8, 12, 16, 20, 30};
+        time_limit_ms = 400.0;  // as in the RLD paper
+    }
 };
 
 /// One solver at one cone-set size. Times and `accurate` are over all scenes, a solve without an answer being
@@ -46,11 +47,7 @@ struct RelaxationRow {
 [[nodiscard]] std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scenes,
                                                          const RelaxationOptions& options);
 
-/// A table for a terminal, a line per row and a final newline.
+/// Of these rows, for a terminal.
 [[nodiscard]] std::string relaxation_table(std::span<const RelaxationRow> rows);
-
-/// A JSON object a line and row, with commit, compiler and machine. Throws InputError where the file cannot
-/// be written.
-void write_relaxation_rows(const std::filesystem::path& file, std::span<const RelaxationRow> rows);
 
 }  // namespace conelane::experiments

@@ -1,4 +1,4 @@
-#include "experiments/tuning/losses.hpp"
+#include "experiments/tuning/failure_causes.hpp"
 
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/scenes/ground_truth.hpp"
@@ -17,7 +17,7 @@ namespace conelane::experiments {
 namespace {
 
 /// The first family of constraints that the ground truth breaks.
-Loss broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) {
+FailureCause broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) {
     std::vector<bool> chosen(problem.edges.size(), false);
     std::size_t listed = 0;
     std::size_t along_heading = 0;
@@ -28,34 +28,36 @@ Loss broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) 
         ++listed;
         if (edge.along_heading) ++along_heading;
     }
-    if (listed != graph.edges.size()) return Loss::breaks_spacing;
+    if (listed != graph.edges.size()) return FailureCause::breaks_spacing;
     const bool too_sharp = std::ranges::any_of(problem.turns, [&](const ProblemTurn& turn) {
         return turn.high_cost && chosen[turn.edge_i] && chosen[turn.edge_k];
     });
-    if (too_sharp) return Loss::breaks_angle;
+    if (too_sharp) return FailureCause::breaks_angle;
     const bool too_close = std::ranges::any_of(problem.conflicts, [&](const auto& conflict) {
         return chosen[conflict.first] && chosen[conflict.second];
     });
-    if (too_close) return Loss::breaks_width;
-    return along_heading < 2 ? Loss::breaks_heading : Loss::breaks_endpoints;
+    if (too_close) return FailureCause::breaks_width;
+    return along_heading < 2 ? FailureCause::breaks_heading : FailureCause::breaks_endpoints;
 }
 
-/// The term in which the ground truth costs most more than the answer.
-Loss dearest_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth, const LaneGraph& answer) {
-    constexpr std::array<Loss, kObjectiveTermCount> kCheaper{
-        Loss::cheaper_benefit, Loss::cheaper_spacing,    Loss::cheaper_angle,  Loss::cheaper_heading,
-        Loss::cheaper_color,   Loss::cheaper_unevenness, Loss::cheaper_facing, Loss::cheaper_near_ends};
+/// The term in which the cost of the ground truth is most above that of the answer.
+FailureCause most_expensive_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth,
+                                 const LaneGraph& answer) {
+    constexpr std::array<FailureCause, kObjectiveTermCount> kCheaper{
+        FailureCause::cheaper_benefit, FailureCause::cheaper_spacing,  FailureCause::cheaper_angle,
+        FailureCause::cheaper_heading, FailureCause::cheaper_color,    FailureCause::cheaper_unevenness,
+        FailureCause::cheaper_facing,  FailureCause::cheaper_near_ends};
     const ObjectiveSums theirs = objective_sums(problem, ground_truth);
     const ObjectiveSums ours = objective_sums(problem, answer);
-    std::size_t dearest = 0;
+    std::size_t most_expensive = 0;
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
         const double more = problem.parameters.*kObjectiveWeights[term] * (theirs[term] - ours[term]);
         if (more <= most) continue;
         most = more;
-        dearest = term;
+        most_expensive = term;
     }
-    return kCheaper[dearest];
+    return kCheaper[most_expensive];
 }
 
 bool contains(const std::vector<ConeId>& run, ConeId id) {
@@ -64,13 +66,13 @@ bool contains(const std::vector<ConeId>& run, ConeId id) {
 
 }  // namespace
 
-std::string_view to_string(Loss loss) {
-    constexpr std::array<std::string_view, kLossCount> kNames{
+std::string_view to_string(FailureCause cause) {
+    constexpr std::array<std::string_view, kFailureCauseCount> kNames{
         "no_ground_truth",    "accurate",       "breaks_spacing",    "breaks_angle",
         "breaks_width",       "breaks_heading", "breaks_endpoints",  "cheaper_benefit",
         "cheaper_spacing",    "cheaper_angle",  "cheaper_heading",   "cheaper_color",
         "cheaper_unevenness", "cheaper_facing", "cheaper_near_ends", "none_found"};
-    return kNames[static_cast<std::size_t>(loss)];
+    return kNames[static_cast<std::size_t>(cause)];
 }
 
 WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth) {
@@ -94,32 +96,32 @@ WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth) {
     return wrong;
 }
 
-SceneLoss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
-                  const EvaluationOptions& options) {
+Diagnosis diagnose(const AnnotatedScene& annotated, const RldParameters& parameters,
+                   const EvaluationOptions& options) {
     const auto ground_truth_of = [&](std::optional<std::size_t> count) {
         return count ? ground_truth_of_nearest(annotated, *count) : annotated.ground_truth;
     };
     const std::optional<Lane> ground_truth = ground_truth_of(options.nearest);
     if (!ground_truth) return {};
     const auto solver = make_path_pair_solver();
-    const Trial trial = try_on(*solver, annotated.scene, parameters, options);
-    SceneLoss loss;
-    if (trial.answer.status == LaneStatus::found) {
-        if (score(annotated, trial.answer, 0.0, options.nearest, nullptr).accurate())
-            return {Loss::accurate, std::nullopt};
-        loss.wrong = wrong_cones(trial.answer.lane, *ground_truth);
+    const EvaluatedScene evaluated = evaluate(*solver, annotated.scene, parameters, options);
+    Diagnosis diagnosis;
+    if (evaluated.answer.status == LaneStatus::found) {
+        if (score(annotated, evaluated.answer, 0.0, options.nearest, nullptr).accurate())
+            return {FailureCause::accurate, std::nullopt};
+        diagnosis.wrong = wrong_cones(evaluated.answer.lane, *ground_truth);
     }
-    const LaneGraphProblem& problem = trial.problem;
-    const RldReport& report = trial.report;
-    const LaneGraph graph = *lane_graph_of(*ground_truth_of(seen_count(options)), trial.seen);
+    const LaneGraphProblem& problem = evaluated.problem;
+    const RldReport& report = evaluated.report;
+    const LaneGraph graph = *lane_graph_of(*ground_truth_of(seen_count(options)), evaluated.seen);
     if (!is_feasible(problem, graph)) {
-        loss.cause = broken_constraint(problem, graph);
+        diagnosis.cause = broken_constraint(problem, graph);
     } else if (!report.lane_graph || *report.objective > objective(problem, graph)) {
-        loss.cause = Loss::none_found;
+        diagnosis.cause = FailureCause::none_found;
     } else {
-        loss.cause = dearest_term(problem, graph, *report.lane_graph);
+        diagnosis.cause = most_expensive_term(problem, graph, *report.lane_graph);
     }
-    return loss;
+    return diagnosis;
 }
 
 }  // namespace conelane::experiments

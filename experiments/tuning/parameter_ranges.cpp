@@ -1,4 +1,4 @@
-#include "experiments/tuning/parameter_box.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 
 #include <algorithm>
 #include <array>

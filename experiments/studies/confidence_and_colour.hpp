@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,19 +14,21 @@
 
 namespace conelane::experiments {
 
+class Study;
+
+/// RLD with simulated confidences and colours of cones against geometry alone.
+[[nodiscard]] std::unique_ptr<Study> make_confidence_and_colour_study();
+
 /// Tracks that a fit has not seen, and what it found on the others.
 struct HeldOut {
     std::vector<std::string> tracks;
     RldParameters parameters;
 };
 
-/// The question measured: what are detection confidences and cone colours worth to RLD (RLD paper, V)?
-/// Protocol: the scenes and folds of a tuning, whose parameters were fitted to geometry alone; the same
-/// scenes with simulated confidences, with right colours and with shares of wrong ones. Each fold's
-/// parameters answer for the tracks that it held out. With confidences the weight w_b, which they lower, and
-/// with colours the weight w_color are, in each fold, those that are most accurate on the tracks that are not
-/// held out; of equal ones the smallest.
-struct ExtrasOptions {
+/// The scenes and folds of a tuning whose parameters were fitted to geometry alone, and what is simulated on
+/// them. With confidences the weight w_b, which they lower, and with colours the weight w_color are, in each
+/// fold, those that are most accurate on the tracks that are not held out; of equal ones the smallest.
+struct ConfidenceColorOptions {
     std::vector<std::string> tracks;  ///< as in make_scene_set
     SceneOptions scenes;
     EvaluationOptions evaluation;  ///< its objective is without effect
@@ -38,20 +41,20 @@ struct ExtrasOptions {
 
 /// Scenes, cone set and folds of a record that `conelane tune` has written. Throws InputError where the file
 /// is none or its tuning held no track out.
-[[nodiscard]] ExtrasOptions read_tuning_record(const std::filesystem::path& file);
+[[nodiscard]] ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file);
 
-/// What is known beside the geometry: one of both or nothing.
-struct ExtraKnowledge {
+/// What is simulated beside the geometry: one of both or nothing.
+struct SimulatedKnowledge {
     bool confidence = false;
     std::optional<double> color_error;  ///< share of wrong colours; absent without colours
 
-    bool operator==(const ExtraKnowledge&) const = default;
+    bool operator==(const SimulatedKnowledge&) const = default;
 };
-[[nodiscard]] std::string to_string(const ExtraKnowledge& knowledge);
+[[nodiscard]] std::string to_string(const SimulatedKnowledge& knowledge);
 
 /// One knowledge at one rate of false positives, over the held-out tracks of all folds.
-struct ExtrasRow {
-    ExtraKnowledge knowledge;
+struct ConfidenceColorRow {
+    SimulatedKnowledge knowledge;
     double false_positive_rate = 0.0;
     std::size_t scenes = 0;       ///< whose cone set holds a ground truth
     double accurate = 0.0;        ///< share of them (RLD paper, IV-B)
@@ -61,14 +64,9 @@ struct ExtrasRow {
 
 /// Rows by knowledge: geometry alone, confidences, colours in the order of their errors; then by rate. Throws
 /// InvalidInput where a fold holds out a track that has no scene, or none holds out one of `only`.
-[[nodiscard]] std::vector<ExtrasRow> extras_rows(const ExtrasOptions& options);
+[[nodiscard]] std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options);
 
-/// A table for a terminal, a line per row and a final newline.
-[[nodiscard]] std::string extras_table(std::span<const ExtrasRow> rows);
-
-/// A JSON object a line and row, with cone set and commit. Throws InputError where the file cannot be
-/// written.
-void write_extras_rows(const std::filesystem::path& file, std::span<const ExtrasRow> rows,
-                       const ExtrasOptions& options);
+/// Of these rows, for a terminal.
+[[nodiscard]] std::string confidence_color_table(std::span<const ConfidenceColorRow> rows);
 
 }  // namespace conelane::experiments

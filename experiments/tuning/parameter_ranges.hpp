@@ -27,11 +27,11 @@ struct TunedParameter {
 /// the last bits.
 [[nodiscard]] double rounded(double value);
 
-/// The parameters that are tuned from this start as a point of the unit cube; what lies outside the box is
-/// moved to its border.
+/// The parameters that are tuned from this start as a point of the unit cube; what lies outside its range is
+/// moved to its end.
 [[nodiscard]] std::vector<double> to_unit_cube(const RldParameters& parameters);
 
-/// `rest`, its limits moved into the box, with the parameters tuned from it at a point of the unit cube,
+/// `rest`, its limits moved into their ranges, with the parameters tuned from it at a point of the unit cube,
 /// rounded to four decimals.
 /// Precondition: as many coordinates as tuned parameters, each in [0, 1].
 [[nodiscard]] RldParameters from_unit_cube(std::span<const double> point, const RldParameters& rest);

@@ -14,7 +14,7 @@
 namespace conelane::experiments {
 
 /// Why the lane graph of least cost is, or is not, accurate on a scene. The first that fits.
-enum class Loss {
+enum class FailureCause {
     no_ground_truth,  ///< the cone set holds fewer than two cones of a boundary: not counted
     accurate,
     // Inaccurate, and the ground truth itself is cut off:
@@ -34,8 +34,8 @@ enum class Loss {
     cheaper_near_ends,
     none_found,  ///< the ground truth is feasible, yet the search stopped at the time limit before it
 };
-inline constexpr std::size_t kLossCount = 16;
-[[nodiscard]] std::string_view to_string(Loss loss);
+inline constexpr std::size_t kFailureCauseCount = 16;
+[[nodiscard]] std::string_view to_string(FailureCause cause);
 
 /// Cones that are chosen and not in the ground truth, or missed, by where on their boundary they are: before
 /// the first cone that it shares with the ground truth, behind the last, or between. A boundary that shares
@@ -50,14 +50,14 @@ struct WrongCones {
 };
 [[nodiscard]] WrongCones wrong_cones(const Lane& lane, const Lane& ground_truth);
 
-struct SceneLoss {
-    Loss cause = Loss::no_ground_truth;
+struct Diagnosis {
+    FailureCause cause = FailureCause::no_ground_truth;
     std::optional<WrongCones> wrong;  ///< of an inaccurate answer; absent where there is none
 };
 
 /// Solves one scene by path-pair, with the cone set, context and time limit of the options. With a context
 /// the cause refers to the ground truth of the context. Precondition: counts(annotated).
-[[nodiscard]] SceneLoss loss_on(const AnnotatedScene& annotated, const RldParameters& parameters,
-                                const EvaluationOptions& options);
+[[nodiscard]] Diagnosis diagnose(const AnnotatedScene& annotated, const RldParameters& parameters,
+                                 const EvaluationOptions& options);
 
 }  // namespace conelane::experiments

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/studies/cone_sets.hpp"
 #include "model/formulation.hpp"
-#include "model/rld_parameters.hpp"
 
 #include <cstddef>
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,15 +13,17 @@
 
 namespace conelane::experiments {
 
-/// The claim measured: both formulations have the same optimum; the tight one has a stronger relaxation,
-/// fewer rows and columns, and is solved faster. Protocol: the n nearest cones of each scene that has as
-/// many; tight by `cbc`, paper by `cbc-main`, each the faster of the two on it; one thread; times are wall
-/// clock with the program's making (in the paper formulation: updating) included.
-struct FormulationOptions {
-    RldParameters parameters;
-    std::vector<std::size_t> sizes{6, 8, 10, 12, 16, 20, 24, 30};
-    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
-    double time_limit_ms = 10'000.0;   ///< a solve
+class Study;
+
+/// Both formulations of the RLD program on the same cone sets: the tight one by `cbc`, the printed one by
+/// `cbc-main`, each the faster of the two on it.
+[[nodiscard]] std::unique_ptr<Study> make_formulations_study();
+
+struct FormulationOptions : ConeSetOptions {
+    FormulationOptions() {
+        sizes = {6, 8, 10, 12, 16, 20, 24, 30};
+        time_limit_ms = 10'000.0;
+    }
 };
 
 /// One formulation at one cone-set size. Rows and columns are means over the scenes, times and nodes over all
@@ -50,11 +52,7 @@ struct FormulationRow {
 [[nodiscard]] std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> scenes,
                                                            const FormulationOptions& options);
 
-/// A table for a terminal, a line per row and a final newline.
+/// Of these rows, for a terminal.
 [[nodiscard]] std::string formulation_table(std::span<const FormulationRow> rows);
-
-/// A JSON object a line and row, with commit, compiler and machine. Throws InputError where the file cannot
-/// be written.
-void write_formulation_rows(const std::filesystem::path& file, std::span<const FormulationRow> rows);
 
 }  // namespace conelane::experiments

@@ -1,6 +1,6 @@
-// What confidences and colours are measured to be worth: on held-out tracks, each by its fold's parameters.
+// RLD with simulated confidences and colours: measured on held-out tracks, each by its fold's parameters.
 
-#include "experiments/tuning/extras.hpp"
+#include "experiments/studies/confidence_and_colour.hpp"
 
 #include "experiments/files/input_error.hpp"
 #include "model/invalid_input.hpp"
@@ -22,8 +22,8 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-ExtrasOptions two_folds() {
-    ExtrasOptions options;
+ConfidenceColorOptions two_folds() {
+    ConfidenceColorOptions options;
     options.tracks = {"generated:straight", "generated:circle"};
     options.scenes.false_positive_rates = {0.5};
     options.scenes.ranges_m = {30.0};
@@ -37,11 +37,11 @@ ExtrasOptions two_folds() {
     return options;
 }
 
-TEST(Extras, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
-    const std::vector<ExtrasRow> rows = extras_rows(two_folds());
+TEST(ConfidenceAndColour, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
+    const std::vector<ConfidenceColorRow> rows = confidence_color_rows(two_folds());
     ASSERT_EQ(rows.size(), 4U);
-    const ExtrasRow& geometry = rows[0];
-    EXPECT_EQ(geometry.knowledge, ExtraKnowledge{});
+    const ConfidenceColorRow& geometry = rows[0];
+    EXPECT_EQ(geometry.knowledge, SimulatedKnowledge{});
     EXPECT_GT(geometry.scenes, 30U);
     EXPECT_GT(geometry.accurate, 0.3);
     EXPECT_TRUE(geometry.weights.empty());
@@ -56,48 +56,48 @@ TEST(Extras, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
 }
 
 /// A fold whose parameters find no lane loses the tracks that it holds out, and no others.
-TEST(Extras, AFoldAnswersForItsHeldOutTracksAlone) {
-    ExtrasOptions options = two_folds();
+TEST(ConfidenceAndColour, AFoldAnswersForItsHeldOutTracksAlone) {
+    ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
-    const double both = extras_rows(options).front().accurate;
+    const double both = confidence_color_rows(options).front().accurate;
     options.folds[1].parameters.d_h = 0.0;
-    const ExtrasRow one = extras_rows(options).front();
+    const ConfidenceColorRow one = confidence_color_rows(options).front();
     EXPECT_LT(one.accurate, both);
     EXPECT_GT(one.accurate, 0.1);
     options.folds[0].parameters.d_h = 0.0;
-    EXPECT_EQ(extras_rows(options).front().accurate, 0.0);
+    EXPECT_EQ(confidence_color_rows(options).front().accurate, 0.0);
 }
 
-TEST(Extras, CountOnlyTheTracksAskedFor) {
-    ExtrasOptions options = two_folds();
+TEST(ConfidenceAndColour, CountOnlyTheTracksAskedFor) {
+    ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
     options.folds[1].parameters.d_h = 0.0;  // finds no lane on the circle
-    const std::size_t both = extras_rows(options).front().scenes;
+    const std::size_t both = confidence_color_rows(options).front().scenes;
     options.only = {"circle"};
-    const ExtrasRow circle = extras_rows(options).front();
+    const ConfidenceColorRow circle = confidence_color_rows(options).front();
     EXPECT_EQ(circle.accurate, 0.0);
     options.only = {"straight"};
-    const ExtrasRow straight = extras_rows(options).front();
+    const ConfidenceColorRow straight = confidence_color_rows(options).front();
     EXPECT_GT(straight.accurate, 0.3);
     EXPECT_EQ(circle.scenes + straight.scenes, both);
     options.only = {"kidney"};
-    EXPECT_THROW(static_cast<void>(extras_rows(options)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(confidence_color_rows(options)), InvalidInput);
 }
 
-TEST(Extras, AreTheSameForAnyNumberOfThreads) {
-    ExtrasOptions options = two_folds();
+TEST(ConfidenceAndColour, AreTheSameForAnyNumberOfThreads) {
+    ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
-    const std::string one = extras_table(extras_rows(options));
+    const std::string one = confidence_color_table(confidence_color_rows(options));
     options.evaluation.threads = 2;
     options.scenes.threads = 2;
-    EXPECT_EQ(extras_table(extras_rows(options)), one);
+    EXPECT_EQ(confidence_color_table(confidence_color_rows(options)), one);
 }
 
-TEST(Extras, ATrackThatIsHeldOutMustBeThere) {
-    ExtrasOptions options = two_folds();
+TEST(ConfidenceAndColour, ATrackThatIsHeldOutMustBeThere) {
+    ConfidenceColorOptions options = two_folds();
     options.folds[0].tracks = {"kidney"};
     try {
-        static_cast<void>(extras_rows(options));
+        static_cast<void>(confidence_color_rows(options));
         FAIL() << "nothing was thrown";
     } catch (const InvalidInput& error) {
         EXPECT_THAT(error.what(), HasSubstr("kidney"));
@@ -117,7 +117,7 @@ TEST_F(TuningRecord, GivesScenesConeSetAndFolds) {
                folds + "]}";
     };
     std::ofstream(path("r")) << text(R"({"held_out":["circle"],"parameters":)" + parameters + "}");
-    const ExtrasOptions read = read_tuning_record(path("r"));
+    const ConfidenceColorOptions read = read_tuning_record(path("r"));
     EXPECT_THAT(read.tracks, ElementsAre("generated:circle"));
     EXPECT_THAT(read.scenes.false_positive_rates, ElementsAre(0.0, 0.5));
     EXPECT_THAT(read.scenes.ranges_m, ElementsAre(30.0));

@@ -1,13 +1,13 @@
 """Confidence and colour
 
-Claim: What are detection confidences and cone colours, some of them wrong, worth to RLD?
+Claim: What do detection confidences, or cone colours of which some are wrong, add to the accuracy of RLD?
 Protocol: scenes and folds of a tuning whose parameters were fitted to geometry alone; the same scenes with simulated \
 confidences or colours. Each fold answers for the tracks that it held out; the weight of what is known beside the \
 geometry (w_b with confidences, w_color with colours) is chosen on the others. Accurate: the RLD paper's four checks \
 on the cone set; success: no lane that leaves the track within 20 m.
 Source: this project; the question is the RLD paper's own, V.
-Command: conelane extras --record experiments/parameters/context.record.json --tracks TRACK... \
---out RESULTS/extras.jsonl
+Command: conelane study confidence-and-colour --record experiments/parameters/context.record.json --tracks TRACK... \
+--out RESULTS/confidence-and-colour.jsonl
 """
 
 import os
@@ -16,7 +16,7 @@ from ..experiment import Missing
 from ..load import read_lines, require
 from ..tables import Cell, Column, percent, table, text
 
-FILE = "extras.jsonl"
+FILE = "confidence-and-colour.jsonl"
 
 
 def html(results, published):
@@ -35,4 +35,4 @@ def html(results, published):
                      text(", ".join(f"{weight:g}" for weight in weights) or "–")])
     columns = [Column("known", "text"), Column("false positives %"), Column("scenes"), Column("accurate %"),
                Column("success %"), Column("weight by fold", "text")]
-    return table("extras", "", columns, rows, note=origin.strip())
+    return table("confidence-and-colour", "", columns, rows, note=origin.strip())
