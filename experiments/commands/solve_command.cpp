@@ -3,9 +3,9 @@
 #include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/progress.hpp"
+#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_problem.hpp"
-#include "model/deadline.hpp"
 #include "solvers/registry.hpp"
 
 #include <exception>
@@ -39,8 +39,7 @@ RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& para
         const Stopwatch problem_watch;
         const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
         const double problem_ms = problem_watch.elapsed_ms();
-        RldReport report =
-            solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
+        RldReport report = solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
         report.build_ms += problem_ms;
         return report;
     } catch (const std::bad_alloc&) {
@@ -70,8 +69,7 @@ void solve_all(const Options& options) {
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
-        const RldReport report =
-            solve(*solver, scene, parameters, options.limits, start ? &*start : nullptr);
+        const RldReport report = solve(*solver, scene, parameters, options.limits, start ? &*start : nullptr);
         SolutionRecord record{scene.id,
                               options.solver,
                               options.formulation,
@@ -82,7 +80,9 @@ void solve_all(const Options& options) {
                               report.bound,
                               report.nodes,
                               report.build_ms,
-                              report.solve_ms};
+                              report.solve_ms,
+                              report.stopped_by,
+                              options.nearest};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
