@@ -1,5 +1,6 @@
 // The program as a user or a script calls it: files in, files out, one line and exit code 2 on bad input.
 
+#include "experiments/files/folder_lock.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/files/scene_file.hpp"
@@ -8,7 +9,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <string>
 #include <thread>
@@ -18,11 +21,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Program : public FileTest {
   protected:
@@ -273,6 +278,60 @@ TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
     file_with("{", "bad.scenes.jsonl");
     EXPECT_EQ(run("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl").exit_code, 2);
     EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+}
+
+/// Under another name, through links, by the companion: nothing that is read is written.
+TEST_F(Program, AnOutputIsNoInput) {
+    make_scenes("--fp 0.2");
+    const std::string scenes = text_of(path("s.scenes.jsonl"));
+    std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));
+    std::filesystem::create_hard_link(path("s.scenes.jsonl"), path("hard"));
+    std::filesystem::create_directory(path("sub"));
+    for (const char* command : {"detect --method clc", "solve", "certify", "export --id a"}) {
+        for (const char* out :
+             {"s.scenes.jsonl", "./sub/../s.scenes.jsonl", "link", "hard", "s.tracks.json"}) {
+            expect_refused(std::string(command) + " --scenes s.scenes.jsonl --out " + out,
+                           {"--out", out, "--scenes"});
+        }
+        expect_refused(std::string(command) + " --scenes link --out s.scenes.jsonl", {"--out", "--scenes"});
+    }
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    expect_refused("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json l.lanes.jsonl",
+                   {"--json", "l.lanes.jsonl", "--lanes"});
+    ASSERT_EQ(run("certify --scenes s.scenes.jsonl --out c.certificates.jsonl").exit_code, 0);
+    write_rld_parameters(path("p.json"), RldParameters{});
+    expect_refused("solve --scenes s.scenes.jsonl --params p.json --out p.json", {"--out", "--params"});
+    file_with("tag,x,y,direction,x_variance,y_variance,xy_covariance\n", "t.csv");
+    expect_refused("scenes --tracks eufs:t.csv --out t.csv", {"--out", "--tracks"});
+    std::filesystem::create_directory(path("r"));
+    file_with("", "r/results.jsonl");
+    expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
+    EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
+    // What is no file may have a file's name.
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+}
+
+TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
+    make_scenes("--fp 0.2");
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    const auto exit_code = [&](const std::string& arguments) {
+        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
+                                    " 2>" + path("stderr").string();
+        return WEXITSTATUS(std::system(command.c_str()));
+    };
+    for (const char* command :
+         {"methods", "--version", "--help", "score --scenes s.scenes.jsonl --lanes l.lanes.jsonl"}) {
+        for (const char* stream : {" >/dev/full", " >&-"}) {
+            EXPECT_EQ(exit_code(std::string(command) + stream), 2) << command << stream;
+            EXPECT_EQ(text_of(path("stderr")), "conelane: standard output cannot be written to its end\n");
+        }
+    }
+    // A closed output is not given to the next file that is opened.
+    EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
+    EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));
+    EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out m.lanes.jsonl >&-"), 0)
+        << "it has nothing to say";
 }
 
 TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
@@ -604,14 +663,36 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(results_in(path("stopped")).size(), 4U * 2U);  // methods, rates
 }
 
-TEST_F(Program, OtherOptionsInTheSameDirectoryStartAnew) {
-    ASSERT_EQ(
-        run("compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results").exit_code, 0);
+TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
+    const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
+    const std::string record = text_of(path("results") / "run.json");
+    expect_refused(clc + "--fp 0,0.3", {"results", "differs in fp", "--overwrite"});
+    expect_refused(clc + "--fp 0 --time-limit 77", {"results", "time_limit_ms", "--overwrite"});
+    expect_refused("sweep --tracks generated:circle --sizes 8 --out results", {"results", "--overwrite"});
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes);
+    EXPECT_EQ(text_of(path("results") / "run.json"), record);
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes)
+        << "times of the first run: it has resumed";
     const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
-    ASSERT_EQ(
-        run("compare --tracks generated:circle --every 15 --methods clc --fp 0,0.3 --out results").exit_code,
-        0);
+    ASSERT_EQ(run(clc + "--fp 0,0.3 --overwrite").exit_code, 0);
     EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
+    std::filesystem::remove(path("results") / "run.json");
+    expect_refused(clc + "--fp 0", {"results", "run.json", "--overwrite"});
+}
+
+TEST_F(Program, OneComparisonAtATimeWritesIntoAFolder) {
+    const std::string clc =
+        "compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results ";
+    std::filesystem::create_directory(path("results"));
+    {
+        const FolderLock lock(path("results"));
+        expect_refused(clc, {"results", "another conelane is writing there"});
+        expect_refused(clc + "--overwrite", {"results", "another conelane is writing there"});
+    }
+    EXPECT_EQ(run(clc).exit_code, 0);
 }
 
 TEST_F(Program, MergedShardsEqualOneRun) {
@@ -633,6 +714,10 @@ TEST_F(Program, MergedShardsEqualOneRun) {
         run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
     expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
     expect_refused("compare --shard 3/3 --out again", {"--shard"});
+    const std::string part = text_of(path("part1") / "run.json");
+    expect_refused("merge part0 part1 part2 --overwrite --out part1", {"part1", "one of the shards"});
+    EXPECT_EQ(text_of(path("part1") / "run.json"), part);
+    expect_refused("merge part0 part1 part2 --out other", {"other", "--overwrite"});
 }
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
@@ -679,6 +764,97 @@ TEST_F(Program, SweepComparesConeSetSizes) {
     for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
         EXPECT_EQ(record.nearest, 8U);
         EXPECT_LE(record.answer.lane.left.size() + record.answer.lane.right.size(), 8U);
+    }
+}
+
+/// Work that is begun, and a signal to all of it, as Ctrl-C gives.
+class Interruption : public Program {
+  protected:
+    /// Runs the program until `begun` says so, then ends it by the signal. Its temporary files go to `tmp`.
+    void interrupt(const std::string& arguments, int signal, const std::function<bool()>& begun) {
+        std::filesystem::create_directories(path("tmp"));
+        const std::string command = "cd " + path("").string() + " && TMPDIR=tmp exec " CONELANE_PROGRAM " " +
+                                    arguments + " >stdout 2>stderr";
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::setpgid(0, 0);
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            ::_exit(127);
+        }
+        ::setpgid(child, child);
+        int status = 0;
+        bool ready = false;
+        for (int wait = 0; wait < 6000 && !(ready = begun()); ++wait) {
+            ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        EXPECT_TRUE(ready);
+        ::kill(-child, signal);
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << "status " << status;
+        EXPECT_EQ(text_of(path("stderr")), "conelane: interrupted\n");
+        EXPECT_EQ(text_of(path("stdout")), "");
+        EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
+            EXPECT_THAT(entry.path().string(), Not(HasSubstr(".tmp")));
+        }
+    }
+    /// Seconds of work.
+    void make_dense_scenes() {
+        ASSERT_EQ(run("scenes --tracks generated:kidney --every 1.1 --fp 0,0.1,0.2,0.3,0.4,0.5 --out "
+                      "s.scenes.jsonl")
+                      .exit_code,
+                  0);
+    }
+    [[nodiscard]] bool has_a_temporary_file(const std::string& folder) const {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(folder))) {
+            if (entry.path().string().find(".tmp") != std::string::npos) return true;
+        }
+        return false;
+    }
+};
+
+TEST_F(Interruption, OfADetectionLeavesTheOldAnswers) {
+    make_dense_scenes();
+    file_with("old\n", "l.lanes.jsonl");
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const auto start = std::chrono::steady_clock::now();
+        interrupt("detect --method rld-cbc --nearest 30 --scenes s.scenes.jsonl --out l.lanes.jsonl", signal,
+                  [&] { return std::chrono::steady_clock::now() - start > std::chrono::milliseconds(400); });
+        EXPECT_EQ(text_of(path("l.lanes.jsonl")), "old\n");
+    }
+}
+
+TEST_F(Interruption, OfAComparisonLeavesWhatItAnsweredAndTheNextOneGoesOn) {
+    const std::string compare =
+        "compare --tracks generated:circle generated:kidney --every 4 --fp 0,0.1,0.2,0.3 --methods "
+        "clc,rld-cbc "
+        "--nearest 20 --out results";
+    const auto part = path("results") / "rld-cbc.n020.lanes.jsonl.part";
+    interrupt(compare, SIGINT, [&] { return !text_of(part).empty(); });
+    const std::string answered = text_of(part);
+    const std::string whole_laps = answered.substr(0, answered.rfind('\n') + 1);
+    const std::string clc = text_of(path("results") / "clc.n020.lanes.jsonl");
+    ASSERT_FALSE(std::filesystem::exists(path("results") / "rld-cbc.n020.lanes.jsonl"))
+        << "it was done too early";
+    ASSERT_EQ(run(compare).exit_code, 0);
+    EXPECT_EQ(text_of(path("results") / "clc.n020.lanes.jsonl"), clc);
+    EXPECT_TRUE(text_of(path("results") / "rld-cbc.n020.lanes.jsonl").starts_with(whole_laps.substr(0, 200)));
+}
+
+TEST_F(Interruption, OfAReportLeavesNoPage) {
+    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --methods clc --out results").exit_code, 0);
+    if (!std::filesystem::exists(path("results") / "report.html"))
+        GTEST_SKIP() << "no Python with matplotlib";
+    for (const int signal : {SIGINT, SIGTERM}) {
+        interrupt("report --results results --out page.html --png pictures", signal, [&] {
+            for (const auto& entry : std::filesystem::recursive_directory_iterator(path("tmp"))) {
+                if (entry.path().filename() == "report.zip") return true;
+            }
+            return false;
+        });
+        EXPECT_FALSE(std::filesystem::exists(path("page.html")));
+        EXPECT_FALSE(std::filesystem::exists(path("pictures")));
     }
 }
 
