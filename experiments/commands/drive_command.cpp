@@ -1,10 +1,10 @@
 #include "detectors/drivable_lane.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/files/drivable_lane_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <memory>

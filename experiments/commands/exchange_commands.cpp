@@ -146,7 +146,8 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 void import_solution(const ImportOptions& options) {
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.model.program());
-    const SolutionRecord record = to_record(solution, program, options.source.formulation);
+    SolutionRecord record = to_record(solution, program, options.source.formulation);
+    record.nearest = options.source.nearest;
     write_solutions(options.out, std::array{record});
     fmt::print("{}{}\n", record.status, record.message.empty() ? "" : ": " + record.message);
 }

@@ -4,6 +4,7 @@
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/progress.hpp"
+#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
@@ -59,7 +60,9 @@ void solve_all(const Options& options) {
                               report.bound,
                               report.nodes,
                               report.build_ms,
-                              report.solve_ms};
+                              report.solve_ms,
+                              report.stopped_by,
+                              options.nearest};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);

@@ -40,6 +40,11 @@ void add_time_limit_option(CLI::App& command, double& time_limit_ms);
 /// A file to write. That it can be is looked at before the work, not after it.
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
                                const std::string& meaning);
+/// Refuses the options of a command that is about to run where a file of add_output_option would replace an
+/// input or another output: the same file, be it under another name, through a symbolic or a hard link. Any
+/// other option that names a file counts as an input, a track by its SPEC and a scenes file with its
+/// companion too. Throws CLI::ValidationError naming both.
+void refuse_lost_inputs(CLI::App& command);
 /// --seed N, for where another place holds the default
 void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning);
 /// --threads T
