@@ -4,6 +4,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/parameter_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <array>
