@@ -82,7 +82,7 @@ constexpr std::array<MethodEntry, 13> kMethods{{
      }},
     {"clc",
      "CLC led by a beam search; NVD weighs distances, a second search, a network on all features and "
-     "agreement of the candidates that it puts first",
+     "consensus of the candidates that it puts first",
      std::nullopt, std::nullopt, false, false,
      [](const MethodOptions& options) { return make_clc(extended_clc_options(), options); }},
     {"clc-warm", "clc that starts from its last lane along a lap (section IV-F)", std::nullopt, std::nullopt,
@@ -99,11 +99,11 @@ constexpr std::array<MethodEntry, 13> kMethods{{
          clc.step_scores = nullptr;
          return make_clc(clc, options);
      }},
-    {"clc-no-agreement", "clc that answers with the candidate of the highest score", std::nullopt,
+    {"clc-no-consensus", "clc that answers with the candidate of the highest score", std::nullopt,
      std::nullopt, false, false,
      [](const MethodOptions& options) {
          ClcOptions clc = extended_clc_options();
-         clc.agreeing_candidates = 0;
+         clc.consensus_candidates = 0;
          return make_clc(clc, options);
      }},
     {"clc-paper", "CLC as printed: equation (3), eight features, equation (14)", std::nullopt, std::nullopt,

@@ -121,7 +121,7 @@ struct LaneGrowth::Step {
     double offset_m = -1.0;
     double segment_change_m = -1.0;
     double skew = -1.0;
-    Surroundings cones;
+    Neighbourhood cones;
 };
 
 void LaneGrowth::add(const Step& step, Side side, Stretch& stretch) {
@@ -185,7 +185,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
-    step.cones = surroundings(graph, vertex, tip_[side], facing_tip, point);
+    step.cones = neighbourhood(graph, vertex, tip_[side], facing_tip, point);
     // Up to where the step begins.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "graph_search/lane_width.hpp"
+#include "graph_search/neighbourhood.hpp"
 #include "graph_search/search_graph.hpp"
-#include "graph_search/surroundings.hpp"
 #include "model/geometry.hpp"
 
 #include <array>
@@ -99,7 +99,7 @@ class LaneGrowth {
         std::array<double, 2> turned_rad{0.0, 0.0};  ///< by side, with sign
         std::array<double, 2> length_m{0.0, 0.0};
         std::array<std::size_t, 2> steps{0, 0};
-        Surroundings cones;
+        Neighbourhood cones;
     };
     /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
     struct Step;

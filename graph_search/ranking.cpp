@@ -1,6 +1,6 @@
 #include "graph_search/ranking.hpp"
 
-#include "graph_search/wide_loops.hpp"
+#include "graph_search/simd_batch.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
@@ -31,8 +31,8 @@ struct Batch {
 };
 
 /// Adds to `sums` what `kUnits` units make of a batch. `weights`: of all inputs, kUnits at a time.
-CONELANE_WIDE_LOOPS void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
-                                   const float* bias, const float* output, Batch& sums) {
+CONELANE_SIMD void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
+                             const float* bias, const float* output, Batch& sums) {
     std::array<Batch, kUnits> units;
     for (Batch& unit : units) unit.part[0] = unit.part[1] = Floats{};
     for (std::size_t i = 0; i < input_count; ++i, weights += kUnits) {

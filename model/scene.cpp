@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
 #include <utility>
 
 namespace conelane {
@@ -36,25 +35,36 @@ std::string_view to_string(ConeColor color) {
 }
 
 void validate(const Scene& scene) {
-    const auto require_finite = [](double value, const std::string& key) {
+    std::vector<ConeId> ids;
+    validate(scene, ids);
+}
+
+void validate(const Scene& scene, std::vector<ConeId>& ids) {
+    const auto require_finite = [](double value, const char* key) {
         if (!std::isfinite(value)) throw InvalidInput(key, "must be a finite number");
     };
     require_finite(scene.pose.position.x(), "pose.x");
     require_finite(scene.pose.position.y(), "pose.y");
     require_finite(scene.pose.yaw_rad, "pose.yaw");
-    std::unordered_set<ConeId> seen;
+    const auto refuse = [](std::size_t i, const char* key, const std::string& reason) {
+        throw InvalidInput("cones[" + std::to_string(i) + "]." + key, reason);
+    };
+    ids.clear();
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         const Cone& cone = scene.cones[i];
-        const std::string key = "cones[" + std::to_string(i) + "].";
-        require_finite(cone.position.x(), key + "x");
-        require_finite(cone.position.y(), key + "y");
-        if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) {
-            throw InvalidInput(key + "confidence", "must be in [0, 1]");
-        }
-        if (!seen.insert(cone.id).second) {
-            throw InvalidInput(key + "id", "cone id " + std::to_string(cone.id) + " is there twice");
-        }
+        if (!std::isfinite(cone.position.x())) refuse(i, "x", "must be a finite number");
+        if (!std::isfinite(cone.position.y())) refuse(i, "y", "must be a finite number");
+        if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) refuse(i, "confidence", "must be in [0, 1]");
+        ids.push_back(cone.id);
     }
+    std::ranges::sort(ids);
+    const auto twice = std::ranges::adjacent_find(ids);
+    if (twice == ids.end()) return;
+    const auto first = std::ranges::find(scene.cones, *twice, &Cone::id);
+    const auto second =
+        std::find_if(first + 1, scene.cones.end(), [&](const Cone& cone) { return cone.id == *twice; });
+    refuse(static_cast<std::size_t>(second - scene.cones.begin()), "id",
+           "cone id " + std::to_string(*twice) + " is there twice");
 }
 
 Scene nearest_ahead(const Scene& scene, std::size_t count) {

@@ -87,7 +87,8 @@ TEST(BeamAllocations, NoneOnceTheMemoryIsThere) {
     const auto search = [&] {
         const std::size_t before = allocations;
         beam.start(graph, scene, starts, *scores, {}, 8);
-        EXPECT_NE(beam.run(), LaneBeam::kNone);
+        SearchBudget budget;
+        EXPECT_NE(beam.run(budget), LaneBeam::kNone);
         return allocations - before;
     };
     EXPECT_GT(search(), 0u) << "allocations are counted";
