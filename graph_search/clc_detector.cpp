@@ -5,10 +5,7 @@
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <exception>
-#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -43,26 +40,11 @@ class ClcDetector final : public LaneDetector {
         }
     }
 
-    LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
-        try {
-            if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "must be a number");
-            const Deadline deadline(limits.time_limit_ms);
-            validate(scene, ids_);
-            return search(scene, limits, deadline);
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& error) {
-            LaneAnswer answer;
-            answer.status = LaneStatus::error;
-            answer.message = error.what();
-            return answer;
-        }
-    }
-
     void reset() override { last_lane_.reset(); }
 
   private:
-    LaneAnswer search(const Scene& scene, const DetectionLimits& limits, const Deadline& deadline) {
+    LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
         CandidateSearch::Request request;
         request.deadline = deadline;
         request.with_features = ranking_ != nullptr;
@@ -123,7 +105,6 @@ class ClcDetector final : public LaneDetector {
     CandidateSearch search_;
     LaneConsensus consensus_;
     std::vector<double> scores_;
-    std::vector<ConeId> ids_;
     std::optional<Lane> last_lane_;
 };
 

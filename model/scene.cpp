@@ -4,9 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 namespace conelane {
+namespace {
+
+constexpr const char* kNotFinite = "must be a finite number";
+
+std::string key_of(std::size_t cone, const char* member) {
+    return "cones[" + std::to_string(cone) + "]." + member;
+}
+
+}  // namespace
 
 Point Pose::heading() const {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
@@ -40,31 +50,28 @@ void validate(const Scene& scene) {
 }
 
 void validate(const Scene& scene, std::vector<ConeId>& ids) {
-    const auto require_finite = [](double value, const char* key) {
-        if (!std::isfinite(value)) throw InvalidInput(key, "must be a finite number");
-    };
-    require_finite(scene.pose.position.x(), "pose.x");
-    require_finite(scene.pose.position.y(), "pose.y");
-    require_finite(scene.pose.yaw_rad, "pose.yaw");
-    const auto refuse = [](std::size_t i, const char* key, const std::string& reason) {
-        throw InvalidInput("cones[" + std::to_string(i) + "]." + key, reason);
-    };
-    ids.clear();
+    // Keys are put together only for a fault: this runs in every call of a detector.
+    if (!std::isfinite(scene.pose.position.x())) throw InvalidInput("pose.x", kNotFinite);
+    if (!std::isfinite(scene.pose.position.y())) throw InvalidInput("pose.y", kNotFinite);
+    if (!std::isfinite(scene.pose.yaw_rad)) throw InvalidInput("pose.yaw", kNotFinite);
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         const Cone& cone = scene.cones[i];
-        if (!std::isfinite(cone.position.x())) refuse(i, "x", "must be a finite number");
-        if (!std::isfinite(cone.position.y())) refuse(i, "y", "must be a finite number");
-        if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) refuse(i, "confidence", "must be in [0, 1]");
-        ids.push_back(cone.id);
+        if (!std::isfinite(cone.position.x())) throw InvalidInput(key_of(i, "x"), kNotFinite);
+        if (!std::isfinite(cone.position.y())) throw InvalidInput(key_of(i, "y"), kNotFinite);
+        if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) {
+            throw InvalidInput(key_of(i, "confidence"), "must be in [0, 1]");
+        }
     }
+    ids.clear();
+    for (const Cone& cone : scene.cones) ids.push_back(cone.id);
     std::ranges::sort(ids);
-    const auto twice = std::ranges::adjacent_find(ids);
-    if (twice == ids.end()) return;
-    const auto first = std::ranges::find(scene.cones, *twice, &Cone::id);
-    const auto second =
-        std::find_if(first + 1, scene.cones.end(), [&](const Cone& cone) { return cone.id == *twice; });
-    refuse(static_cast<std::size_t>(second - scene.cones.begin()), "id",
-           "cone id " + std::to_string(*twice) + " is there twice");
+    if (std::ranges::adjacent_find(ids) == ids.end()) return;
+    std::unordered_set<ConeId> seen;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        if (seen.insert(scene.cones[i].id).second) continue;
+        throw InvalidInput(key_of(i, "id"),
+                           "cone id " + std::to_string(scene.cones[i].id) + " is there twice");
+    }
 }
 
 Scene nearest_ahead(const Scene& scene, std::size_t count) {

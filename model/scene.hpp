@@ -44,7 +44,7 @@ struct Scene {
 /// Throws InvalidInput, naming the key, where a number is not finite, a confidence is outside [0, 1] or an id
 /// is there twice. A scene without cones is valid: it has no lane.
 void validate(const Scene& scene);
-/// The same for who calls it often: `ids` is working memory, its content does not matter.
+/// The same, with `ids` as workspace: it allocates only where that has not the capacity.
 void validate(const Scene& scene, std::vector<ConeId>& ids);
 
 /// The scene with the `count` cones nearest to the car among those ahead of it (in the closed half-plane
