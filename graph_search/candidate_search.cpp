@@ -3,7 +3,6 @@
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -166,20 +165,21 @@ void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scen
 void CandidateSearch::add_scene_features(const Scene& scene) {
     const std::span<LaneFeatures> features = pairs_.features();
     double longest_m = 0.0;
-    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[0]);
+    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[kLength]);
     std::size_t i = 0;
     for (const Seed& seed : seeds_) {
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
-        const std::array<double, kLaneFeatureCount - kStartPlaceFeatures> of_start{
-            measures.lead_m, measures.shift_m, measures.nearest_side_m, measures.nearest_ahead_m,
-            measures.farthest_ahead_m};
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];
-            lane[kLongestShareFeature] = lane[0] / longest_m;
-            lane[kStartAsymmetryFeature] = measures.asymmetry_m;
-            lane[kStartDistanceFeature] = measures.distance_m;
-            lane[kConesFeature] = static_cast<double>(scene.cones.size());
-            std::ranges::copy(of_start, lane.begin() + kStartPlaceFeatures);
+            lane[kLongestShare] = lane[kLength] / longest_m;
+            lane[kStartAsymmetry] = measures.asymmetry_m;
+            lane[kStartDistance] = measures.distance_m;
+            lane[kSceneCones] = static_cast<double>(scene.cones.size());
+            lane[kStartLead] = measures.lead_m;
+            lane[kStartShift] = measures.shift_m;
+            lane[kStartNearestSide] = measures.nearest_side_m;
+            lane[kStartNearestAhead] = measures.nearest_ahead_m;
+            lane[kStartFarthestAhead] = measures.farthest_ahead_m;
         }
     }
 }

@@ -18,7 +18,12 @@ constexpr std::size_t kBatch = 16;
 constexpr std::size_t kUnits = 4;
 
 /// First of each pair of sides.
-constexpr std::array<std::size_t, 6> kPairs{1, 4, 6, 21, 23, 25};
+constexpr std::array<LaneFeature, 6> kPairs{kConesLeft,
+                                            kSegmentLengthVarianceLeft,
+                                            kTurnVarianceLeft,
+                                            kMeanSegmentLengthLeft,
+                                            kAbsoluteMeanTurnLeft,
+                                            kMeanSquaredTurnChangeLeft};
 
 /// Numbers that the compiler keeps in registers, whatever their width is.
 using Floats [[gnu::vector_size(32)]] = float;
@@ -109,10 +114,10 @@ class RankNet final : public LaneRanking {
 void network_inputs(const LaneFeatures& lane, std::span<double> inputs) {
     assert(inputs.size() <= lane.size());
     std::copy_n(lane.begin(), inputs.size(), inputs.begin());
-    for (const std::size_t left : kPairs) {
+    for (const LaneFeature left : kPairs) {
         if (left >= inputs.size()) break;
-        inputs[left] = (lane[left] + lane[left + 1]) / 2.0;
-        inputs[left + 1] = std::abs(lane[left] - lane[left + 1]) / 2.0;
+        inputs[left] = (lane[left] + lane[left + kRight]) / 2.0;
+        inputs[left + kRight] = std::abs(lane[left] - lane[left + kRight]) / 2.0;
     }
 }
 
