@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graph_search/search_budget.hpp"
 #include "model/geometry.hpp"
 
 #include <cstddef>
@@ -22,7 +23,8 @@ inline constexpr Side kRight = 1;
     return 1 - side;
 }
 
-/// Gives the pairs of points that may be joined, each one in any order; may give pairs that are too far apart.
+/// Gives the pairs of points that may be joined, each one in any order; may give pairs that are too far
+/// apart.
 using EdgeRule = std::function<std::vector<std::pair<Vertex, Vertex>>(std::span<const Point>)>;
 
 /// Which points may follow each other on a boundary: the simple undirected graph of equations (1) and (2) of
@@ -35,6 +37,10 @@ class SearchGraph {
 
     /// With a rule only those of its pairs that are at most d_max apart are joined.
     void build(std::span<const Point> points, double d_max_m, const EdgeRule& rule = {});
+    /// The same within a budget of time and memory. Returns false where that is spent: then there is no
+    /// graph.
+    [[nodiscard]] bool build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
+                             SearchBudget& budget);
 
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
     /// Each undirected edge counts twice.
@@ -74,7 +80,8 @@ class SearchGraph {
     std::vector<Vertex> neighbours_;
     std::vector<double> neighbour_x_;  ///< kSpare more than there are neighbours
     std::vector<double> neighbour_y_;
-    std::vector<Cell> cells_;
+    std::vector<Cell> cell_of_;  ///< by point
+    std::vector<Cell> cells_;    ///< the same in their own order
 };
 
 }  // namespace conelane

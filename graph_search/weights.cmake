@@ -1,11 +1,6 @@
-# The weight files in weights/ as a C++ source file, by CMake alone. Numbers stay decimal text of 17 digits at most on
-# their way, so the compiler reads the same doubles that a JSON parser reads.
-
-# Sets `result` to the numbers of the JSON array, its rows if nested one behind the other, as an initialiser.
-function(conelane_numbers result json)
-    string(REGEX REPLACE "[][ \n]" "" numbers "${json}")
-    set(${result} "{${numbers}}" PARENT_SCOPE)
-endfunction()
+# The weight files in weights/ as a C++ source file, by CMake alone. The digits are cut out of the text: CMake may print
+# a number that it parsed with fewer of them. So the compiler reads the doubles that a JSON parser reads. The files are
+# laid out as `conelane train` writes them, a line for each key; any other layout is an error.
 
 # Sets `result` to the JSON text of weights/NAME.json, after a check of its version.
 function(conelane_weight_file result name)
@@ -19,19 +14,28 @@ function(conelane_weight_file result name)
     set(${result} "${json}" PARENT_SCOPE)
 endfunction()
 
-# Sets `result` to the definition of a RankNetTable.
+# Sets `result` to what `pattern` matches in its first group.
+function(conelane_cut result text pattern)
+    if(NOT text MATCHES "${pattern}")
+        message(FATAL_ERROR "the weight files have nothing like ${pattern}")
+    endif()
+    set(${result} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+endfunction()
+
+# Sets `result` to the definition of a RankNetTable. The rows of `hidden` stand one behind the other.
 function(conelane_rank_net result symbol name)
     conelane_weight_file(json ${name})
     set(text "")
-    foreach(key mean deviation hidden hidden_bias output)
-        string(JSON values GET "${json}" ${key})
-        conelane_numbers(numbers "${values}")
-        string(APPEND text "constexpr double ${symbol}_${key}[]${numbers};\n")
+    foreach(key mean deviation hidden_bias output)
+        conelane_cut(numbers "${json}" "\n\"${key}\": *\\[([^]]*)\\]")
+        string(APPEND text "constexpr double ${symbol}_${key}[]{${numbers}};\n")
     endforeach()
-    string(JSON features GET "${json}" features)
-    string(REGEX REPLACE "[][ \n]" "" features "${features}")
+    conelane_cut(numbers "${json}" "\n\"hidden\": *(\\[.*\\]),\n\"hidden_bias\"")
+    string(REGEX REPLACE "[][ \n]" "" numbers "${numbers}")
+    string(APPEND text "constexpr double ${symbol}_hidden[]{${numbers}};\n")
+    conelane_cut(features "${json}" "\n\"features\": *\\[([^]]*)\\]")
     string(APPEND text "constexpr std::string_view ${symbol}_features[]{${features}};\n")
-    string(JSON output_bias GET "${json}" output_bias)
+    conelane_cut(output_bias "${json}" "\n\"output_bias\": *([-+.0-9eE]+)")
     string(APPEND text "constinit const RankNetTable ${symbol}{${symbol}_features, ${symbol}_mean, ${symbol}_deviation, "
                        "${symbol}_hidden, ${symbol}_hidden_bias, ${symbol}_output, ${output_bias}};\n")
     set(${result} "${text}" PARENT_SCOPE)
@@ -42,15 +46,16 @@ function(conelane_step_scores result symbol name)
     conelane_weight_file(json ${name})
     string(JSON count LENGTH "${json}" measures)
     math(EXPR last "${count} - 1")
+    conelane_cut(measures "${json}" "\n\"measures\": *{(.*)}")
     set(text "")
     set(tables "")
     foreach(i RANGE ${last})
         string(JSON measure MEMBER "${json}" measures ${i})
-        string(JSON scores GET "${json}" measures ${measure} scores)
-        string(JSON first GET "${json}" measures ${measure} first)
-        string(JSON spacing GET "${json}" measures ${measure} spacing)
-        conelane_numbers(numbers "${scores}")
-        string(APPEND text "constexpr double ${symbol}_${measure}[]${numbers};\n")
+        conelane_cut(table "${measures}" "\"${measure}\": *{([^}]*)}")
+        conelane_cut(first "${table}" "\"first\": *([-+.0-9eE]+)")
+        conelane_cut(spacing "${table}" "\"spacing\": *([-+.0-9eE]+)")
+        conelane_cut(scores "${table}" "\"scores\": *\\[([^]]*)\\]")
+        string(APPEND text "constexpr double ${symbol}_${measure}[]{${scores}};\n")
         string(APPEND tables "    {\"${measure}\", ${first}, ${spacing}, ${symbol}_${measure}},\n")
     endforeach()
     string(APPEND text "constexpr StepScoreTable ${symbol}_tables[]{\n${tables}};\n"

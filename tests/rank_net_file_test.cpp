@@ -113,7 +113,7 @@ TEST(RankNetFile, TheShippedNetworksTellLanesApart) {
     LaneFeatures smooth{};
     smooth.fill(1.0);
     LaneFeatures bent = smooth;
-    bent[6] = 2.0;
+    bent[kTurnVarianceLeft] = 2.0;
     const std::vector<LaneFeatures> lanes{smooth, bent, smooth};
     for (const auto& ranking : {paper_rank_net(), extended_rank_net()}) {
         std::vector<double> scores(lanes.size());

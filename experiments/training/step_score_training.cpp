@@ -32,10 +32,7 @@ constexpr double kLeastProbability = 1e-3;
 /// A scene in the search graph with its ground truth, and the beam that is to keep it.
 class RightLane {
   public:
-    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {
-        search_.start.w_min_m = search.bounds.w_min_m;
-        search_.start.w_max_m = search.bounds.w_max_m;
-    }
+    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {}
 
     /// What became of the right lane.
     struct Course {
@@ -71,7 +68,8 @@ class RightLane {
             if (place >= near_vertices_[side]) course.near_kept = true;
             if (place == truth_[side].size()) break;
             const Vertex vertex = truth_[side][place];
-            (void)beam_.advance();
+            SearchBudget unlimited;
+            (void)beam_.advance(unlimited);
             const auto follows = [&](std::size_t number) {
                 const LaneBeam::State& next = beam_.state(number);
                 return next.parent == right && next.last[side] == vertex;
@@ -82,7 +80,8 @@ class RightLane {
             right = next;
         }
         course.near_kept = course.kept = true;
-        if (derivatives != nullptr && beam_.advance()) add_loss(right, course, *derivatives);
+        SearchBudget unlimited;
+        if (derivatives != nullptr && beam_.advance(unlimited)) add_loss(right, course, *derivatives);
         return course;
     }
 
@@ -95,7 +94,8 @@ class RightLane {
             points.push_back(cone.position);
         }
         graph_.build(points, search_.d_max_m, search_.edge_rule);
-        starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start);
+        starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start,
+                              search_.bounds);
         for (const Side side : {kLeft, kRight}) {
             truth_[side].clear();
             near_vertices_[side] = 0;

@@ -1,6 +1,6 @@
-#include "graph_search/surroundings.hpp"
+#include "graph_search/neighbourhood.hpp"
 
-#include "graph_search/wide_loops.hpp"
+#include "graph_search/simd_batch.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -11,16 +11,16 @@ namespace {
 
 /// Of each of four numbers: all bits where something holds, none where it does not.
 using Masks [[gnu::vector_size(32)]] = std::int64_t;
-static_assert(kDoubles <= SearchGraph::kSpare);
-constexpr auto kStep = static_cast<std::int64_t>(kDoubles);
+static_assert(kDoublesPerBatch <= SearchGraph::kSpare);
+constexpr auto kStep = static_cast<std::int64_t>(kDoublesPerBatch);
 
 double sum(const Masks& counts) {
     return -static_cast<double>(counts[0] + counts[1] + counts[2] + counts[3]);
 }
 
-CONELANE_WIDE_LOOPS void count(const double* x, const double* y, std::int64_t size, const Point& tip,
-                               const Point& facing, const Point& point, const Point& left_out,
-                               const Point& left_out_too, Surroundings& result) {
+CONELANE_SIMD void count(const double* x, const double* y, std::int64_t size, const Point& tip,
+                         const Point& facing, const Point& point, const Point& left_out,
+                         const Point& left_out_too, Neighbourhood& result) {
     const Point segment = point - tip;
     const double segment_m = segment.norm();
     const Point direction = segment / segment_m;
@@ -35,8 +35,8 @@ CONELANE_WIDE_LOOPS void count(const double* x, const double* y, std::int64_t si
     Masks number{0, 1, 2, 3};
     for (std::int64_t i = 0; i < size; i += kStep, number += kStep) {
         const Masks is_there = number < size;
-        const Doubles px = *reinterpret_cast<const LooseDoubles*>(x + i);
-        const Doubles py = *reinterpret_cast<const LooseDoubles*>(y + i);
+        const Doubles px = *reinterpret_cast<const UnalignedDoubles*>(x + i);
+        const Doubles py = *reinterpret_cast<const UnalignedDoubles*>(y + i);
         const Doubles from_tip_x = px - tip.x();
         const Doubles from_tip_y = py - tip.y();
         const Doubles from_point_x = px - point.x();
@@ -67,9 +67,9 @@ CONELANE_WIDE_LOOPS void count(const double* x, const double* y, std::int64_t si
 
 }  // namespace
 
-Surroundings surroundings(const SearchGraph& graph, Vertex vertex, const Point& tip, const Point& facing,
-                          const Point& point, const Point& left_out, const Point& left_out_too) {
-    Surroundings result;
+Neighbourhood neighbourhood(const SearchGraph& graph, Vertex vertex, const Point& tip, const Point& facing,
+                            const Point& point, const Point& left_out, const Point& left_out_too) {
+    Neighbourhood result;
     const SearchGraph::Positions neighbours = graph.neighbour_positions(vertex);
     count(neighbours.x, neighbours.y, static_cast<std::int64_t>(neighbours.size), tip, facing, point,
           left_out, left_out_too, result);

@@ -1,4 +1,4 @@
-#include "graph_search/lane_agreement.hpp"
+#include "graph_search/lane_consensus.hpp"
 
 #include "graph_search/lane_features.hpp"
 
@@ -26,7 +26,7 @@ struct Candidates {
     }
     [[nodiscard]] std::size_t size() const { return pairs.found().size(); }
     [[nodiscard]] std::size_t choose(const std::vector<double>& scores, std::size_t count) const {
-        return LaneAgreement().choose(pairs, graph, scores, count);
+        return LaneConsensus().choose(pairs, graph, scores, count);
     }
     /// The candidate with these vertices.
     [[nodiscard]] std::size_t place_of(const PathPairVertices& vertices) const {
@@ -57,7 +57,7 @@ std::vector<Point> map(unsigned seed, int rows, int strewn) {
 
 // Left 0, 2 and then 4 or 6, right 1, 3, 5. The lane over 6 has the highest score, but those over 4 and the
 // ones that end before are together likelier.
-TEST(LaneAgreement, LeavesALeaderThatGoesItsOwnWayAlone) {
+TEST(LaneConsensus, LeavesALeaderThatGoesItsOwnWayAlone) {
     const Candidates candidates({{1, 2}, {1.2, -2}, {5, 2}, {5.2, -2}, {9, 2}, {9.2, -2}, {9, 3.2}});
     const std::size_t leader = candidates.place_of({{{0, 2, 6}, {1, 3, 5}}});
     const std::size_t whole = candidates.place_of({{{0, 2, 4}, {1, 3, 5}}});
@@ -73,7 +73,7 @@ TEST(LaneAgreement, LeavesALeaderThatGoesItsOwnWayAlone) {
     EXPECT_EQ(candidates.choose(scores, 24), leader);
 }
 
-TEST(LaneAgreement, WhatPartsBeyondTheNearPartStraysFromNothing) {
+TEST(LaneConsensus, WhatPartsBeyondTheNearPartStraysFromNothing) {
     std::vector<Point> points = map(0, 9, 0);
     points.emplace_back(points[16] + Point(0.0, 1.3));  // beside the last left one, 32 m ahead
     const Candidates candidates(points);
@@ -91,7 +91,7 @@ TEST(LaneAgreement, WhatPartsBeyondTheNearPartStraysFromNothing) {
     EXPECT_EQ(candidates.choose(scores, 24), other) << "no other is worth more than a cone less";
 }
 
-TEST(LaneAgreement, EqualsItsDefinition) {
+TEST(LaneConsensus, EqualsItsDefinition) {
     std::size_t other_than_leader = 0;
     for (unsigned seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(seed);
@@ -133,7 +133,7 @@ TEST(LaneAgreement, EqualsItsDefinition) {
                     cones += static_cast<double>(lane.size() + lanes[right][side].size());
                 }
                 value += std::exp(scores[order[right]]) *
-                         (shared / (cones - shared) - (strays ? LaneAgreement::kStrayingPenalty : 0.0));
+                         (shared / (cones - shared) - (strays ? LaneConsensus::kStrayingPenalty : 0.0));
             }
             if (value > best_value) {
                 best_value = value;
@@ -147,7 +147,7 @@ TEST(LaneAgreement, EqualsItsDefinition) {
     EXPECT_GT(other_than_leader, 10u);
 }
 
-TEST(LaneAgreement, OfOneCandidateAndOfEqualOnesTakesTheFirst) {
+TEST(LaneConsensus, OfOneCandidateAndOfEqualOnesTakesTheFirst) {
     const Candidates candidates({{1, 2}, {1.2, -2}, {5, 2}, {5.2, -2}, {9, 2}, {9.2, -2}});
     ASSERT_GT(candidates.size(), 1u);
     std::vector<double> scores(candidates.size(), 0.0);

@@ -11,15 +11,15 @@
 
 namespace conelane {
 
-/// Chooses among candidate lanes what agrees best with the others. Beyond the paper.
+/// Chooses the candidate lane with the least expected cost (minimum Bayes risk). Beyond the paper.
 ///
-/// The candidate of the highest score goes its own way alone where several others, each a little less likely,
-/// go another one together, or end before the ways part. So each of the first few is taken for the right lane
+/// The candidate of the highest score may be a mistake: several others, each a little less likely, may go
+/// another way together, or end before the ways part. So each of the first few is taken for the right lane
 /// with probability softmax(scores), and the answer is the one with the highest expected value. A lane's
-/// value where another one is right is the share of their cones that both have on the same side, less
+/// value, where another one is right, is the share of their cones that both have on the same side, less
 /// kStrayingPenalty where the lane has a cone within kNearPart_m along its boundary that the other one does
 /// not have on that side.
-class LaneAgreement {
+class LaneConsensus {
   public:
     /// As many candidates as can be compared.
     static constexpr std::size_t kMostCandidates = 32;

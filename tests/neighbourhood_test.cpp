@@ -1,6 +1,6 @@
 // What stands about a new segment of a lane, four vertices at a time, against one at a time.
 
-#include "graph_search/surroundings.hpp"
+#include "graph_search/neighbourhood.hpp"
 
 #include <array>
 #include <cmath>
@@ -14,9 +14,9 @@
 namespace conelane {
 namespace {
 
-Surroundings plain(const SearchGraph& graph, Vertex vertex, const Point& tip, const Point& facing,
-                   const Point& point, const std::array<Point, 2>& left_out) {
-    Surroundings found;
+Neighbourhood plain(const SearchGraph& graph, Vertex vertex, const Point& tip, const Point& facing,
+                    const Point& point, const std::array<Point, 2>& left_out) {
+    Neighbourhood found;
     const Point segment = point - tip;
     for (const Vertex neighbour : graph.neighbours(vertex)) {
         const Point& at = graph.position(neighbour);
@@ -35,7 +35,7 @@ Surroundings plain(const SearchGraph& graph, Vertex vertex, const Point& tip, co
     return found;
 }
 
-TEST(Surroundings, AreCountedForAnyNumberOfVertices) {
+TEST(Neighbourhood, AreCountedForAnyNumberOfVertices) {
     boost::random::mt19937_64 random(3);
     boost::random::uniform_real_distribution<double> draw(-4.0, 4.0);
     double inside = 0.0;
@@ -50,9 +50,9 @@ TEST(Surroundings, AreCountedForAnyNumberOfVertices) {
             const Vertex next = (tip + 2) % static_cast<Vertex>(count);
             // The segment's end is rounded to either side of it.
             for (const Point& left_out : {points[next], points[(tip + 3) % count]}) {
-                const Surroundings found = surroundings(graph, tip, points[tip], points[facing], points[next],
-                                                        left_out, points[next]);
-                const Surroundings expected =
+                const Neighbourhood found = neighbourhood(graph, tip, points[tip], points[facing],
+                                                          points[next], left_out, points[next]);
+                const Neighbourhood expected =
                     plain(graph, tip, points[tip], points[facing], points[next], {left_out, points[next]});
                 EXPECT_EQ(found.inside, expected.inside);
                 EXPECT_EQ(found.beside, expected.beside);

@@ -1,4 +1,4 @@
-#include "graph_search/lane_agreement.hpp"
+#include "graph_search/lane_consensus.hpp"
 
 #include "graph_search/lane_features.hpp"
 
@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-std::size_t LaneAgreement::choose(const PathPairs& pairs, const SearchGraph& graph,
+std::size_t LaneConsensus::choose(const PathPairs& pairs, const SearchGraph& graph,
                                   std::span<const double> scores, std::size_t count) {
     order_.resize(scores.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -54,7 +54,7 @@ std::size_t LaneAgreement::choose(const PathPairs& pairs, const SearchGraph& gra
     return best;
 }
 
-void LaneAgreement::measure(const PathPairs& pairs, const SearchGraph& graph, std::size_t place) {
+void LaneConsensus::measure(const PathPairs& pairs, const SearchGraph& graph, std::size_t place) {
     const PathPair& pair = pairs.found()[order_[place]];
     for (const Side side : {kLeft, kRight}) {
         pairs.vertices(pair, side, side_);
