@@ -1,0 +1,38 @@
+#include "detectors/solve_scene.hpp"
+
+#include "model/deadline.hpp"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace conelane {
+
+SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                        const SolveLimits& limits, const LaneGraph* start) {
+    const Stopwatch watch;
+    const Deadline deadline(limits.time_limit_ms);
+    SolvedScene solved;
+    try {
+        LimitedProblem made = make_problem(scene, parameters, solver.extent(), deadline);
+        const double problem_ms = watch.elapsed_ms();
+        if (made.problem) {
+            solved.problem = *std::move(made.problem);
+            solved.report =
+                solver.solve(solved.problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
+        } else {
+            solved.report.status = SolveStatus::stopped;
+            solved.report.stopped_by = made.stopped_by;
+        }
+        solved.report.build_ms += problem_ms;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& failure) {
+        solved.report = {};
+        solved.report.message = failure.what();
+    }
+    solved.total_ms = watch.elapsed_ms();
+    return solved;
+}
+
+}  // namespace conelane
