@@ -17,7 +17,7 @@ SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParamete
         LimitedProblem made = make_problem(scene, parameters, solver.extent(), deadline);
         const double problem_ms = watch.elapsed_ms();
         if (made.problem) {
-            solved.problem = std::move(*made.problem);
+            solved.problem = *std::move(made.problem);
             solved.report =
                 solver.solve(solved.problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
         } else {

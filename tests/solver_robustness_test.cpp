@@ -18,6 +18,7 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -164,6 +165,34 @@ TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
     EXPECT_EQ(report.stopped_by, StopReason::time);
     EXPECT_EQ(report.lane_graph, kFourConesLane);
     EXPECT_NEAR(report.objective.value_or(0.0), -2.0, 1e-9);
+}
+
+/// An instance a thread: they share nothing that tells. Libraries that cannot do so take turns.
+TEST_P(SolverRobustness, SolvesTheSameInThreads) {
+    constexpr std::uint64_t kSeeds = 4;
+    const auto solve_all = [] {
+        const std::unique_ptr<RldSolver> own = GetParam().entry->make(GetParam().formulation);
+        std::vector<RldReport> reports;
+        for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+            reports.push_back(own->solve(make_problem(tests::random_scene(seed, 8), {}, own->extent()), {}));
+        }
+        return reports;
+    };
+    const std::vector<RldReport> alone = solve_all();
+    std::vector<std::vector<RldReport>> together(3);
+    {
+        std::vector<std::jthread> threads;
+        for (std::vector<RldReport>& reports : together) {
+            threads.emplace_back([&reports, &solve_all] { reports = solve_all(); });
+        }
+    }
+    for (const std::vector<RldReport>& reports : together) {
+        ASSERT_EQ(reports.size(), alone.size());
+        for (std::size_t scene = 0; scene < alone.size(); ++scene) {
+            EXPECT_EQ(reports[scene].status, alone[scene].status) << reports[scene].message;
+            EXPECT_EQ(reports[scene].lane_graph, alone[scene].lane_graph);
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(contestants()), [](const auto& test) {
