@@ -4,7 +4,7 @@
 #include "experiments/scoring/divergence.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/scoring/score.hpp"
-#include "experiments/training/random_order.hpp"
+#include "experiments/seeded_random.hpp"
 
 #include <algorithm>
 #include <limits>
