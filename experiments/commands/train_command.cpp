@@ -134,10 +134,10 @@ CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
-    command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
+    command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,
-        "of each track, trained on too: stretched, every second one driven the other way", 0);
+        "of each track to train on too: stretched, every second one driven the other way", 0);
     add_scene_options(command, run.scenes);
     add_number_option(command, "--hold-out-every", run.hold_out_every_m,
                       "travel between poses on the tracks held out [m]");
@@ -150,12 +150,11 @@ void add_kind_options(CLI::App& command, Options& options, CLI::Option& variants
         *command.add_flag("--extended", options.extended,
                           "the network of clc, on its search, by all features and the quality of its "
                           "choice; without it that of clc-paper");
-    CLI::Option& steps =
-        *command
-             .add_flag("--steps", options.steps,
-                       "not a network, but the step scores that the beam search of clc goes by")
-             ->excludes(&extended)
-             ->excludes(&variants);
+    CLI::Option& steps = *command
+                              .add_flag("--steps", options.steps,
+                                        "train the step scores of clc's beam search instead of a network")
+                              ->excludes(&extended)
+                              ->excludes(&variants);
     command
         .add_option("--step-scores", options.step_scores,
                     "step scores (JSON) of the beam search that finds candidates, with --extended; "
@@ -180,30 +179,32 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
     add_number_option(command, "--decay", training.weight_decay,
                       "decay of the network's weights by each step, times the rate");
     add_number_option(command, "--iou-factor", training.iou_factor, "lambda_iou of equation (14)");
-    add_number_option(command, "--divergence-penalty", training.divergence_penalty,
-                      "off the IoU of a lane that diverges below 20 m; 0, as in the paper, for none");
+    add_number_option(
+        command, "--divergence-penalty", training.divergence_penalty,
+        "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper");
     add_number_option(command, "--late-divergence-penalty", training.late_divergence_penalty,
-                      "the same for one that diverges later");
+                      "the same for a lane that leaves it later");
     add_number_option(command, "--leader-share", training.leader_share,
-                      "share of the pairs with the candidate that the network ranks first");
+                      "share of the pairs that hold the candidate ranked first so far");
 }
 
 }  // namespace
 
 void add_train_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("train", "the ranking network of clc, or its step scores");
+    CLI::App& command = *program.add_subcommand(
+        "train", "trains the ranking network of clc, or the step scores of its beam search");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     CLI::Option& variants = add_track_options(command, run);
     add_count_option(command, "--candidates", run.candidates.most_per_scene,
-                     "of a scene, drawn at random; 0 for all", 0);
+                     "of a scene at most, drawn at random; 0 for all", 0);
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
         ->check(CLI::Range(1, kMost))
         ->capture_default_str();
     add_kind_options(command, *options, variants);
     add_step_options(command, options->step_training);
     add_network_options(command, run.training);
-    add_threads_option(command, options->threads, "same weights with any number");
+    add_threads_option(command, options->threads, "the weights are the same with any number");
     add_output_option(command, "--out", options->out, "weights (JSON)")->required();
     command.callback([options] { train(*options); });
 }

@@ -233,7 +233,8 @@ void run(Options& options) {
 }  // namespace
 
 void add_tune_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("tune", "RLD parameters that are best on given tracks");
+    CLI::App& command =
+        *program.add_subcommand("tune", "finds the RLD parameters that answer best on given tracks");
     auto options = std::make_shared<Options>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
@@ -250,7 +251,7 @@ void add_tune_command(CLI::App& program) {
                     if (to_string(objective) == name) options->evaluation.objective = objective;
                 }
             },
-            "mean over scenes that is made as large as possible [accuracy]")
+            "what to maximise, as a mean over scenes [accuracy]")
         ->check(CLI::IsMember({"accuracy", "iou", "success"}));
     add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
     command
@@ -262,26 +263,35 @@ void add_tune_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
-        .add_option("--most-nodes", options->evaluation.most_nodes, "a scene that takes more counts as wrong")
+        .add_option("--most-nodes", options->evaluation.most_nodes,
+                    "of a scene's search; one that takes more counts as wrong")
         ->check(CLI::Range(1, 1'000'000'000))
         ->capture_default_str();
-    command.add_option("--folds", options->tuner.folds, "of tracks; 1 holds none out")
+    command
+        .add_option("--folds", options->tuner.folds,
+                    "groups of tracks, each of which is held out once; 1 holds none out")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         .add_option("--rounds", options->rounds,
-                    "of a fit of the weights to lane graphs found, in each fit before the search; not in "
-                    "the log")
+                    "of fitting the weights to the lane graphs found so far, before the search of each fit; "
+                    "not in the log")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command.add_option("--evaluations", options->tuner.evaluations, "in each fit")
+    command
+        .add_option("--evaluations", options->tuner.evaluations,
+                    "parameters that the search evaluates in each fit, at most")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
-    command.add_option("--start", options->start, "parameters to start from");
-    command.add_flag("--shape", options->shape, "with the costs of the lane's shape, tuned too");
-    add_threads_option(command, options->evaluation.threads, "scenes at a time");
+    command.add_option(
+        "--start", options->start,
+        "parameters to start from: a name or a file, as for --params elsewhere; without it the defaults");
+    command.add_flag("--shape", options->shape, "start with the costs of a lane's shape and tune them too");
+    add_threads_option(command, options->evaluation.threads, "scenes solved at a time");
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
-    command.add_option("--log", options->log, "*.jsonl of all evaluations; a tuning stopped there goes on");
+    command.add_option(
+        "--log", options->log,
+        "*.jsonl, a line for each evaluation; with the same log a tuning that was stopped goes on");
     command.callback([options] { run(*options); });
 }
 
