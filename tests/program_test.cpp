@@ -223,8 +223,8 @@ TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     file_with("{", "bad.scenes.jsonl");
     std::filesystem::create_directory(path("folder"));
     for (const char* command :
-         {"detect --method clc", "solve", "certify", "study formulations", "study backends", "study optimality",
-          "study relaxations", "export --id a", "import-solution --id a --sol a.sol"}) {
+         {"detect --method clc", "solve", "certify", "study formulations", "study backends",
+          "study optimality", "study relaxations", "export --id a", "import-solution --id a --sol a.sol"}) {
         const std::string begun = std::string(command) + " --scenes bad.scenes.jsonl --out ";
         expect_refused(begun + "nowhere/x.lp", {"--out", "nowhere/x.lp"});
         expect_refused(begun + "folder", {"--out", "folder"});
@@ -763,7 +763,8 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
                    {"method", "enumerate"});
     expect_refused("study optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
     expect_refused("study backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
-    expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl", {"--solvers", "magic"});
+    expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
+                   {"--solvers", "magic"});
     const Outcome list = run("study");
     EXPECT_EQ(list.exit_code, 0);
     EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));

@@ -1,4 +1,4 @@
-// The table of relaxations against the optimum, on a course without false positives.
+// The relaxations against the optimum, on a course without false positives.
 
 #include "experiments/studies/relaxations.hpp"
 
@@ -32,7 +32,7 @@ RelaxationOptions without_limit(std::vector<std::size_t> sizes) {
     return options;
 }
 
-TEST(RelaxationTable, HoldsEverySolverWithoutProofAgainstPathPair) {
+TEST(Relaxations, HoldsEverySolverWithoutProofAgainstPathPair) {
     const auto scenes = straight_scenes(0.3);
     const auto rows = relaxation_rows(scenes, without_limit({8, 12}));
     const auto heuristics = std::ranges::count(rld_solvers(), false, &RldSolverEntry::exact);
@@ -61,7 +61,7 @@ TEST(RelaxationTable, HoldsEverySolverWithoutProofAgainstPathPair) {
     }
 }
 
-TEST(RelaxationTable, LeavesOutSizesThatNoSceneHasAndKeepsToTheLimit) {
+TEST(Relaxations, LeavesOutSizesThatNoSceneHasAndKeepsToTheLimit) {
     const auto scenes = straight_scenes(0.0);
     RelaxationOptions options = without_limit({8, 500});
     options.limit = 2;

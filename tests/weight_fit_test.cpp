@@ -1,5 +1,5 @@
-// The fit of weights: the objective is linear in them, the value of the lane graph of least cost made smooth has a
-// gradient, and rounds learn from the tracks they are given and from no other.
+// The fit of weights: the objective is linear in them, the value of the lane graph of least cost made smooth
+// has a gradient, and rounds learn from the tracks they are given and from no other.
 
 #include "experiments/tuning/weight_fit.hpp"
 

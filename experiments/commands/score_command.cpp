@@ -1,8 +1,8 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/score_table.hpp"
 

@@ -57,9 +57,9 @@ struct BackendRow {
     double latency_ms = 0.0;
 };
 
-/// Rows by size, backend and scene, in the order of the scenes. Left out are of each size the scenes with
-/// fewer cones and the backends whose solver takes no more (RldSolverEntry::most_cones). Throws InvalidInput
-/// where a backend's solver is not in this build.
+/// Rows by size, backend and scene. For each size, scenes with fewer cones are left out, and so are backends
+/// whose solver takes no cone set of that size (RldSolverEntry::most_cones). Throws InvalidInput where a
+/// backend's solver is not in this build.
 [[nodiscard]] std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes,
                                                    const BackendOptions& options);
 

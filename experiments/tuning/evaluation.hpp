@@ -26,7 +26,7 @@ enum class TuningObjective {
 struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;
     std::optional<std::size_t> nearest{};  ///< cone-set size; all cones where absent
-    std::optional<std::size_t> context{};  ///< as RldDetectorOptions::context
+    std::optional<std::size_t> context{};  ///< as ConeSet::context
     /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, has value 0.
     double time_limit_ms = 20.0;
     std::int64_t most_nodes = 1000;

@@ -6,7 +6,7 @@ confidences or colours. Each fold answers for the tracks that it held out; the w
 geometry (w_b with confidences, w_color with colours) is chosen on the others. Accurate: the RLD paper's four checks \
 on the cone set; success: no lane that leaves the track within 20 m.
 Source: this project; the question is the RLD paper's own, V.
-Command: conelane study confidence-and-colour --record experiments/parameters/context.record.json --tracks TRACK... \
+Command: conelane study confidence-and-colour --record detectors/parameters/context.record.json --tracks TRACK... \
 --out RESULTS/confidence-and-colour.jsonl
 """
 

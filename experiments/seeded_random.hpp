@@ -21,7 +21,8 @@ inline boost::random::mt19937_64 generator_of(const std::string& name, std::uint
     return boost::random::mt19937_64(sequence);
 }
 
-/// Shuffles: the same order from the same generator with any standard library.
+/// Fisher and Yates. The same order from the same generator with any standard library; std::shuffle has no
+/// such promise.
 template <typename Value>
 void shuffle(std::vector<Value>& values, boost::random::mt19937_64& random) {
     for (std::size_t i = values.size(); i > 1; --i) {
