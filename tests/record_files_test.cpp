@@ -90,7 +90,7 @@ TEST_F(LaneFileTest, ABoundThatProvesNothingIsLeftOut) {
 }
 
 TEST_F(LaneFileTest, NamesBadRecords) {
-    EXPECT_EQ(error_in(lane("maybe", "[]")), "l:1: status: must be one of found, none, time_limit, error");
+    EXPECT_EQ(error_in(lane("maybe", "[]")), "l:1: status: must be one of found, none, stopped, error");
     EXPECT_EQ(error_in(lane("none", "[1]")), "l:1: left: must be empty where status is none");
     EXPECT_EQ(error_in(lane("found", "[1, 1.5]")), "l:1: left[1]: must be an integer of 64 bits");
     EXPECT_EQ(error_in(R"({"scene": "a", "method": "m", "status": "none", "left": [], "right": []})"),

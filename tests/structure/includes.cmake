@@ -13,7 +13,7 @@ set(detectors_depends_on model solvers graph_search detectors)
 set(experiments_depends_on model solvers graph_search detectors experiments)
 set(tests_depends_on model solvers graph_search detectors experiments tests)
 set(private_libraries
-    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|symphony|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
 foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
     file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
