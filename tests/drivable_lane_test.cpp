@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -96,7 +97,7 @@ Course beside_path(const std::function<double(double)>& curvature_1pm, double le
     Point position(0.0, 0.0);
     double heading = 0.0;
     double next_m = 0.0;
-    for (double s = 0.0; s <= length_m; s += kStep_m) {
+    for (double s = 0.0; s < length_m + 0.5 * kStep_m; s += kStep_m) {
         const Point normal(-std::sin(heading), std::cos(heading));
         if (s >= next_m - 1e-9) {
             course.add(position + half_width_m * normal, true);
@@ -221,7 +222,10 @@ TEST(DrivableLane, KnowsTheCurvatureOfCircles) {
                     // A boundary of straight pieces runs inside its circle by their sagitta.
                     const double sagitta_m = spacing_m * spacing_m / 8.0 / (radius_m - 1.6);
                     for (const DrivablePoint& point : lane.points) {
-                        EXPECT_NEAR(point.curvature_1pm * radius_m, turn, 0.01 + 1.2 * sagitta_m / radius_m)
+                        // The last piece of either boundary shows no bend.
+                        const bool at_end = !closed && (point.s_m < 4.0 || point.s_m > lane.length_m - 4.0);
+                        EXPECT_NEAR(point.curvature_1pm * radius_m, turn,
+                                    (at_end ? 0.04 : 0.01) + 1.2 * sagitta_m / radius_m)
                             << point.s_m;
                         const double off_m = (point.position - Point(0.0, turn * radius_m)).norm() - radius_m;
                         EXPECT_LT(off_m, 0.01);
@@ -243,7 +247,9 @@ TEST(DrivableLane, KnowsTheCurvatureOfClothoids) {
             expect_drivable(course, lane);
             EXPECT_NEAR(lane.length_m, 30.0, 0.8);
             for (const DrivablePoint& point : lane.points) {
-                EXPECT_NEAR(point.curvature_1pm, curvature(point.s_m), 0.008) << point.s_m;
+                // The ends of an open line go on as a circle over some metres.
+                const bool at_end = point.s_m < 3.5 || point.s_m > lane.length_m - 3.5;
+                EXPECT_NEAR(point.curvature_1pm, curvature(point.s_m), at_end ? 0.03 : 0.008) << point.s_m;
             }
         }
     }
@@ -258,7 +264,7 @@ TEST(DrivableLane, ClosesAClosedLane) {
     EXPECT_NEAR(lane.length_m, 2.0 * kPi * 12.0, 1.0);
     // From the foot point on.
     EXPECT_NEAR(lane.points.front().position.y(), 12.0, 0.02);
-    EXPECT_NEAR(lane.points.front().position.x(), 24.0, 0.2);
+    EXPECT_NEAR(lane.points.front().position.x(), 12.0, 0.2);
     EXPECT_NEAR(lane.points.front().heading_rad, kPi / 2.0, 0.02);
     EXPECT_NEAR((lane.points.back().position - lane.points.front().position).norm(),
                 lane.length_m / static_cast<double>(lane.points.size()), 0.01);
