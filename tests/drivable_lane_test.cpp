@@ -153,10 +153,33 @@ void expect_drivable(const Course& course, const DrivableLane& lane, double step
     const bool closed = course.lane.closed;
     const std::vector<Point> left = course.left();
     const std::vector<Point> right = course.right();
-    std::vector<Segment> outlines = segments(left, closed);
-    std::ranges::copy(segments(right, closed), std::back_inserter(outlines));
-    const std::vector<Segment> boundaries = outlines;
-    const std::vector<Segment> ends{{left.front(), right.front()}, {left.back(), right.back()}};
+    std::vector<Segment> boundaries = segments(left, closed);
+    std::ranges::copy(segments(right, closed), std::back_inserter(boundaries));
+    // What of a boundary goes on round a bend after the other one has ended bounds no lane.
+    std::vector<Point> left_beside = left;
+    std::vector<Point> right_beside = right;
+    const auto drop_far = [&](std::vector<Point>& boundary, const Point& end) {
+        Point far = boundary.back();
+        while (!closed && boundary.size() > 1 && (boundary.back() - end).norm() > kWidestLane_m) {
+            far = boundary.back();
+            boundary.pop_back();
+        }
+        Point near = boundary.back();
+        for (int i = 0; i < 40; ++i) {  // to where it is kWidestLane_m away
+            const Point middle = 0.5 * (near + far);
+            ((middle - end).norm() > kWidestLane_m ? far : near) = middle;
+        }
+        boundary.push_back(near);
+    };
+    if (polyline_length_m(left) > polyline_length_m(right)) {
+        drop_far(left_beside, right.back());
+    } else {
+        drop_far(right_beside, left.back());
+    }
+    std::vector<Segment> outlines = segments(left_beside, closed);
+    std::ranges::copy(segments(right_beside, closed), std::back_inserter(outlines));
+    const std::vector<Segment> ends{{left_beside.front(), right_beside.front()},
+                                    {left_beside.back(), right_beside.back()}};
     if (!closed) std::ranges::copy(ends, std::back_inserter(outlines));
     const double spacing_m = lane.closed ? lane.length_m / static_cast<double>(lane.points.size()) : step_m;
     EXPECT_NEAR(spacing_m, step_m, step_m * step_m / lane.length_m);

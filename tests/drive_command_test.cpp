@@ -188,7 +188,7 @@ TEST_F(DriveCommand, NamesWhatIsWrong) {
     const auto with_lane = [&](const std::string& lane) {
         file_with(kNone + R"({"method": "clc", "status": "found", "latency_ms": 1, )" + lane + "}\n",
                   "bad.lanes.jsonl");
-        return "--lanes bad.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl ";
+        return std::string("--lanes bad.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl ");
     };
     file_with(kNone, "bad.lanes.jsonl");
     expect_refused(with_lane(R"("scene": "a", "left": [0, 1, 55], "right": [100, 101])"),
