@@ -405,6 +405,7 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
         point.position += scene.pose.position;
         result.points.push_back(point);
     }
+    if (!(result.length_m > 0.0)) result.points.clear();
     result.bridged =
         seen_from(line.gaps(options.longest_gap_m), foot_m, line.closed() ? line.length_m() : 0.0, result);
     return result;

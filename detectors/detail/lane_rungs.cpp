@@ -14,6 +14,7 @@ constexpr double kSample_m = 0.5;          ///< between matched places of a boun
 constexpr double kSamplesAtMost = 2000.0;  ///< of a boundary; a longer one is sampled more coarsely
 constexpr double kRungSpacing_m = 0.25;    ///< at most
 constexpr double kShortestMidline_m = 0.5;
+constexpr double kWholeMean = 1.01;        ///< a mean within this of the least one is as good
 constexpr double kLeastAdvance = 0.2;      ///< of an extended lane, as a share of the boundary's
 constexpr double kDirectionReach_m = 2.5;  ///< to either side, of the direction along an extended lane
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -120,6 +121,11 @@ std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> ri
             j_end = j;
         }
     }
+    const double whole_mean = row.back() / static_cast<double>(left.size() + columns - 1);
+    if (open_end && whole_mean <= kWholeMean * least_mean) {  // both end side by side
+        i_end = left.size() - 1;
+        j_end = columns - 1;
+    }
     std::vector<Rung> rungs;
     std::size_t i = i_end;
     std::size_t j = j_end;
@@ -139,13 +145,16 @@ double length_m(const Rung& rung) {
     return (rung.left - rung.right).norm();
 }
 
-/// Drops the last rungs while they fan out from one place and grow.
+/// Drops the last rungs while they fan out from the place of the last one on one side and grow.
 void drop_fan(std::vector<Rung>& rungs) {
+    const double left_m = rungs.back().left_m;
+    const double right_m = rungs.back().right_m;
     while (rungs.size() > 1) {
         const Rung& last = rungs.back();
         const Rung& before = rungs[rungs.size() - 2];
-        if (last.left_m != before.left_m && last.right_m != before.right_m) return;
-        if (length_m(last) < length_m(before)) return;
+        const bool from_left = last.left_m == left_m && before.left_m == left_m;
+        const bool from_right = last.right_m == right_m && before.right_m == right_m;
+        if (!(from_left || from_right) || length_m(last) < length_m(before)) return;
         rungs.pop_back();
     }
 }

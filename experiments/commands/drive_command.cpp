@@ -3,6 +3,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/files/drivable_lane_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/json_node.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
@@ -28,11 +29,6 @@ struct Options {
     std::optional<std::string> method;
     DrivableOptions drivable;
 };
-
-/// What an InvalidInput says without its key.
-std::string reason_of(const InvalidInput& error) {
-    return std::string(error.what()).substr(error.key().size() + std::string_view(": ").size());
-}
 
 std::vector<LaneRecord> chosen_lanes(const Options& options) {
     std::vector<LaneRecord> records = read_lanes(options.lanes);
