@@ -35,7 +35,10 @@ class ClcDetector final : public LaneDetector {
         }
     }
 
-    LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
+    void reset() override { last_lane_.reset(); }
+
+  private:
+    LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         CandidateSearch::Request request;
         request.time_limit_ms = limits.time_limit_ms;
         request.with_features = ranking_ != nullptr;
@@ -61,9 +64,6 @@ class ClcDetector final : public LaneDetector {
         return answer;
     }
 
-    void reset() override { last_lane_.reset(); }
-
-  private:
     /// Of the pairs found, of which there must be one.
     const PathPair& best() {
         const std::vector<PathPair>& found = search_.pairs().found();

@@ -65,13 +65,23 @@ struct DetectionLimits {
 };
 
 /// A way from a scene to a lane. An instance may carry state from one scene of a lap to the next and serves
-/// one thread; `reset` forgets that state. `detect` throws nothing but std::bad_alloc: a scene that `validate`
-/// refuses, a limit that is NaN and a backend that fails give status error and a message.
+/// one thread; instances are independent of each other.
 class LaneDetector {
   public:
     virtual ~LaneDetector() = default;
-    [[nodiscard]] virtual LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) = 0;
+
+    /// Throws nothing but std::bad_alloc: a scene that `validate` refuses, a limit that is NaN and whatever a
+    /// search or its backend throws give status error and a message.
+    [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
+
+    /// Forgets what was carried from earlier scenes.
     virtual void reset() {}
+
+  private:
+    /// Precondition: the scene is valid and the limit is a number.
+    [[nodiscard]] virtual LaneAnswer search(const Scene& scene, const DetectionLimits& limits) = 0;
+
+    std::vector<ConeId> ids_;  ///< workspace of `validate`
 };
 
 }  // namespace conelane

@@ -8,6 +8,15 @@
 #include <utility>
 
 namespace conelane {
+namespace {
+
+constexpr const char* kNotFinite = "must be a finite number";
+
+std::string key_of(std::size_t cone, const char* member) {
+    return "cones[" + std::to_string(cone) + "]." + member;
+}
+
+}  // namespace
 
 Point Pose::heading() const {
     return {std::cos(yaw_rad), std::sin(yaw_rad)};
@@ -36,24 +45,32 @@ std::string_view to_string(ConeColor color) {
 }
 
 void validate(const Scene& scene) {
-    const auto require_finite = [](double value, const std::string& key) {
-        if (!std::isfinite(value)) throw InvalidInput(key, "must be a finite number");
-    };
-    require_finite(scene.pose.position.x(), "pose.x");
-    require_finite(scene.pose.position.y(), "pose.y");
-    require_finite(scene.pose.yaw_rad, "pose.yaw");
-    std::unordered_set<ConeId> seen;
+    std::vector<ConeId> ids;
+    validate(scene, ids);
+}
+
+void validate(const Scene& scene, std::vector<ConeId>& ids) {
+    // Keys are put together only for a fault: this runs in every call of a detector.
+    if (!std::isfinite(scene.pose.position.x())) throw InvalidInput("pose.x", kNotFinite);
+    if (!std::isfinite(scene.pose.position.y())) throw InvalidInput("pose.y", kNotFinite);
+    if (!std::isfinite(scene.pose.yaw_rad)) throw InvalidInput("pose.yaw", kNotFinite);
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         const Cone& cone = scene.cones[i];
-        const std::string key = "cones[" + std::to_string(i) + "].";
-        require_finite(cone.position.x(), key + "x");
-        require_finite(cone.position.y(), key + "y");
+        if (!std::isfinite(cone.position.x())) throw InvalidInput(key_of(i, "x"), kNotFinite);
+        if (!std::isfinite(cone.position.y())) throw InvalidInput(key_of(i, "y"), kNotFinite);
         if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) {
-            throw InvalidInput(key + "confidence", "must be in [0, 1]");
+            throw InvalidInput(key_of(i, "confidence"), "must be in [0, 1]");
         }
-        if (!seen.insert(cone.id).second) {
-            throw InvalidInput(key + "id", "cone id " + std::to_string(cone.id) + " is there twice");
-        }
+    }
+    ids.clear();
+    for (const Cone& cone : scene.cones) ids.push_back(cone.id);
+    std::ranges::sort(ids);
+    if (std::ranges::adjacent_find(ids) == ids.end()) return;
+    std::unordered_set<ConeId> seen;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        if (seen.insert(scene.cones[i].id).second) continue;
+        throw InvalidInput(key_of(i, "id"),
+                           "cone id " + std::to_string(scene.cones[i].id) + " is there twice");
     }
 }
 

@@ -44,6 +44,8 @@ struct Scene {
 /// Throws InvalidInput, naming the key, where a number is not finite, a confidence is outside [0, 1] or an id
 /// is there twice. A scene without cones is valid: it has no lane.
 void validate(const Scene& scene);
+/// The same, with `ids` as workspace: it allocates only where that has not the capacity.
+void validate(const Scene& scene, std::vector<ConeId>& ids);
 
 /// The scene with the `count` cones nearest to the car among those ahead of it (in the closed half-plane
 /// along the heading), in their old order. Of two cones equally near, the one with the smaller id comes

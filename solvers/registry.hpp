@@ -1,24 +1,13 @@
 #pragma once
 
-#include "model/formulation.hpp"
-#include "solvers/rld_solver.hpp"
+#include "solvers/solver_entry.hpp"
 
-#include <memory>
 #include <span>
 #include <string_view>
 
 namespace conelane {
 
-/// A solver by its name.
-struct RldSolverEntry {
-    std::string_view name;
-    std::string_view meaning;
-    bool uses_formulation;  ///< else the formulation is ignored
-    bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
-    std::unique_ptr<RldSolver> (*make)(Formulation formulation);
-};
-
-/// All solvers of this build.
+/// All solvers of this build: those of the core and of the components milp and relaxations.
 [[nodiscard]] std::span<const RldSolverEntry> rld_solvers();
 
 /// The entry of that name, or nullptr.

@@ -24,7 +24,7 @@ enum class SolveStatus {
 
 /// The same for every solver, and each runs on one thread, without a relative gap. Wall clock: every backend
 /// keeps a deadline of its own and the incumbent with it. A MILP solver knows objectives to the tolerance of
-/// its LP, about 1e-7, whatever gap is asked for: CBC and SYMPHONY look for points that are better by 1e-7 at
+/// its LP, about 1e-7, whatever gap is asked for: CBC looks for points that are better by 1e-7 at
 /// least, GLPK by 1e-9 of the objective; clp-bb takes the gap as it is.
 struct SolveLimits {
     double time_limit_ms = std::numeric_limits<double>::infinity();  ///< wall clock, from the call

@@ -24,7 +24,7 @@ using testing::StartsWith;
 /// What rld-pair answers on the straight lane, unchecked.
 LaneRecord answer_on(const AnnotatedScene& scene) {
     LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
-    record.answer = find_method("rld-pair").make({})->detect(scene.scene, tests::kNoTimeLimit);
+    record.answer = make_detector(find_method("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
     return record;
 }
 
@@ -85,12 +85,13 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
 
 TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     const AnnotatedScene scene = straight_scene();
-    const MethodEntry& method = find_method("rld-context");
-    LaneRecord right{scene.scene.id, "rld-context", method.make({})->detect(scene.scene, tests::kNoTimeLimit), 1.0,
-                     method.nearest};
+    const Method& method = find_method("rld-context");
+    LaneRecord right{scene.scene.id, "rld-context",
+                     make_detector(method)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
+                     cone_set(method, {}).nearest};
     ASSERT_TRUE(right.answer.uncut);
     LaneRecord record = right;
-    check_answer(record, seen_by(method, {}, scene.scene), {});
+    check_answer(record, cone_set(method, {}).seen(scene.scene), {});
     EXPECT_TRUE(record.checked) << record.answer.message;
 
     LaneRecord longer = right;  // not what the cut leaves
@@ -111,6 +112,7 @@ TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
 TEST(CheckAnswer, LeavesWhatHasNoLane) {
     const AnnotatedScene scene = straight_scene();
     LaneRecord none{"a", "rld-pair", {}, 1.0, {}};
+    none.answer.status = LaneStatus::none;
     check_answer(none, scene.scene, {});
     EXPECT_EQ(none.answer.status, LaneStatus::none);
     EXPECT_FALSE(none.checked);
@@ -125,11 +127,11 @@ TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
     for (const char* method :
          {"rld-cbc", "rld-pair", "rld-context", "rld-shape", "rld-shape-context", "clc"}) {
         SCOPED_TRACE(method);
-        const MethodEntry& entry = find_method(method);
+        const Method& entry = find_method(method);
         std::size_t found = 0;
         for (const LaneRecord& record : run(entry, set.scenes, {})) {
             EXPECT_NE(record.answer.status, LaneStatus::error) << record.answer.message;
-            EXPECT_EQ(record.checked, entry.is_rld && record.answer.status == LaneStatus::found);
+            EXPECT_EQ(record.checked, entry.is_rld() && record.answer.status == LaneStatus::found);
             if (record.answer.status == LaneStatus::found) ++found;
         }
         EXPECT_GT(found, set.scenes.size() / 2);

@@ -1,6 +1,6 @@
 // What an RLD detector makes of a scene: its cone set, and the context beyond it.
 
-#include "solvers/rld_detector.hpp"
+#include "detectors/rld_detector.hpp"
 
 #include "solvers/registry.hpp"
 #include "tests/no_time_limit.hpp"
@@ -31,7 +31,7 @@ Scene straight() {
 LaneAnswer detect(const Scene& scene, std::optional<std::size_t> nearest,
                   std::optional<std::size_t> context) {
     return make_rld_detector(find_rld_solver("path-pair")->make(Formulation::tight),
-                             {.parameters = {}, .nearest = nearest, .context = context})
+                             {.parameters = {}, .cones = {nearest, context}})
         ->detect(scene, tests::kNoTimeLimit);
 }
 

@@ -1,8 +1,8 @@
 // What tuning promises: a box around sensible parameters, fits that forget no better point, folds that see
 // nothing of their held-out tracks, and a log from which a stopped run goes on.
 
+#include "detectors/rld_parameter_sets.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/parameters/shipped_parameters.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/losses.hpp"
@@ -273,10 +273,10 @@ TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
 }
 
 TEST(ShippedParameters, AreValidAndFoundByName) {
-    for (const std::string_view name : shipped_rld_parameter_names()) {
-        EXPECT_NO_THROW(validate(shipped_rld_parameters(name).value())) << name;
+    for (const std::string_view name : rld_parameter_set_names()) {
+        EXPECT_NO_THROW(validate(rld_parameter_set(name).value())) << name;
     }
-    EXPECT_FALSE(shipped_rld_parameters(std::string_view("n13")));
+    EXPECT_FALSE(rld_parameter_set(std::string_view("n13")));
 }
 
 }  // namespace

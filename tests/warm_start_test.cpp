@@ -22,7 +22,7 @@ SceneSet lap(double rate, double range_m) {
 }
 
 std::size_t successes(const char* method, const SceneSet& set) {
-    const std::unique_ptr<LaneDetector> detector = find_method(method).make({});
+    const std::unique_ptr<LaneDetector> detector = make_detector(find_method(method));
     std::size_t count = 0;
     for (const AnnotatedScene& scene : set.scenes) {
         const LaneAnswer answer = detector->detect(scene.scene, tests::kNoTimeLimit);
@@ -51,7 +51,8 @@ TEST(WarmStart, GoesAlongTheLastLaneFirst) {
     // The same scene twice: what was found first is met again on the way and not lost.
     const AnnotatedScene& scene = set.scenes[10];
     const auto length_m = [&] {
-        return score(scene, detector->detect(scene.scene, tests::kNoTimeLimit), 0.0, std::nullopt, nullptr).lane_length_m;
+        return score(scene, detector->detect(scene.scene, tests::kNoTimeLimit), 0.0, std::nullopt, nullptr)
+            .lane_length_m;
     };
     const double first_m = length_m();
     const double second_m = length_m();

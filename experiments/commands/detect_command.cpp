@@ -23,7 +23,7 @@ struct Options {
 };
 
 void detect(Options& options) {
-    const MethodEntry& method = find_method(options.method);
+    const Method& method = find_method(options.method);
     options.parameters.apply_to(options.run.method);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     write_lanes(options.out, run(method, scenes, options.run));
@@ -33,9 +33,10 @@ void detect(Options& options) {
 
 void add_methods_command(CLI::App& program) {
     program.add_subcommand("methods", "the detection methods of this build")->callback([] {
-        for (const MethodEntry& method : methods()) {
-            std::string cones = method.nearest ? fmt::format("{} nearest", *method.nearest) : "all";
-            if (method.context) cones += fmt::format(" of {}", *method.context);
+        for (const Method& method : methods()) {
+            const ConeSet set = cone_set(method, {});
+            std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
+            if (set.context) cones += fmt::format(" of {}", *set.context);
             fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.meaning);
         }
     });

@@ -1,10 +1,10 @@
 #include "experiments/commands/shared_options.hpp"
 
+#include "detectors/rld_parameter_sets.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/files/scene_file.hpp"
-#include "experiments/parameters/shipped_parameters.hpp"
 
 #include <algorithm>
 #include <array>
@@ -159,16 +159,16 @@ void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, cons
 }
 
 RldParameters ParameterSource::load() const {
-    MethodOptions options;
+    DetectorOptions options;
     apply_to(options);
     RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
     if (options.pairing) parameters.pairing = *options.pairing;
     return parameters;
 }
 
-void ParameterSource::apply_to(MethodOptions& options) const {
+void ParameterSource::apply_to(DetectorOptions& options) const {
     if (!name.empty()) {
-        const auto shipped = shipped_rld_parameters(name);
+        const auto shipped = rld_parameter_set(name);
         options.rld_parameters = shipped ? *shipped : read_rld_parameters(name);
     }
     if (!pairing.empty()) options.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
@@ -177,7 +177,7 @@ void ParameterSource::apply_to(MethodOptions& options) const {
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without) {
     command.add_option("--params", source.name,
                        fmt::format("RLD parameters: {} or a file (JSON); without it {}",
-                                   fmt::join(shipped_rld_parameter_names(), ", "), without));
+                                   fmt::join(rld_parameter_set_names(), ", "), without));
     command.add_option("--pairing", source.pairing, "overrides the pairing of the parameters")
         ->check(CLI::IsMember({"paper", "near_far"}));
 }

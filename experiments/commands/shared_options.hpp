@@ -26,7 +26,7 @@ struct ParameterSource {
     /// What was asked for, RldParameters{} where nothing was.
     [[nodiscard]] RldParameters load() const;
     /// Tells methods what was asked for; they have parameters of their own.
-    void apply_to(MethodOptions& options) const;
+    void apply_to(DetectorOptions& options) const;
 };
 /// `without` says what holds where --params is not given.
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);

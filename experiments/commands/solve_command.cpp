@@ -1,16 +1,13 @@
+#include "detectors/solve_scene.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/shared_options.hpp"
 #include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/progress.hpp"
-#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
-#include "model/lane_graph_problem.hpp"
 #include "solvers/registry.hpp"
 
-#include <exception>
 #include <memory>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,25 +29,6 @@ struct Options {
     bool warm_start = false;
 };
 
-RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                const SolveLimits& limits, const LaneGraph* start) {
-    try {
-        const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch problem_watch;
-        const LaneGraphProblem problem = make_problem(scene, parameters, solver.extent());
-        const double problem_ms = problem_watch.elapsed_ms();
-        RldReport report = solver.solve(problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
-        report.build_ms += problem_ms;
-        return report;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& failure) {
-        RldReport report;
-        report.message = failure.what();
-        return report;
-    }
-}
-
 void solve_all(const Options& options) {
     const RldSolverEntry* entry = find_rld_solver(options.solver);
     if (entry == nullptr) {
@@ -69,7 +47,8 @@ void solve_all(const Options& options) {
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
-        const RldReport report = solve(*solver, scene, parameters, options.limits, start ? &*start : nullptr);
+        const RldReport report =
+            solve_scene(*solver, scene, parameters, options.limits, start ? &*start : nullptr).report;
         SolutionRecord record{scene.id,
                               options.solver,
                               options.formulation,

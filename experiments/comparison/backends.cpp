@@ -6,8 +6,8 @@
 #include "experiments/progress.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "model/check.hpp"
-#include "model/invalid_input.hpp"
 #include "model/deadline.hpp"
+#include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -76,8 +76,8 @@ std::string Backend::label() const {
 }
 
 std::vector<Backend> exact_backends() {
-    const std::array all{Backend{"path-pair"}, Backend{"glpk"},     Backend{"clp-bb"},
-                         Backend{"cbc"},       Backend{"symphony"}, Backend{"cbc-main", Formulation::paper}};
+    const std::array all{Backend{"path-pair"}, Backend{"glpk"}, Backend{"clp-bb"}, Backend{"cbc"},
+                         Backend{"cbc-main", Formulation::paper}};
     std::vector<Backend> built;
     for (const Backend& backend : all) {
         if (find_rld_solver(backend.solver) != nullptr) built.push_back(backend);

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -38,7 +39,7 @@ class Lap {
         : tracks_(tracks),
           options_(options),
           solver_(find_rld_solver("path-pair")->make(Formulation::tight)),
-          detector_(find_method(options.method).make({options.parameters, {}, options.nearest})) {}
+          detector_(make_detector(find_method(options.method), {options.parameters, {}, options.nearest})) {}
 
     OptimalityRow drive(const AnnotatedScene& annotated) {
         const Scene cones =
@@ -47,7 +48,8 @@ class Lap {
         OptimalityRow row;
         row.scene = &annotated;
         solve(row, problem, cones);
-        const LaneAnswer answer = detector_->detect(annotated.scene, {.keep_candidates = true});
+        const LaneAnswer answer =
+            detector_->detect(annotated.scene, {std::numeric_limits<double>::infinity(), true});
         if (!answer.enumeration) throw InvalidInput("method", "'" + options_.method + "' does not enumerate");
         if (answer.status == LaneStatus::found) row.choice = priced(answer.lane, problem, cones, annotated);
         price_candidates(row, answer.enumeration->candidates, problem, cones);

@@ -97,8 +97,8 @@ std::string run_record(const ComparisonOptions& options) {
     for (const Entrant& entrant : options.entrants) {
         nlohmann::ordered_json json{{"name", entrant.method}};
         if (entrant.nearest) json["nearest"] = *entrant.nearest;
-        const MethodEntry& method = find_method(entrant.method);
-        if (method.is_rld) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
+        const Method& method = find_method(entrant.method);
+        if (method.is_rld()) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
         methods.push_back(json);
     }
     const SceneOptions& scenes = options.scenes;

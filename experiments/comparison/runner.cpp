@@ -6,11 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <iterator>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,41 +20,26 @@
 namespace conelane::experiments {
 namespace {
 
-LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
-    try {
-        return detector.detect(scene, limits);
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& failure) {
-        LaneAnswer answer;
-        answer.status = LaneStatus::error;
-        answer.message = failure.what();
-        return answer;
-    }
-}
-
 bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
     return a.track == b.track && a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
 }
 
-std::vector<LaneRecord> drive_lap(const MethodEntry& method, std::span<const AnnotatedScene> lap,
+std::vector<LaneRecord> drive_lap(const Method& method, std::span<const AnnotatedScene> lap,
                                   const RunOptions& options, Progress& progress) {
-    const std::unique_ptr<LaneDetector> detector = method.make(options.method);
-    const std::optional<std::size_t> nearest = cone_set_size(method, options.method);
+    const std::unique_ptr<LaneDetector> detector = make_detector(method, options.method);
+    const ConeSet cones = cone_set(method, options.method);
     const RldParameters parameters = rld_parameters(method, options.method);
-    (void)detect(*detector, lap.front().scene, options.limits);
+    (void)detector->detect(lap.front().scene, options.limits);
     detector->reset();
     std::vector<LaneRecord> records;
     records.reserve(lap.size());
     for (const AnnotatedScene& scene : lap) {
         const auto start = std::chrono::steady_clock::now();
-        LaneAnswer answer = detect(*detector, scene.scene, options.limits);
+        LaneAnswer answer = detector->detect(scene.scene, options.limits);
         const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - start;
         LaneRecord record{scene.scene.id, std::string(method.name), std::move(answer), latency.count(),
-                          nearest};
-        if (method.is_rld) {
-            check_answer(record, seen_by(method, options.method, scene.scene), parameters);
-        }
+                          cones.nearest};
+        if (method.is_rld()) check_answer(record, cones.seen(scene.scene), parameters);
         records.push_back(std::move(record));
         progress.advance();
     }
@@ -95,7 +78,7 @@ std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     return starts;
 }
 
-void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
+void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
          const LapSink& sink) {
     Progress progress(std::string(method.name), options.show_progress ? scenes.size() : 0);
     const std::vector<std::size_t> starts = lap_starts(scenes);
@@ -120,7 +103,7 @@ void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, cons
     });
 }
 
-std::vector<LaneRecord> run(const MethodEntry& method, std::span<const AnnotatedScene> scenes,
+std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
                             const RunOptions& options) {
     std::vector<LaneRecord> records;
     run(method, scenes, options,

@@ -5,16 +5,16 @@
 #include "experiments/scenes/annotated_scene.hpp"
 #include "model/lane_detector.hpp"
 
-#include <limits>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace conelane::experiments {
 
 struct RunOptions {
-    MethodOptions method;
+    DetectorOptions method;
     DetectionLimits limits{.time_limit_ms = std::numeric_limits<double>::infinity()};
     /// One: on one processor. More disturb the latencies by contention.
     unsigned threads = 1;
@@ -33,11 +33,11 @@ using LapSink = std::function<void(std::span<const LaneRecord>)>;
 /// holds the loading of code; the detector then forgets it. The cut to the cone set is part of the method and
 /// of its time. An exception becomes an answer with status error, and so does what an RLD method found where
 /// the independent checker rejects it (see check_answer; not timed).
-void run(const MethodEntry& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
+void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
          const LapSink& sink);
 
 /// The same, all records at once.
-[[nodiscard]] std::vector<LaneRecord> run(const MethodEntry& method, std::span<const AnnotatedScene> scenes,
+[[nodiscard]] std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
                                           const RunOptions& options);
 
 }  // namespace conelane::experiments

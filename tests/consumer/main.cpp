@@ -1,8 +1,8 @@
 // What the README shows: the lane between six cones and a stray one, "1 3 5 | 2 4 6", by both kinds of
 // method.
+#include "detectors/rld_detector.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "solvers/registry.hpp"
-#include "solvers/rld_detector.hpp"
 
 #include <iostream>
 

@@ -9,12 +9,13 @@ cmake_minimum_required(VERSION 3.25)
 set(model_depends_on model)
 set(solvers_depends_on model solvers)
 set(graph_search_depends_on model graph_search)
-set(experiments_depends_on model solvers graph_search experiments)
-set(tests_depends_on model solvers graph_search experiments tests)
+set(detectors_depends_on model solvers graph_search detectors)
+set(experiments_depends_on model solvers graph_search detectors experiments)
+set(tests_depends_on model solvers graph_search detectors experiments tests)
 set(private_libraries
-    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|symphony|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
-foreach(folder IN ITEMS model solvers graph_search experiments tests)
+foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
     file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
     list(FILTER files EXCLUDE REGEX "^tests/consumer/") # a project of its own
     foreach(file IN LISTS files)
@@ -38,7 +39,7 @@ foreach(folder IN ITEMS model solvers graph_search experiments tests)
                 elseif(NOT EXISTS ${ROOT}/${included} OR included MATCHES "[.][.]/")
                     message(SEND_ERROR "${file} includes ${included}, which is no FOLDER/FILE")
                 endif()
-            elseif(file MATCHES "^(model|solvers|graph_search)/.*[.]hpp$" AND NOT file MATCHES "/detail/"
+            elseif(file MATCHES "^(model|solvers|graph_search|detectors)/.*[.]hpp$" AND NOT file MATCHES "/detail/"
                    AND line MATCHES "<(${private_libraries})")
                 message(SEND_ERROR "${file} includes <${CMAKE_MATCH_1}...>, which belongs in .cpp files")
             endif()

@@ -21,7 +21,8 @@ expect("" includes solvers/a.cpp "#include \"model/scene.hpp\"")
 expect("" includes tests/a.cpp "#include \"model/scene.hpp\"")
 expect("model/a.hpp has no #pragma once" includes model/a.hpp "#include <vector>")
 foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
-                           "graph_search;solvers" "solvers;experiments" "graph_search;experiments"
+                           "graph_search;solvers" "solvers;detectors" "graph_search;detectors"
+                           "detectors;experiments" "solvers;experiments" "graph_search;experiments"
                            "experiments;tests")
     list(GET direction 0 from)
     list(GET direction 1 to)

@@ -1,6 +1,6 @@
-#include "solvers/rld_detector.hpp"
+#include "detectors/rld_detector.hpp"
 
-#include "model/lane_graph_problem.hpp"
+#include "detectors/solve_scene.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
@@ -29,15 +29,6 @@ class RldDetector : public LaneDetector {
     RldDetector(std::unique_ptr<RldSolver> solver, const RldDetectorOptions& options)
         : solver_(std::move(solver)), options_(options) {}
 
-    LaneAnswer detect(const Scene& scene, const DetectionLimits& limits) override {
-        if (!options_.nearest) return solve(scene, limits);
-        const std::size_t nearest = *options_.nearest;
-        const std::size_t seen = std::max(nearest, options_.context.value_or(nearest));
-        LaneAnswer answer = solve(nearest_ahead(scene, seen), limits);
-        if (seen > nearest) cut(answer, scene, nearest);
-        return answer;
-    }
-
     void reset() override { previous_.reset(); }
 
   private:
@@ -46,20 +37,36 @@ class RldDetector : public LaneDetector {
         LaneGraph graph;
     };
 
-    LaneAnswer solve(const Scene& scene, const DetectionLimits& limits) {
+    LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
-        const LaneGraphProblem problem = make_problem(scene, options_.parameters, solver_->extent());
+        const ConeSet& cones = options_.cones;
+        if (!cones.nearest) return solve(scene, limits.time_limit_ms);
+        LaneAnswer answer = solve(cones.seen(scene), limits.time_limit_ms);
+        if (!cones.has_context() || answer.status != LaneStatus::found) return answer;
+        Lane part = cut_to_nearest(answer.lane, scene, *cones.nearest);
+        if (part.left.empty() || part.right.empty()) {
+            return solve(nearest_ahead(scene, *cones.nearest), deadline.remaining_ms());
+        }
+        answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
+        answer.optimality.reset();
+        answer.lane = std::move(part);
+        return answer;
+    }
+
+    LaneAnswer solve(const Scene& seen, double time_limit_ms) {
         std::optional<LaneGraph> start;
-        if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, scene);
-        const RldReport report = solver_->solve(
-            problem, {deadline.remaining_ms(), options_.absolute_gap}, start ? &*start : nullptr);
-        if (options_.warm_start && report.lane_graph) previous_ = Solution{scene, *report.lane_graph};
+        if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, seen);
+        const RldReport report =
+            solve_scene(*solver_, seen, options_.parameters, {time_limit_ms, options_.absolute_gap},
+                        start ? &*start : nullptr)
+                .report;
+        if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;
         answer.status = lane_status(report.status);
         answer.message = report.message;
         answer.stopped_by = report.stopped_by;
         if (answer.status != LaneStatus::found) return answer;
-        std::optional<Lane> lane = report.lane_graph ? to_lane(*report.lane_graph, scene) : std::nullopt;
+        std::optional<Lane> lane = report.lane_graph ? to_lane(*report.lane_graph, seen) : std::nullopt;
         if (!lane) {
             answer.status = LaneStatus::error;
             answer.message = "the solver's edges are no lane graph";
@@ -73,23 +80,28 @@ class RldDetector : public LaneDetector {
         return answer;
     }
 
-    static void cut(LaneAnswer& answer, const Scene& scene, std::size_t nearest) {
-        if (answer.status != LaneStatus::found) return;
-        Lane part = cut_to_nearest(answer.lane, scene, nearest);
-        answer.uncut = UncutLane{std::move(answer.lane), answer.optimality};
-        answer.optimality.reset();
-        answer.lane = std::move(part);
-        if (!answer.lane.left.empty() && !answer.lane.right.empty()) return;
-        answer.lane = {};
-        answer.status = LaneStatus::none;
-    }
-
     std::unique_ptr<RldSolver> solver_;
     RldDetectorOptions options_;
     std::optional<Solution> previous_;  ///< with warm_start only
 };
 
 }  // namespace
+
+bool ConeSet::has_context() const {
+    return nearest && context > nearest;
+}
+
+Scene ConeSet::seen(const Scene& scene) const {
+    return nearest ? nearest_ahead(scene, std::max(*nearest, context.value_or(0))) : scene;
+}
+
+std::optional<Lane> lane_in(const ConeSet& cones, const LaneGraph& graph, const Scene& seen) {
+    std::optional<Lane> lane = to_lane(graph, seen);
+    if (!lane || !cones.has_context()) return lane;
+    *lane = cut_to_nearest(std::move(*lane), seen, *cones.nearest);
+    if (lane->left.empty() || lane->right.empty()) return std::nullopt;
+    return lane;
+}
 
 std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
                                                 const RldDetectorOptions& options) {

@@ -1,0 +1,65 @@
+# The libraries of this project: how each is made, and how they are installed as the package `conelane` with a core and
+# the components milp and relaxations. `find_package(conelane COMPONENTS milp)`; without components, the core alone.
+include(CMakePackageConfigHelpers)
+include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
+
+# Finds, for a component, pkg-config modules (see conelane_require_modules) or a library (conelane_require_library); the
+# installed package does the same again.
+macro(conelane_find_modules component name)
+    conelane_require_modules(${name} ${ARGN})
+    string(JOIN " " conelane_arguments ${name} ${ARGN})
+    set_property(GLOBAL APPEND_STRING PROPERTY CONELANE_${component}_DEPENDENCIES
+                                               "conelane_require_modules(${conelane_arguments})\n")
+endmacro()
+macro(conelane_find_library component name header)
+    conelane_require_library(${name} ${header})
+    set_property(GLOBAL APPEND_STRING PROPERTY CONELANE_${component}_DEPENDENCIES
+                                               "conelane_require_library(${name} ${header})\n")
+endmacro()
+
+# Contraction to fused multiply-add would make results differ between processors. GCC 12 sees an overlap (-Wrestrict) in
+# every inlined concatenation of strings (its bug 105651).
+function(conelane_compile_options target)
+    set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                             -ffp-contract=off
+                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                                             $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()
+
+# `conelane_library(NAME [COMPONENT C] SOURCES... PUBLIC LIBRARIES... PRIVATE LIBRARIES...)`: target conelane_NAME, for
+# users conelane::NAME. Without a component it is not installed.
+function(conelane_library name)
+    cmake_parse_arguments(ARG "" "COMPONENT" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    set(target conelane_${name})
+    add_library(${target} STATIC ${ARG_SOURCES})
+    add_library(conelane::${name} ALIAS ${target})
+    set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+    target_compile_features(${target} PUBLIC cxx_std_20)
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+    conelane_compile_options(${target})
+    if(ARG_COMPONENT)
+        install(TARGETS ${target} EXPORT conelane_${ARG_COMPONENT})
+        set_property(GLOBAL APPEND PROPERTY CONELANE_COMPONENTS ${ARG_COMPONENT})
+    endif()
+endfunction()
+
+# Installs what conelane_library has collected, once all of them are there.
+function(conelane_install_package)
+    set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/conelane)
+    get_property(components GLOBAL PROPERTY CONELANE_COMPONENTS)
+    list(REMOVE_DUPLICATES components)
+    foreach(component IN LISTS components)
+        get_property(dependencies GLOBAL PROPERTY CONELANE_${component}_DEPENDENCIES)
+        install(EXPORT conelane_${component} NAMESPACE conelane:: DESTINATION ${package_dir})
+        file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/conelane_${component}_dependencies.cmake @ONLY
+             CONTENT "@dependencies@")
+        install(FILES ${PROJECT_BINARY_DIR}/conelane_${component}_dependencies.cmake DESTINATION ${package_dir})
+    endforeach()
+    write_basic_package_version_file(${PROJECT_BINARY_DIR}/conelaneConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/conelaneConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/dependencies.cmake
+                  ${PROJECT_BINARY_DIR}/conelaneConfigVersion.cmake
+            DESTINATION ${package_dir})
+endfunction()

@@ -1,0 +1,94 @@
+#include "detectors/recipe.hpp"
+
+#include "solvers/path_pair_solver.hpp"
+
+#include <array>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+/// Cone-set size of the RLD paper's on-board runs.
+constexpr std::size_t kRldConeSet = 12;
+/// More do not make lanes more accurate.
+constexpr std::size_t kRldContext = 24;
+
+std::unique_ptr<RldSolver> path_pair() {
+    return make_path_pair_solver();
+}
+
+ClcOptions warm_clc_options() {
+    ClcOptions clc = extended_clc_options();
+    clc.warm_start = true;
+    return clc;
+}
+
+constexpr std::array kRecipes{
+    DetectorRecipe{"clc",
+                   "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
+                   "features and agreement of the candidates that it puts first",
+                   ClcRecipe{extended_clc_options}},
+    DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
+                   ClcRecipe{warm_clc_options}},
+    DetectorRecipe{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)",
+                   ClcRecipe{paper_clc_options}},
+    DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones",
+                   RldRecipe{path_pair, {}}},
+    DetectorRecipe{"rld-shape",
+                   "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
+                   RldRecipe{path_pair, {}, true}},
+    DetectorRecipe{"rld-context", "RLD by the exact search among more cones, then cut to the nearest",
+                   RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
+    DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
+                   RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+};
+
+/// Shows its detector the nearest cones only.
+class NearestCones : public LaneDetector {
+  public:
+    NearestCones(std::unique_ptr<LaneDetector> detector, std::size_t nearest)
+        : detector_(std::move(detector)), nearest_(nearest) {}
+    void reset() override { detector_->reset(); }
+
+  private:
+    LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
+        return detector_->detect(nearest_ahead(scene, nearest_), limits);
+    }
+
+    std::unique_ptr<LaneDetector> detector_;
+    std::size_t nearest_;
+};
+
+}  // namespace
+
+std::span<const DetectorRecipe> detector_recipes() {
+    return kRecipes;
+}
+
+std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    if (const auto* rld = std::get_if<RldRecipe>(&recipe.how)) {
+        RldDetectorOptions made{.parameters = rld_parameters(recipe, options),
+                                .cones = cone_set(recipe, options)};
+        validate(made.parameters);
+        return make_rld_detector(rld->make_solver(), made);
+    }
+    auto detector = make_clc_detector(std::get<ClcRecipe>(recipe.how).options());
+    if (!options.nearest) return detector;
+    return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
+}
+
+ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    ConeSet cones;
+    if (const auto* rld = std::get_if<RldRecipe>(&recipe.how)) cones = rld->cones;
+    if (options.nearest) cones.nearest = options.nearest;
+    return cones;
+}
+
+RldParameters rld_parameters(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
+    if (options.pairing) parameters.pairing = *options.pairing;
+    const auto* rld = std::get_if<RldRecipe>(&recipe.how);
+    return rld != nullptr && rld->shape_costs ? with_shape_costs(parameters) : parameters;
+}
+
+}  // namespace conelane

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "detectors/detectors.hpp"
+#include "detectors/rld_detector.hpp"
+#include "graph_search/clc_detector.hpp"
+#include "solvers/rld_solver.hpp"
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <variant>
+
+namespace conelane {
+
+/// RLD: a solver, the cones it is shown, the costs it minimises.
+struct RldRecipe {
+    std::unique_ptr<RldSolver> (*make_solver)();
+    ConeSet cones;
+    bool shape_costs = false;  ///< adds the costs of a lane's shape where the parameters have none
+};
+
+/// CLC: its options.
+struct ClcRecipe {
+    ClcOptions (*options)();
+};
+
+/// How a detector of a name is made.
+struct DetectorRecipe {
+    std::string_view name;
+    std::string_view meaning;
+    std::variant<RldRecipe, ClcRecipe> how;
+
+    /// Whether it optimises the RLD objective.
+    [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }
+};
+
+/// The detectors of the library.
+[[nodiscard]] std::span<const DetectorRecipe> detector_recipes();
+
+/// Throws InvalidInput where parameters are out of their range.
+[[nodiscard]] std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe,
+                                                          const DetectorOptions& options = {});
+
+/// The cones that the detector is shown and answers for under these options.
+[[nodiscard]] ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options);
+
+/// The parameters that it minimises by; the defaults where the recipe is no RLD.
+[[nodiscard]] RldParameters rld_parameters(const DetectorRecipe& recipe, const DetectorOptions& options);
+
+}  // namespace conelane

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "model/lane_graph_problem.hpp"
+#include "model/rld_parameters.hpp"
+#include "model/scene.hpp"
+#include "solvers/rld_solver.hpp"
+
+namespace conelane {
+
+/// A scene, solved: the numbers that it became, and what the solver answered.
+struct SolvedScene {
+    LaneGraphProblem problem;
+    RldReport report;       ///< build_ms counts making the problem too
+    double total_ms = 0.0;  ///< from the scene in memory to the report
+};
+
+/// Scene to report: makes the problem that the solver wants and solves it, both inside the time limit. Throws
+/// nothing but std::bad_alloc: a scene or parameters that are not valid give status error and a message.
+[[nodiscard]] SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                                      const SolveLimits& limits, const LaneGraph* start = nullptr);
+
+}  // namespace conelane

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "model/formulation.hpp"
+#include "solvers/rld_solver.hpp"
+
+#include <memory>
+#include <string_view>
+
+namespace conelane {
+
+/// A solver by its name.
+struct RldSolverEntry {
+    std::string_view name;
+    std::string_view meaning;
+    bool uses_formulation;  ///< else the formulation is ignored
+    bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
+    std::unique_ptr<RldSolver> (*make)(Formulation formulation);
+};
+
+}  // namespace conelane
