@@ -4,7 +4,6 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
