@@ -1,24 +1,22 @@
-// What the README shows: the lane between six cones and a stray one, "1 3 5 | 2 4 6", by both kinds of
-// method.
-#include "detectors/rld_detector.hpp"
-#include "graph_search/clc_detector.hpp"
-#include "solvers/registry.hpp"
-
+// The first program of the README: the lane between six cones and a stray one, and its centre line.
+#include <cmath>
+#include <conelane/detectors.hpp>
 #include <iostream>
 
 int main() {
-    conelane::Scene scene{"now", {{0.0, 0.0}, 0.0}, {}};  // pose, cones with ids
+    conelane::Scene scene{.id = "now", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};
     scene.cones = {{1, {2, 1.6}},   {2, {2, -1.6}},   {3, {5.2, 1.6}}, {4, {5.2, -1.6}},
-                   {5, {8.4, 1.6}}, {6, {8.4, -1.6}}, {7, {8, 9}}};
-    auto rld = conelane::make_rld_detector(
-        conelane::find_rld_solver("path-pair")->make(conelane::Formulation::tight),
-        {.parameters = conelane::with_shape_costs({})});
-    auto clc = conelane::make_clc_detector({});
-    for (auto* detector : {rld.get(), clc.get()}) {
+                   {5, {8.4, 1.6}}, {6, {8.4, -1.6}}, {7, {8, 9}}};  // ids, positions [m]
+    for (const char* name : {"clc", "rld-shape"}) {
+        auto detector = conelane::make_detector(name);
         const conelane::LaneAnswer answer = detector->detect(scene, {.time_limit_ms = 5000.0});
+        if (answer.status != conelane::LaneStatus::found) return 1;
         for (const auto id : answer.lane.left) std::cout << id << ' ';
         std::cout << '|';
         for (const auto id : answer.lane.right) std::cout << ' ' << id;
-        std::cout << '\n';
+        const conelane::DrivableLane lane = conelane::drivable(answer.lane, scene);
+        bool straight = !lane.points.empty();
+        for (const auto& point : lane.points) straight = straight && std::abs(point.position.y()) < 1e-6;
+        std::cout << (straight ? " straight\n" : " crooked\n");
     }
 }
