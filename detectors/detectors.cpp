@@ -1,7 +1,7 @@
-#include "detectors/detectors.hpp"
+#include "conelane/detectors.hpp"
 
 #include "detectors/recipe.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <string>

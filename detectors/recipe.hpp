@@ -1,9 +1,9 @@
 #pragma once
 
-#include "detectors/detectors.hpp"
-#include "detectors/rld_detector.hpp"
+#include "conelane/detectors.hpp"
+#include "conelane/rld_detector.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "solvers/rld_solver.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <memory>
 #include <span>

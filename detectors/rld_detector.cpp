@@ -1,6 +1,6 @@
-#include "detectors/rld_detector.hpp"
+#include "conelane/rld_detector.hpp"
 
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

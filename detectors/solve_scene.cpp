@@ -1,4 +1,4 @@
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 
 #include "model/deadline.hpp"
 

@@ -1,7 +1,7 @@
 #include "experiments/methods.hpp"
 
 #include "experiments/delaunay.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

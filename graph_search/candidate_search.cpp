@@ -1,6 +1,6 @@
 #include "graph_search/candidate_search.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

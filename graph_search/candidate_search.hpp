@@ -7,9 +7,9 @@
 #include "graph_search/search_graph.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/deadline.hpp"
-#include "model/lane.hpp"
-#include "model/scene.hpp"
-#include "model/stop_reason.hpp"
+#include "conelane/lane.hpp"
+#include "conelane/scene.hpp"
+#include "conelane/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "graph_search/shipped_weights.hpp"
 #include "model/deadline.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include "graph_search/candidate_search.hpp"
 #include "graph_search/lane_consensus.hpp"
 #include "graph_search/ranking.hpp"
-#include "model/lane_detector.hpp"
+#include "conelane/lane_detector.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -4,7 +4,7 @@
 #include "graph_search/next_vertex.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/geometry.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

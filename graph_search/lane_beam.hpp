@@ -4,7 +4,7 @@
 #include "graph_search/path_pair_enumeration.hpp"
 #include "graph_search/search_budget.hpp"
 #include "graph_search/search_graph.hpp"
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "model/deadline.hpp"
-#include "model/stop_reason.hpp"
+#include "conelane/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>

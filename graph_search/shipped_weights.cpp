@@ -2,7 +2,7 @@
 
 #include "graph_search/lane_features.hpp"
 #include "graph_search/shipped_weight_tables.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstddef>

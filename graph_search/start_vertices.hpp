@@ -2,7 +2,7 @@
 
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <array>
 #include <cstddef>

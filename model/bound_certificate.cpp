@@ -1,4 +1,4 @@
-#include "model/bound_certificate.hpp"
+#include "conelane/bound_certificate.hpp"
 
 #include "model/geometry.hpp"
 

@@ -1,4 +1,4 @@
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,11 @@
 #pragma once
 
+#include "conelane/point.hpp"
+
 #include <cstddef>
 #include <span>
 
-#include <Eigen/Core>
-
 namespace conelane {
-
-/// A position or a vector in the map frame [m].
-using Point = Eigen::Vector2d;
 
 /// Two lengths [m] closer than this count as equal, and so do a value and its limit; the one tolerance of
 /// MinDist and End, equation (7).

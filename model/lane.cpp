@@ -1,4 +1,4 @@
-#include "model/lane.hpp"
+#include "conelane/lane.hpp"
 
 #include "model/geometry.hpp"
 

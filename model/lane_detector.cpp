@@ -1,6 +1,6 @@
-#include "model/lane_detector.hpp"
+#include "conelane/lane_detector.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <cmath>
 #include <exception>

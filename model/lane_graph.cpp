@@ -1,4 +1,4 @@
-#include "model/lane_graph.hpp"
+#include "conelane/lane_graph.hpp"
 
 #include <algorithm>
 #include <array>

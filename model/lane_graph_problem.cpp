@@ -1,4 +1,4 @@
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 
 #include "model/geometry.hpp"
 #include "model/shape_costs.hpp"

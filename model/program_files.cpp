@@ -1,6 +1,6 @@
 #include "model/program_files.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <array>
 #include <charconv>

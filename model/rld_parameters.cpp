@@ -1,6 +1,6 @@
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <array>
 #include <cmath>

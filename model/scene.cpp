@@ -1,6 +1,6 @@
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
-#include "model/rld_parameters.hpp"
-#include "model/scene.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
 
 #include <cstddef>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "model/stop_reason.hpp"
+#include "conelane/stop_reason.hpp"
 
 namespace conelane {
 

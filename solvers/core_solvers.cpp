@@ -1,4 +1,4 @@
-#include "solvers/core_solvers.hpp"
+#include "conelane/core_solvers.hpp"
 
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair_solver.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/rld_solver.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <memory>
 

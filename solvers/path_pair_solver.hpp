@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/bound_certificate.hpp"
-#include "solvers/rld_solver.hpp"
+#include "conelane/bound_certificate.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <limits>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "solvers/registry.hpp"
 
-#include "solvers/core_solvers.hpp"
-#include "solvers/milp_solvers.hpp"
-#include "solvers/relaxation_solvers.hpp"
+#include "conelane/core_solvers.hpp"
+#include "conelane/milp_solvers.hpp"
+#include "conelane/relaxation_solvers.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/solver_entry.hpp"
+#include "conelane/solver_entry.hpp"
 
 #include <span>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "solvers/solve_report.hpp"
+#include "conelane/solve_report.hpp"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 
 #include "experiments/tracks/boundary_matching.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/recorded_tracks.hpp"
 
 #include <algorithm>

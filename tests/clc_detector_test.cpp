@@ -2,7 +2,7 @@
 
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/no_time_limit.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // On which side an edge near the car is, as its colour is judged: ahead of the car on a straight, and in
 // bends, where neither the car's axis nor the line of the edge tells alone.
 
-#include "model/check.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <cstddef>

@@ -3,7 +3,7 @@
 #include "experiments/studies/confidence_and_colour.hpp"
 
 #include "experiments/files/input_error.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/file_test.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "experiments/scoring/divergence.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <vector>
 

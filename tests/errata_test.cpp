@@ -1,9 +1,9 @@
 // Errata of the printed RLD paper: each test builds a small instance by hand, puts in the row as printed, and
 // shows what goes wrong. The corrected rows stand beside it. model/formulation.md lists the errata.
 
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/cbc_solver.hpp"
+#include "solvers/milp/cbc_solver.hpp"
 #include "solvers/registry.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // What the relaxation of each formulation proves before any branching.
 
 #include "model/lane_graph_model.hpp"
-#include "solvers/linear_relaxation.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 

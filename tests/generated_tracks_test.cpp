@@ -2,7 +2,7 @@
 
 #include "experiments/tracks/rounded_path.hpp"
 #include "experiments/tracks/track_layouts.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/boundary_checks.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "graph_search/lane_beam.hpp"
 
 #include "graph_search/start_vertices.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

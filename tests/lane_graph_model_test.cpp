@@ -3,8 +3,8 @@
 
 #include "model/lane_graph_model.hpp"
 
-#include "model/check.hpp"
-#include "model/lane_graph.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/lane_detector.hpp"
+#include "conelane/lane_detector.hpp"
 
 #include <limits>
 

@@ -3,7 +3,7 @@
 #include "experiments/studies/optimality.hpp"
 
 #include "experiments/scenes/scene_set.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/straight_scene.hpp"
 
 #include <string>

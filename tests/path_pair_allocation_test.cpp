@@ -1,6 +1,6 @@
 // path-pair keeps its workspace: what a solve allocates does not grow with its nodes.
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"
 

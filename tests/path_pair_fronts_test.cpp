@@ -1,6 +1,6 @@
 // What path-pair drops from the fronts of two legs is in no lane graph, and what it finds there is the best.
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/edge_sets.hpp"

@@ -1,11 +1,11 @@
 // The units of path-pair: bounds that bound, cliques that are cliques, legs as brute force finds them, and
 // answers that stay true at any deadline.
 
-#include "model/bound_certificate.hpp"
-#include "model/check.hpp"
-#include "model/lane_graph_problem.hpp"
-#include "solvers/cbc_solver.hpp"
-#include "solvers/milp_rld_solver.hpp"
+#include "conelane/bound_certificate.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"

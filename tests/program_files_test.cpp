@@ -2,9 +2,9 @@
 
 #include "model/program_files.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/cbc_solver.hpp"
+#include "solvers/milp/cbc_solver.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <cstdlib>

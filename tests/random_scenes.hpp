@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <cmath>
 #include <cstdint>

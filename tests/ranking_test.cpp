@@ -2,7 +2,7 @@
 
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/no_time_limit.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Relaxations and their rounding: derivatives against finite differences, lane graphs that the checker
 // accepts, never better than the optimum and never worse than their own bound.
 
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"

@@ -1,6 +1,6 @@
 // What an RLD detector makes of a scene: its cone set, and the context beyond it.
 
-#include "detectors/rld_detector.hpp"
+#include "conelane/rld_detector.hpp"
 
 #include "solvers/registry.hpp"
 #include "tests/no_time_limit.hpp"

@@ -1,6 +1,6 @@
 #include "experiments/scenes/scene_file.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "tests/file_test.hpp"
 
 #include <bit>

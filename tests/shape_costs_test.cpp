@@ -3,8 +3,8 @@
 
 #include "model/shape_costs.hpp"
 
-#include "model/check.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "tests/random_scenes.hpp"
 

@@ -1,7 +1,7 @@
 // What every exact RLD solver promises, for every solver of the registry and every formulation it uses.
 
-#include "model/check.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"

@@ -1,7 +1,7 @@
 // What a solve leaves of the process around it: SIGINT stays the program's, and no library's assertion ends
 // it.
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 

@@ -1,10 +1,10 @@
 // What every solver of the registry promises, heuristics too, where time is short, scenes are degenerate,
 // limits are odd or a backend fails.
 
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 #include "model/deadline.hpp"
-#include "model/lane_graph_problem.hpp"
-#include "solvers/milp_rld_solver.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"

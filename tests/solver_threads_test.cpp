@@ -1,6 +1,6 @@
 // Solvers of the core in several threads at once, an instance each.
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"

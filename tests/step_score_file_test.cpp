@@ -1,7 +1,7 @@
 #include "experiments/files/step_score_file.hpp"
 
 #include "graph_search/shipped_weights.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <bit>
 #include <cstddef>

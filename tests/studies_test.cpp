@@ -5,7 +5,7 @@
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 #include "tests/straight_scene.hpp"
 

@@ -1,5 +1,5 @@
-#include "model/lane_graph.hpp"
-#include "model/scene.hpp"
+#include "conelane/lane_graph.hpp"
+#include "conelane/scene.hpp"
 
 #include <cstddef>
 #include <thread>

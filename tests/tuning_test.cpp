@@ -1,7 +1,7 @@
 // What tuning promises: ranges around sensible parameters, fits that forget no better point, folds that see
 // nothing of their held-out tracks, and a log from which a stopped run goes on.
 
-#include "detectors/rld_parameter_sets.hpp"
+#include "conelane/rld_parameter_sets.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"

@@ -7,7 +7,7 @@
 #include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <cmath>

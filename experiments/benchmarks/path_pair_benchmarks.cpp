@@ -9,7 +9,7 @@
 
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>

@@ -1,6 +1,6 @@
 #include "experiments/checking/lane_graph_search.hpp"
 
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

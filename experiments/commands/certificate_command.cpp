@@ -5,9 +5,9 @@
 #include "experiments/progress.hpp"
 #include "experiments/scenes/cone_index.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/bound_certificate.hpp"
-#include "model/invalid_input.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/bound_certificate.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <limits>

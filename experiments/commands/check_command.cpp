@@ -6,7 +6,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "detectors/drivable_lane.hpp"
+#include "conelane/drivable_lane.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/files/drivable_lane_file.hpp"
@@ -6,7 +6,7 @@
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <memory>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "experiments/files/solution_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
 #include "model/program_files.hpp"
 

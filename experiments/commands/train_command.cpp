@@ -6,7 +6,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <cstdint>
 #include <fstream>

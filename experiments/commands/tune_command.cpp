@@ -11,8 +11,8 @@
 #include "experiments/tuning/failure_causes.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
-#include "model/invalid_input.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <iterator>

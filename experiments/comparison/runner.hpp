@@ -3,7 +3,7 @@
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
-#include "model/lane_detector.hpp"
+#include "conelane/lane_detector.hpp"
 
 #include <cstddef>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "detectors/drivable_lane.hpp"
-#include "model/lane_detector.hpp"
+#include "conelane/drivable_lane.hpp"
+#include "conelane/lane_detector.hpp"
 
 #include <filesystem>
 #include <span>

@@ -1,7 +1,7 @@
 // Private to the readers and writers of experiments/: the one header that includes all of nlohmann's.
 #pragma once
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <filesystem>
 #include <string_view>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/scene.hpp"
-#include "model/stop_reason.hpp"
+#include "conelane/scene.hpp"
+#include "conelane/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "experiments/files/step_score_file.hpp"
 
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #include "experiments/options/shared_options.hpp"
 
-#include "detectors/rld_parameter_sets.hpp"
+#include "conelane/rld_parameter_sets.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/parameter_file.hpp"

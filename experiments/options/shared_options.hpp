@@ -3,7 +3,7 @@
 #include "experiments/methods.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scenes/scene_generation.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <cstdint>
 #include <memory>

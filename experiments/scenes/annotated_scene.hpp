@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/lane.hpp"
-#include "model/scene.hpp"
+#include "conelane/lane.hpp"
+#include "conelane/scene.hpp"
 
 #include <cstdint>
 #include <optional>

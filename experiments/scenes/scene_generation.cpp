@@ -4,7 +4,7 @@
 #include "experiments/seeded_random.hpp"
 #include "experiments/tracks/centre_line.hpp"
 #include "model/geometry.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

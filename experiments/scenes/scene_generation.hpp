@@ -2,7 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/tracks/track.hpp"
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "experiments/scoring/divergence.hpp"
 
 #include "model/geometry.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

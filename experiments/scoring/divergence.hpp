@@ -2,7 +2,7 @@
 
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <optional>
 #include <span>

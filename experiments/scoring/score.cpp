@@ -4,7 +4,7 @@
 #include "experiments/scoring/divergence.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "model/geometry.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -3,7 +3,7 @@
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
-#include "model/lane_detector.hpp"
+#include "conelane/lane_detector.hpp"
 
 #include <array>
 #include <cstddef>

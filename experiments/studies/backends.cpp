@@ -1,6 +1,6 @@
 #include "experiments/studies/backends.hpp"
 
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/progress.hpp"
@@ -9,9 +9,9 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/check.hpp"
+#include "conelane/check.hpp"
 #include "model/deadline.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "experiments/scenes/annotated_scene.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <cstddef>
 #include <functional>

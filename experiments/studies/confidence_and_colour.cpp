@@ -8,7 +8,7 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 #include "experiments/tuning/tuner.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,15 +1,15 @@
 #include "experiments/studies/formulations.hpp"
 
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/linear_relaxation.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/studies/cone_sets.hpp"
-#include "model/formulation.hpp"
+#include "conelane/formulation.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "experiments/studies/optimality.hpp"
 
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/json_node.hpp"
@@ -12,9 +12,9 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "model/check.hpp"
-#include "model/invalid_input.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/score.hpp"
-#include "model/rld_parameters.hpp"
-#include "solvers/solve_report.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/solve_report.hpp"
 
 #include <cstddef>
 #include <memory>

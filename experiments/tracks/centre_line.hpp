@@ -1,7 +1,7 @@
 #pragma once
 
 #include "experiments/tracks/track_boundaries.hpp"
-#include "model/scene.hpp"
+#include "conelane/scene.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "experiments/tracks/generated_tracks.hpp"
 
 #include "experiments/tracks/track_layouts.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

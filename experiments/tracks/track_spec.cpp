@@ -3,7 +3,7 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 #include "experiments/tracks/track_readers.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -4,7 +4,7 @@
 #include "experiments/scoring/score.hpp"
 #include "experiments/seeded_random.hpp"
 #include "experiments/training/adam.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "experiments/training/adam.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "experiments/comparison/runner.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "detectors/solve_scene.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/scenes/scene_set.hpp"
-#include "model/lane_detector.hpp"
-#include "model/rld_parameters.hpp"
-#include "solvers/rld_solver.hpp"
+#include "conelane/lane_detector.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <iterator>
 #include <system_error>

@@ -4,7 +4,7 @@
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/tuning/objective_sums.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>

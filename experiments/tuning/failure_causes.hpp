@@ -2,8 +2,8 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "model/lane.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/lane.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "model/lane_graph.hpp"
-#include "model/lane_graph_problem.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/lane_graph.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "experiments/tuning/tuner.hpp"
 
 #include "experiments/tuning/parameter_ranges.hpp"
-#include "model/invalid_input.hpp"
+#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <exception>

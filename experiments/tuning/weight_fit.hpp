@@ -2,7 +2,7 @@
 
 #include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
-#include "model/rld_parameters.hpp"
+#include "conelane/rld_parameters.hpp"
 
 #include <cstddef>
 #include <span>

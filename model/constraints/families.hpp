@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/formulation.hpp"
+#include "model/formulation_parts.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
-#include "solvers/solve_report.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "conelane/solve_report.hpp"
 
 #include <algorithm>
 #include <exception>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/bit_matrix.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 
 #include <cstddef>
 #include <span>

@@ -1,8 +1,8 @@
 #include "solvers/relaxation/lp_relaxation.hpp"
 
 #include "model/lane_graph_model.hpp"
-#include "solvers/detail/coin_deadline.hpp"
-#include "solvers/detail/osi_program.hpp"
+#include "solvers/milp/detail/coin_deadline.hpp"
+#include "solvers/milp/detail/osi_program.hpp"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "model/deadline.hpp"
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 
 #include <optional>
 #include <vector>

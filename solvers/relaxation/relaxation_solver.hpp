@@ -1,8 +1,8 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "model/deadline.hpp"
-#include "solvers/rld_solver.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <functional>
 #include <memory>

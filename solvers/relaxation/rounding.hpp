@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/lane_graph_problem.hpp"
-#include "solvers/rld_solver.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "conelane/rld_solver.hpp"
 
 #include <span>
 

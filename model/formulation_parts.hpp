@@ -1,0 +1,45 @@
+#pragma once
+
+#include "conelane/formulation.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "model/binary_program.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// Where the variables of a problem stand in its program; -1 where a variable is left out.
+struct ColumnMap {
+    std::vector<int> edge;     ///< a_ij by problem edge
+    std::vector<int> turn;     ///< f_ijk by problem turn
+    std::vector<int> inlier;   ///< g_i by cone
+    std::vector<int> not_far;  ///< u_i by cone
+    /// e_ij and e_ji by problem edge {i, j}, i < j: a path ends at its first and at its second cone by it
+    std::vector<std::array<int, 2>> end;
+};
+
+/// What a constraint family works on.
+struct FamilyContext {
+    const LaneGraphProblem& problem;
+    const ColumnMap& columns;
+    RowWriter& rows;
+};
+using ConstraintFamily = void (*)(const FamilyContext&);
+
+/// A formulation as a list of parts.
+struct FormulationParts {
+    EdgeExtent extent;
+    bool high_cost_turns;  ///< f columns for forbidden turns too
+    bool inliers;          ///< g columns
+    bool far_marks;        ///< u columns
+    bool path_ends;        ///< e columns
+    bool all_integer;
+    /// Families whose rows depend on the number of cones alone; they come first.
+    std::span<const ConstraintFamily> fixed_families;
+    std::span<const ConstraintFamily> families;  ///< the others
+};
+[[nodiscard]] const FormulationParts& parts(Formulation formulation);
+
+}  // namespace conelane

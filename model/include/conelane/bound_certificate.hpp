@@ -1,0 +1,40 @@
+#pragma once
+
+#include "conelane/lane_graph.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// Prices that prove a lower bound of (29), shape costs included, for the pairing near_far and without colour
+/// costs. Every lane graph visits each cone at most once, holds at most one edge of each clique and at least
+/// two edges along the heading (9); so for non-negative prices
+///     cost >= cost + sum_v price_v (visits_v - 1) + sum_q price_q (edges_q - 1) + price_h (2 -
+///     along_heading),
+/// and the right-hand side is a sum over two walks from near to far cones.
+struct BoundCertificate {
+    struct Clique {
+        std::vector<Edge> edges;  ///< pairwise excluded by (7) or (28)
+        double price;
+    };
+    std::vector<double> cone_price;  ///< by cone of the scene
+    std::vector<Clique> cliques;
+    double heading_price = 0.0;
+    double bound = 0.0;  ///< claimed
+};
+
+struct BoundVerdict {
+    std::vector<std::string> violations;  ///< a sentence each; empty: the claim holds
+    std::optional<double> bound;          ///< that the prices prove; infinite where no lane graph exists
+};
+
+/// Recomputes the bound from the scene alone, by shortest walks of its own; shares no code with any solver.
+/// The claim may exceed what is recomputed by 1e-6.
+[[nodiscard]] BoundVerdict verify_bound(const Scene& scene, const RldParameters& parameters,
+                                        const BoundCertificate& certificate);
+
+}  // namespace conelane

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "conelane/lane_graph.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// What the checker found out about a set of edges.
+struct CheckReport {
+    std::vector<std::string>
+        violations;                   ///< a sentence each, naming constraint and cones; empty: a lane graph
+    std::optional<double> objective;  ///< (29), where every edge joins two cones of the scene
+    std::size_t along_heading = 0;    ///< edges that count in (9)
+    /// A violation stays whatever edges are added: one of (2), (5), (6), (27), (28), a crossing, or an edge
+    /// that is none.
+    bool is_final = false;
+};
+
+/// Recomputes every constraint of the model and the objective from the scene alone. Shares no code with the
+/// builders of problem and program; a value within 1e-9 of its limit is within it.
+[[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph);
+
+/// What a solver claims about a lane graph.
+struct Claim {
+    bool optimal;
+    double objective;
+    std::optional<double> bound;
+    double absolute_gap = 1e-6;
+};
+
+/// `check`, and whether the claimed objective is the recomputed one within 1e-6, the bound is not above it,
+/// and an optimal claim has a bound within the gap.
+[[nodiscard]] CheckReport check(const Scene& scene, const RldParameters& parameters, const LaneGraph& graph,
+                                const Claim& claim);
+
+}  // namespace conelane

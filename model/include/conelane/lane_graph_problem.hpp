@@ -1,0 +1,107 @@
+#pragma once
+
+#include "model/deadline.hpp"
+#include "conelane/lane_graph.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
+#include "conelane/stop_reason.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// The car's distance to an edge's midpoint is at least this in (25): the cost has a pole where it is 0 [m].
+inline constexpr double kShortestCarDistance_m = 0.5;
+
+/// An edge of the problem and its numbers. Cone indices i < j.
+struct ProblemEdge {
+    std::size_t i;
+    std::size_t j;
+    double spacing_cost;  ///< s_ij (18), without weight
+    double heading_cost;  ///< p_ij (25), without weight
+    /// One where one cone is blue and the other yellow, and one where an edge along the heading, the only
+    /// place where the car's axis tells sides, is on the wrong side: to the right of the car with a blue
+    /// cone, or to the left with a yellow one. An edge is to the right where its midpoint is to the right of
+    /// the axis and the car to the left of the edge's line, taken along the heading; in a bend one of the two
+    /// may be wrong. Where they differ it is on no side.
+    double color_cost;
+    double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0
+    /// w_s s_ij + w_p p_ij - w_b (29), with use_confidence - w_b times both cones' confidences instead, and
+    /// of the extras w_color color_ij + w_v v_ij - w_n (z_i + z_j).
+    double cost;
+    bool along_heading;  ///< h_ij of (9)
+    bool high_cost;      ///< s_ij > s_crit (27): never chosen
+};
+
+/// Two edges that meet in a cone, {i, middle} and {middle, k} with i < k, as indices into `edges`.
+struct ProblemTurn {
+    std::size_t edge_i;
+    std::size_t edge_k;
+    std::size_t middle;
+    double angle_cost;  ///< t_ijk (20), without weight
+    double unevenness;  ///< u_ijk, without weight; 0 where w_u is 0
+    double cost;        ///< w_t t_ijk, and of the extras w_u u_ijk + 2 w_n z_j
+    bool high_cost;     ///< t_ijk > t_crit (28): never both chosen
+};
+
+/// Which edges a problem lists.
+enum class EdgeExtent {
+    candidates,  ///< those that (27) allows
+    all_pairs,   ///< all n (n - 1) / 2, as the printed model has them
+};
+
+/// The numbers of one scene: geometry becomes numbers here, once. Edges are in the paper's order
+/// (column-major lower triangle); an edge of zero length is high-cost whatever its spacing cost.
+struct LaneGraphProblem {
+    std::size_t cone_count = 0;
+    RldParameters parameters;
+    std::vector<ProblemEdge> edges;
+    std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
+    std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
+    std::vector<bool> near;                                      ///< r_i of (11)
+    /// z_i, see near_end_fit; 0 of a far cone. Where a path ends, m_i = A_i - 2 (turns at i) is 1, else 0: so
+    /// - w_n sum_i z_i m_i is a cost of edges and turns, and no solver needs to know of it.
+    std::vector<double> near_end_fit;
+    std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
+    std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only
+    std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending
+};
+
+/// Throws InvalidInput where the scene or the parameters are not valid. Takes the time and the memory that it
+/// needs: both grow with the fourth power of the cones where many lie within reach of each other.
+[[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
+                                            EdgeExtent extent = EdgeExtent::candidates);
+
+/// A larger problem is not solved: what solvers keep of it grows with the square of its edges. No scene of a
+/// car comes near: 234 cones within 50 m, half of them false, give a tenth of these edges.
+inline constexpr std::size_t kMostProblemEdges = 16'384;
+/// And this many turns, conflicts and pairs that are far apart together, below 256 MB.
+inline constexpr std::size_t kMostProblemEntries = 4'000'000;
+[[nodiscard]] bool is_too_large(const LaneGraphProblem& problem);
+
+/// A problem, or the limit that its making ran into.
+struct LimitedProblem {
+    std::optional<LaneGraphProblem> problem;  ///< complete; absent where a limit was struck
+    std::optional<StopReason> stopped_by;     ///< then: time or memory
+};
+
+/// The same problem as without a deadline, or none: where the deadline passes on the way (it is looked at
+/// about every 0.1 ms), or the problem turns out to be too large, the part that was made is dropped. Throws
+/// as above.
+[[nodiscard]] LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters,
+                                          EdgeExtent extent, const Deadline& deadline);
+
+/// Objective (29) of a lane graph: edge costs plus the costs of all turns it takes. Precondition: every edge
+/// is listed in the problem.
+[[nodiscard]] double objective(const LaneGraphProblem& problem, const LaneGraph& graph);
+
+/// Whether a set of edges fulfils every constraint of the problem, the pairing included. An edge that the
+/// problem does not list is none that it allows.
+[[nodiscard]] bool is_feasible(const LaneGraphProblem& problem, const LaneGraph& graph);
+
+}  // namespace conelane

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "conelane/point.hpp"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+using ConeId = std::int64_t;
+
+/// Position and heading of the car in the map frame; yaw counter-clockwise, 0 along +x.
+struct Pose {
+    Point position{0.0, 0.0};  ///< [m]
+    double yaw_rad = 0.0;
+
+    /// Unit vector h_c of the driving direction.
+    [[nodiscard]] Point heading() const;
+    /// Distance of `point` ahead of the car, along the heading [m]; negative behind.
+    [[nodiscard]] double ahead_m(const Point& point) const;
+    /// Distance of `point` to the left of the car's axis [m]; negative to the right.
+    [[nodiscard]] double left_m(const Point& point) const;
+};
+
+enum class ConeColor { unknown, blue, yellow, orange };
+[[nodiscard]] std::string_view to_string(ConeColor color);
+
+struct Cone {
+    ConeId id = 0;
+    Point position{0.0, 0.0};  ///< [m], map frame
+    ConeColor color = ConeColor::unknown;
+    double confidence = 1.0;  ///< of the detection, in [0, 1]
+};
+
+/// All that a lane detector may know: no ground truth. Cones are unordered; their ids are distinct.
+struct Scene {
+    std::string id;
+    Pose pose;
+    std::vector<Cone> cones;
+};
+
+/// Throws InvalidInput, naming the key, where a number is not finite, a confidence is outside [0, 1] or an id
+/// is there twice. A scene without cones is valid: it has no lane.
+void validate(const Scene& scene);
+/// The same, with `ids` as workspace: it allocates only where that has not the capacity.
+void validate(const Scene& scene, std::vector<ConeId>& ids);
+
+/// The scene with the `count` cones nearest to the car among those ahead of it (in the closed half-plane
+/// along the heading), in their old order. Of two cones equally near, the one with the smaller id comes
+/// first.
+[[nodiscard]] Scene nearest_ahead(const Scene& scene, std::size_t count);
+
+}  // namespace conelane

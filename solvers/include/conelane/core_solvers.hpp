@@ -1,0 +1,12 @@
+#pragma once
+
+#include "conelane/solver_entry.hpp"
+
+#include <span>
+
+namespace conelane {
+
+/// The solvers that need no library.
+[[nodiscard]] std::span<const RldSolverEntry> core_solvers();
+
+}  // namespace conelane

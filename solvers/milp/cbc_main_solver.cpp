@@ -1,0 +1,124 @@
+#include "solvers/milp/cbc_main_solver.hpp"
+
+#include "model/deadline.hpp"
+#include "solvers/milp/detail/coin_deadline.hpp"
+#include "solvers/detail/exclusive_section.hpp"
+#include "solvers/milp/detail/osi_program.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <coin/CbcModel.hpp>
+#include <coin/CbcSolver.hpp>
+#include <coin/OsiClpSolverInterface.hpp>
+
+namespace conelane {
+namespace {
+
+std::timed_mutex one_at_a_time;
+
+int no_callback(CbcModel*, int) {
+    return 0;
+}
+
+class CbcMainSession : public MilpSession {
+  public:
+    explicit CbcMainSession(const BinaryProgram& program) {
+        detail::with_std_errors([&] {
+            detail::prepare(lp_, watch_);
+            detail::load_into(lp_, program);
+        });
+    }
+
+    /// The cutoff is not passed on: where nothing is below it, CBC 2.10.8's preprocessing was seen to return
+    /// a point that violates rows, and without preprocessing the printed rows take twice as long.
+    MilpReport solve(const MilpLimits& limits) override {
+        watch_ = {Deadline(limits.time_limit_ms)};
+        MilpReport report;
+        const auto lock = detail::lock_until(one_at_a_time, watch_.deadline);
+        if (!lock.owns_lock()) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+            return report;
+        }
+        detail::with_std_errors([&] { run(limits, report); });
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        detail::with_std_errors([&] { detail::append_rows(lp_, rows); });
+    }
+
+  private:
+    /// CBC is given no limit of its own: preprocessing that runs out of time calls the program infeasible,
+    /// and says of no part whether it was cut short.
+    void run(const MilpLimits& limits, MilpReport& report) {
+        CbcModel model(lp_);
+        CbcSolverUsefulData data;
+        data.noPrinting_ = true;
+        data.useSignalHandler_ = false;
+        CbcMain0(model, data);
+        model.setLogLevel(0);
+        model.messageHandler()->setLogLevel(0);
+        const detail::CbcDeadline handler(&watch_);
+        model.passInEventHandler(&handler);
+        const std::string gap = fixed(limits.absolute_gap);
+        // The feasibility pump's changes of the objective run into an assertion of Clp 1.17.6, which ends the
+        // process.
+        const std::array arguments{"conelane",  "-log",       "0",    "-slog",
+                                   "0",         "-increment", "1e-7", "-allowableGap",
+                                   gap.c_str(), "-ratioGap",  "0",    "-feasibilityPump",
+                                   "off",       "-solve",     "-quit"};
+        CbcMain1(static_cast<int>(arguments.size()), const_cast<const char**>(arguments.data()), model,
+                 no_callback, data);
+        read(model, report);
+    }
+
+    static std::string fixed(double value) {
+        std::array<char, 400> text{};
+        const auto end =
+            std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+        return {text.data(), end.ptr};
+    }
+
+    void read(const CbcModel& model, MilpReport& report) const {
+        report.nodes = model.getNodeCount();
+        const bool has_point = model.bestSolution() != nullptr;
+        if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
+        if (watch_.struck) {
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+        } else if (model.isProvenOptimal() && has_point) {
+            report.status = SolveStatus::optimal;
+            report.bound = model.getObjValue();
+        } else if (model.isProvenInfeasible()) {
+            report.status = SolveStatus::infeasible;
+        } else {
+            report.message = "CBC stopped without a result, status " + std::to_string(model.status()) + "/" +
+                             std::to_string(model.secondaryStatus());
+            report.point.clear();
+        }
+    }
+
+    detail::DeadlineWatch watch_;
+    OsiClpSolverInterface lp_;
+};
+
+class CbcMainSolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<CbcMainSession>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_cbc_main_solver() {
+    return std::make_unique<CbcMainSolver>();
+}
+
+}  // namespace conelane

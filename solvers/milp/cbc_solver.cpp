@@ -1,0 +1,130 @@
+#include "solvers/milp/cbc_solver.hpp"
+
+#include "model/deadline.hpp"
+#include "solvers/milp/detail/coin_deadline.hpp"
+#include "solvers/milp/detail/osi_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <coin/CbcModel.hpp>
+#include <coin/OsiClpSolverInterface.hpp>
+
+namespace conelane {
+namespace {
+
+class CbcSession : public MilpSession {
+  public:
+    explicit CbcSession(const BinaryProgram& program) {
+        detail::with_std_errors([&] {
+            detail::prepare(lp_, watch_);
+            integers_ = detail::load_into(lp_, program);
+        });
+        for (const int column : integers_) {
+            priorities_.push_back(program.columns[static_cast<std::size_t>(column)].branch_first ? 1 : 2);
+        }
+    }
+
+    MilpReport solve(const MilpLimits& limits) override {
+        watch_ = {Deadline(limits.time_limit_ms)};
+        MilpReport report;
+        detail::with_std_errors([&] { solve(limits, report); });
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        detail::with_std_errors([&] { detail::append_rows(lp_, rows); });
+    }
+
+  private:
+    void solve(const MilpLimits& limits, MilpReport& report) {
+        if (solved_once_) {
+            lp_.resolve();
+        } else {
+            lp_.initialSolve();
+            solved_once_ = true;
+        }
+        if (watch_.struck) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+            return;
+        }
+        if (lp_.isProvenPrimalInfeasible() || (lp_.isProvenOptimal() && lp_.getObjValue() >= limits.cutoff)) {
+            report.status = SolveStatus::infeasible;
+            return;
+        }
+        if (!lp_.isProvenOptimal()) {
+            report.message = "Clp could not solve the relaxation";
+            return;
+        }
+        report.bound = lp_.getObjValue();
+        const double* x = lp_.getColSolution();
+        if (detail::is_integral(x, integers_)) {
+            report.status = SolveStatus::optimal;
+            report.point.assign(x, x + lp_.getNumCols());
+            return;
+        }
+        branch(limits, report);
+    }
+
+    void branch(const MilpLimits& limits, MilpReport& report) {
+        CbcModel model(lp_);
+        model.setLogLevel(0);
+        model.messageHandler()->setLogLevel(0);
+        model.solver()->messageHandler()->setLogLevel(0);
+        model.setNumberStrong(0);
+        model.setNumberBeforeTrust(0);
+        model.setAllowableGap(limits.absolute_gap);
+        model.setAllowableFractionGap(0.0);
+        // The default increment would cut off solutions that are better by less than 1e-5.
+        model.setDblParam(CbcModel::CbcCutoffIncrement, 1e-7);
+        model.passInPriorities(priorities_.data(), false);
+        if (std::isfinite(limits.cutoff)) model.setCutoff(limits.cutoff);
+        const detail::CbcDeadline handler(&watch_);
+        model.passInEventHandler(&handler);
+        model.branchAndBound(0);
+
+        report.nodes = model.getNodeCount();
+        const bool has_point = model.bestSolution() != nullptr;
+        if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
+        // CBC takes a relaxation that was cut short for an infeasible one: its claims and its bound are worth
+        // nothing then.
+        report.bound =
+            std::max(*report.bound, watch_.struck ? watch_.bound : model.getBestPossibleObjValue());
+        if (watch_.struck) {
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+        } else if (model.isProvenOptimal()) {
+            report.status = SolveStatus::optimal;
+        } else if (model.isProvenInfeasible()) {
+            report.status = SolveStatus::infeasible;
+            report.bound.reset();
+        } else {
+            report.message = "CBC stopped without a result, status " + std::to_string(model.status());
+            report.point.clear();
+        }
+    }
+
+    detail::DeadlineWatch watch_;
+    OsiClpSolverInterface lp_;
+    std::vector<int> integers_;
+    std::vector<int> priorities_;  ///< of the integer columns, smaller ones are branched on first
+    bool solved_once_ = false;
+};
+
+class CbcSolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<CbcSession>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_cbc_solver() {
+    return std::make_unique<CbcSolver>();
+}
+
+}  // namespace conelane

@@ -1,0 +1,185 @@
+#include "solvers/milp/clp_bb_solver.hpp"
+
+#include "model/deadline.hpp"
+#include "solvers/milp/detail/coin_deadline.hpp"
+#include "solvers/milp/detail/osi_program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <coin/ClpSimplex.hpp>
+#include <coin/OsiClpSolverInterface.hpp>
+
+namespace conelane {
+namespace {
+
+/// A decision on the way from the root to the current node.
+struct Branching {
+    int column;
+    double lower;  ///< bounds before the decision
+    double upper;
+    double value;  ///< what the column is fixed to
+    bool other_side_open;
+    double bound;  ///< objective of the relaxation that was branched on
+};
+
+class ClpBranchAndBound : public MilpSession {
+  public:
+    explicit ClpBranchAndBound(const BinaryProgram& program) : lp_(*interface_.getModelPtr()) {
+        detail::with_std_errors([&] {
+            detail::prepare(interface_, watch_);
+            for (const int column : detail::load_into(interface_, program)) {
+                (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_)
+                    .push_back(column);
+            }
+        });
+    }
+
+    MilpReport solve(const MilpLimits& limits) override {
+        watch_ = {Deadline(limits.time_limit_ms)};
+        MilpReport report;
+        detail::with_std_errors([&] { search(limits, report); });
+        unwind();
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        detail::with_std_errors([&] { detail::append_rows(interface_, rows); });
+    }
+
+  private:
+    void search(const MilpLimits& limits, MilpReport& report) {
+        double best = limits.cutoff;
+        lp_.setDualObjectiveLimit(COIN_DBL_MAX);
+        bool node_is_open = true;  // the relaxation of the current node is to be solved
+        while (true) {
+            if (node_is_open) {
+                if (!solve_relaxation()) {
+                    stop(report);
+                    return;
+                }
+                const bool inside =
+                    lp_.isProvenOptimal() && lp_.objectiveValue() < best - limits.absolute_gap;
+                if (!path_.empty()) ++report.nodes;
+                const int column = inside ? most_fractional() : -1;
+                if (inside && column < 0) {
+                    best = lp_.objectiveValue();
+                    report.point.assign(lp_.primalColumnSolution(),
+                                        lp_.primalColumnSolution() + lp_.numberColumns());
+                }
+                if (column >= 0) {
+                    const double x = lp_.primalColumnSolution()[column];
+                    path_.push_back({column, lp_.columnLower()[column], lp_.columnUpper()[column],
+                                     std::round(x), true, lp_.objectiveValue()});
+                    fix(path_.back());
+                    continue;
+                }
+            }
+            // The node is done: the other side of the last decision that has one, unless its bound rules it
+            // out.
+            if (path_.empty()) {
+                finish(best, report);
+                return;
+            }
+            Branching& last = path_.back();
+            node_is_open = last.other_side_open && last.bound < best - limits.absolute_gap;
+            if (node_is_open) {
+                last.other_side_open = false;
+                last.value = last.value > 0.5 ? 0.0 : 1.0;
+                fix(last);
+            } else {
+                lp_.setColumnBounds(last.column, last.lower, last.upper);
+                path_.pop_back();
+            }
+        }
+    }
+
+    void fix(const Branching& branching) {
+        lp_.setColumnBounds(branching.column, branching.value, branching.value);
+    }
+
+    void unwind() {
+        for (; !path_.empty(); path_.pop_back()) {
+            lp_.setColumnBounds(path_.back().column, path_.back().lower, path_.back().upper);
+        }
+    }
+
+    /// False where Clp came to no conclusion.
+    bool solve_relaxation() {
+        if (watch_.strikes()) return false;
+        lp_.dual();
+        if (watch_.struck) return false;
+        if (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible()) return true;
+        lp_.allSlackBasis(true);
+        lp_.primal();
+        return !watch_.struck && (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible());
+    }
+
+    /// -1 where all are integral.
+    [[nodiscard]] int most_fractional() const {
+        const int column = most_fractional(first_);
+        return column >= 0 ? column : most_fractional(others_);
+    }
+
+    [[nodiscard]] int most_fractional(std::span<const int> columns) const {
+        const double* x = lp_.primalColumnSolution();
+        int column = -1;
+        double largest = detail::kIntegrality;
+        for (const int c : columns) {
+            const double distance = std::abs(x[c] - std::round(x[c]));
+            if (distance > largest) {
+                largest = distance;
+                column = c;
+            }
+        }
+        return column;
+    }
+
+    void finish(double best, MilpReport& report) const {
+        report.status = report.point.empty() ? SolveStatus::infeasible : SolveStatus::optimal;
+        if (!report.point.empty()) report.bound = best;
+    }
+
+    /// Every open side is below a decision on the path, whose bound holds for it; the current node is below
+    /// the last decision.
+    void stop(MilpReport& report) const {
+        if (!watch_.struck) {
+            report.status = SolveStatus::error;
+            report.message = "Clp could not solve a relaxation";
+            report.point.clear();
+            return;
+        }
+        report.status = report.point.empty() ? SolveStatus::stopped : SolveStatus::feasible;
+        report.stopped_by = StopReason::time;
+        if (path_.empty()) return;
+        double bound = path_.back().bound;
+        for (const Branching& branching : path_) {
+            if (branching.other_side_open) bound = std::min(bound, branching.bound);
+        }
+        report.bound = bound;
+    }
+
+    detail::DeadlineWatch watch_;
+    OsiClpSolverInterface interface_;
+    ClpSimplex& lp_;
+    std::vector<int> first_;  ///< integer columns to branch on first
+    std::vector<int> others_;
+    std::vector<Branching> path_;
+};
+
+class ClpBranchAndBoundSolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<ClpBranchAndBound>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_clp_bb_solver() {
+    return std::make_unique<ClpBranchAndBoundSolver>();
+}
+
+}  // namespace conelane

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "solvers/milp/milp_solver.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+/// Depth-first branch and bound on a Clp relaxation that stays warm: the most fractional column is branched
+/// on, the nearer side first. No cuts, no heuristics; made for the tight formulation.
+[[nodiscard]] std::unique_ptr<MilpSolver> make_clp_bb_solver();
+
+}  // namespace conelane

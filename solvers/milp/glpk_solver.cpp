@@ -1,0 +1,195 @@
+#include "solvers/milp/glpk_solver.hpp"
+
+#include "model/deadline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <glpk.h>
+
+namespace conelane {
+namespace {
+
+/// What the callback of branch and bound watches and leaves behind.
+struct Watch {
+    const Deadline& deadline;
+    double absolute_gap;
+    double cutoff;
+    double bound = -std::numeric_limits<double>::infinity();
+    bool struck = false;  ///< the deadline has ended the search
+};
+
+void look(glp_tree* tree, void* data) {
+    auto& watch = *static_cast<Watch*>(data);
+    const int best = glp_ios_best_node(tree);
+    if (best != 0) watch.bound = glp_ios_node_bound(tree, best);
+    glp_prob* problem = glp_ios_get_prob(tree);
+    const bool has_point = glp_mip_status(problem) == GLP_FEAS;
+    const double best_value = has_point ? glp_mip_obj_val(problem) : watch.cutoff;
+    if (std::min(best_value, watch.cutoff) - watch.bound <= watch.absolute_gap) {
+        glp_ios_terminate(tree);
+    } else if (watch.deadline.passed()) {
+        watch.struck = true;
+        glp_ios_terminate(tree);
+    }
+}
+
+class GlpkSession : public MilpSession {
+  public:
+    explicit GlpkSession(const BinaryProgram& program) : problem_(glp_create_prob()) {
+        glp_term_out(GLP_OFF);
+        glp_set_obj_dir(problem_, GLP_MIN);
+        if (!program.columns.empty()) glp_add_cols(problem_, static_cast<int>(program.columns.size()));
+        for (std::size_t c = 0; c < program.columns.size(); ++c) {
+            const BinaryProgram::Column& column = program.columns[c];
+            const int index = static_cast<int>(c) + 1;
+            glp_set_obj_coef(problem_, index, column.objective);
+            if (column.integer) glp_set_col_kind(problem_, index, GLP_IV);
+            glp_set_col_bnds(problem_, index, column.lower < column.upper ? GLP_DB : GLP_FX, column.lower,
+                             column.upper);
+        }
+        if (!program.rows.empty()) glp_add_rows(problem_, static_cast<int>(program.rows.size()));
+        std::vector<int> columns(1);
+        std::vector<double> values(1);
+        for (std::size_t r = 0; r < program.rows.size(); ++r) {
+            columns.resize(1);
+            values.resize(1);
+            for (auto entry = static_cast<std::size_t>(program.row_starts[r]);
+                 entry < static_cast<std::size_t>(program.row_starts[r + 1]); ++entry) {
+                columns.push_back(program.entry_columns[entry] + 1);
+                values.push_back(program.entry_values[entry]);
+            }
+            set_row(static_cast<int>(r) + 1, columns, values, program.rows[r].lower, program.rows[r].upper);
+        }
+    }
+    ~GlpkSession() override { glp_delete_prob(problem_); }
+    GlpkSession(const GlpkSession&) = delete;
+    GlpkSession& operator=(const GlpkSession&) = delete;
+
+    MilpReport solve(const MilpLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
+        MilpReport report;
+        if (!solve_relaxation(deadline, report)) return report;
+        report.bound = glp_get_obj_val(problem_);
+        if (*report.bound >= limits.cutoff) {
+            report.status = SolveStatus::infeasible;
+            report.bound.reset();
+            return report;
+        }
+        branch(limits, deadline, report);
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        for (const ProgramRow& row : rows) {
+            std::vector<int> columns{0};
+            std::vector<double> values{0.0};
+            for (const auto& [column, coefficient] : row.terms) {
+                columns.push_back(column + 1);
+                values.push_back(coefficient);
+            }
+            set_row(glp_add_rows(problem_, 1), columns, values, row.lower, row.upper);
+        }
+    }
+
+  private:
+    void set_row(int index, const std::vector<int>& columns, const std::vector<double>& values, double lower,
+                 double upper) {
+        const bool has_lower = lower > -kInfinity;
+        const bool has_upper = upper < kInfinity;
+        const int kind = has_lower && has_upper ? (lower < upper ? GLP_DB : GLP_FX)
+                         : has_lower            ? GLP_LO
+                         : has_upper            ? GLP_UP
+                                                : GLP_FR;
+        glp_set_row_bnds(problem_, index, kind, lower, upper);
+        glp_set_mat_row(problem_, index, static_cast<int>(columns.size()) - 1, columns.data(), values.data());
+    }
+
+    /// GLPK counts whole milliseconds and ends one before its limit.
+    static int milliseconds(const Deadline& deadline) {
+        return static_cast<int>(std::clamp(std::ceil(deadline.remaining_ms()) + 1.0, 1.0, 2e9));
+    }
+
+    /// True where the relaxation has an optimum.
+    bool solve_relaxation(const Deadline& deadline, MilpReport& report) {
+        glp_smcp options;
+        glp_init_smcp(&options);
+        options.msg_lev = GLP_MSG_OFF;
+        options.meth = GLP_DUALP;
+        if (std::isfinite(deadline.remaining_ms())) options.tm_lim = milliseconds(deadline);
+        // A basis that was optimal before rows were added holds their slacks; one that is none is made anew.
+        int failure = glp_simplex(problem_, &options);
+        if (failure == GLP_EBADB || failure == GLP_ESING || failure == GLP_ECOND) {
+            glp_std_basis(problem_);
+            failure = glp_simplex(problem_, &options);
+        }
+        const int status = glp_get_status(problem_);
+        if (failure == 0 && status == GLP_OPT) return true;
+        if (failure == 0 && status == GLP_NOFEAS) {
+            report.status = SolveStatus::infeasible;  // a simplex that was cut short is a failure
+        } else if (failure == GLP_ETMLIM || deadline.passed()) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+        } else {
+            report.message = "GLPK could not solve the relaxation, " + std::to_string(failure);
+        }
+        return false;
+    }
+
+    void branch(const MilpLimits& limits, const Deadline& deadline, MilpReport& report) {
+        Watch watch{deadline, limits.absolute_gap, limits.cutoff};
+        glp_iocp options;
+        glp_init_iocp(&options);
+        options.msg_lev = GLP_MSG_OFF;
+        options.tol_int = 1e-7;
+        options.tol_obj = 1e-9;
+        options.cb_func = look;
+        options.cb_info = &watch;
+        const int failure = glp_intopt(problem_, &options);
+        const int status = glp_mip_status(problem_);
+        // GLPK knows no cutoff: a point that is not below it is none.
+        const bool has_point =
+            (status == GLP_FEAS || status == GLP_OPT) && glp_mip_obj_val(problem_) < limits.cutoff;
+        if (has_point) {
+            report.point.resize(static_cast<std::size_t>(glp_get_num_cols(problem_)));
+            for (std::size_t c = 0; c < report.point.size(); ++c) {
+                report.point[c] = glp_mip_col_val(problem_, static_cast<int>(c) + 1);
+            }
+        }
+        report.bound = std::max(*report.bound, watch.bound);
+        const double best_value = has_point ? glp_mip_obj_val(problem_) : limits.cutoff;
+        const bool finished = failure == 0 && (status == GLP_OPT || status == GLP_NOFEAS);
+        if (finished || best_value - *report.bound <= limits.absolute_gap) {
+            report.status = has_point ? SolveStatus::optimal : SolveStatus::infeasible;
+            if (finished) report.bound = best_value;
+            if (!has_point) report.bound.reset();
+        } else if (watch.struck) {
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+        } else {
+            report.status = SolveStatus::error;
+            report.message = "GLPK stopped without a result, " + std::to_string(failure);
+            report.point.clear();
+        }
+    }
+
+    glp_prob* problem_;
+};
+
+class GlpkSolver : public MilpSolver {
+  public:
+    std::unique_ptr<MilpSession> load(const BinaryProgram& program) const override {
+        return std::make_unique<GlpkSession>(program);
+    }
+};
+
+}  // namespace
+
+std::unique_ptr<MilpSolver> make_glpk_solver() {
+    return std::make_unique<GlpkSolver>();
+}
+
+}  // namespace conelane

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "conelane/solver_entry.hpp"
+
+#include <span>
+
+namespace conelane {
+
+/// The solvers of the component milp: the model as a binary program, solved by branch and bound.
+[[nodiscard]] std::span<const RldSolverEntry> milp_solvers();
+
+}  // namespace conelane

@@ -1,0 +1,132 @@
+#include "solvers/milp/milp_rld_solver.hpp"
+
+#include "model/deadline.hpp"
+#include "model/lane_graph_model.hpp"
+#include "solvers/detail/guarded_solve.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+namespace {
+
+class MilpRldSolver : public RldSolver {
+  public:
+    MilpRldSolver(std::unique_ptr<MilpSolver> solver, Formulation formulation)
+        : solver_(std::move(solver)), formulation_(formulation) {}
+
+    EdgeExtent extent() const override { return parts(formulation_).extent; }
+
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* start) override {
+        const Deadline deadline(limits.time_limit_ms);
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            if (problem.edges.empty()) {
+                report.status = SolveStatus::infeasible;
+                return;
+            }
+            const Stopwatch build_watch;
+            const std::unique_ptr<MilpSession> session = load(problem, deadline, report);
+            report.build_ms = build_watch.elapsed_ms();
+            if (!session) return;
+            const Stopwatch solve_watch;
+            const bool has_start = start != nullptr && is_feasible(problem, *start);
+            if (has_start) take(problem, *start, report);
+            solve_and_separate(problem, *session, limits, deadline, report);
+            report.solve_ms = solve_watch.elapsed_ms();
+        });
+    }
+
+  private:
+    /// Nothing where a limit was struck before the program was loaded, which is in the report then.
+    std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, const Deadline& deadline,
+                                      RldReport& report) {
+        if (!model_) model_.emplace(formulation_);
+        if (const auto struck = model_->update(problem, deadline)) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = struck;
+            return nullptr;
+        }
+        return solver_->load(model_->program());
+    }
+
+    static void take(const LaneGraphProblem& problem, LaneGraph graph, RldReport& report) {
+        report.objective = objective(problem, graph);
+        report.lane_graph = std::move(graph);
+    }
+
+    /// A lane graph in the report is the start: what is looked for is a better one.
+    void solve_and_separate(const LaneGraphProblem& problem, MilpSession& session, const SolveLimits& limits,
+                            const Deadline& deadline, RldReport& report) const {
+        const bool has_start = report.lane_graph.has_value();
+        MilpLimits round_limits{deadline.remaining_ms(), limits.absolute_gap};
+        if (has_start) round_limits.cutoff = *report.objective - limits.absolute_gap;
+        while (true) {
+            round_limits.time_limit_ms = deadline.remaining_ms();
+            if (round_limits.time_limit_ms <= 0.0) {
+                report.status = SolveStatus::stopped;
+                report.stopped_by = StopReason::time;
+                if (has_start) keep_start(round_limits.cutoff, report);
+                return;
+            }
+            const MilpReport round = session.solve(round_limits);
+            ++report.rounds;
+            report.nodes += round.nodes;
+            report.status = round.status;
+            report.stopped_by = round.stopped_by;
+            report.message = round.message;
+            // Rows only ever tighten the program: every round's bound holds for the problem.
+            if (round.bound) report.bound = std::max(report.bound.value_or(*round.bound), *round.bound);
+            if (round.status == SolveStatus::infeasible) report.bound.reset();
+            if (round.point.empty()) {
+                if (has_start) keep_start(round_limits.cutoff, report);
+                return;
+            }
+            const std::vector<ProgramRow> violated = model_->separate(round.point);
+            if (violated.empty()) {
+                LaneGraph graph = model_->decode(round.point);
+                if (!is_feasible(problem, graph)) {
+                    report.status = SolveStatus::error;
+                    report.stopped_by.reset();
+                    report.bound.reset();
+                    report.message = "the solver's point violates the program";
+                    return;
+                }
+                // A backend that ignores the cutoff may stop at a point that is worse than the start.
+                if (!has_start || objective(problem, graph) < *report.objective) {
+                    take(problem, std::move(graph), report);
+                }
+                // A bound comes from the solver's own sums: it may exceed the objective by rounding only.
+                if (report.bound) report.bound = std::min(*report.bound, *report.objective);
+                return;
+            }
+            session.add_rows(violated);
+        }
+    }
+
+    /// After a round that ended without a point: that nothing below the cutoff is left proves the start.
+    static void keep_start(double cutoff, RldReport& report) {
+        if (report.status == SolveStatus::infeasible) {
+            report.status = SolveStatus::optimal;
+            report.bound = cutoff;
+        } else if (report.status == SolveStatus::stopped) {
+            report.status = SolveStatus::feasible;
+            // With a cutoff, what a solver proved is that no point below its bound is left, up to the cutoff.
+            if (report.bound) report.bound = std::min(*report.bound, cutoff);
+        }
+    }
+
+    std::unique_ptr<MilpSolver> solver_;
+    Formulation formulation_;
+    std::optional<LaneGraphModel> model_;  ///< built once, then updated
+};
+
+}  // namespace
+
+std::unique_ptr<RldSolver> make_milp_rld_solver(std::unique_ptr<MilpSolver> solver, Formulation formulation) {
+    return std::make_unique<MilpRldSolver>(std::move(solver), formulation);
+}
+
+}  // namespace conelane
