@@ -17,16 +17,19 @@ macro(conelane_find_library component name header)
                                                "conelane_require_library(${name} ${header})\n")
 endmacro()
 
-# Contraction to fused multiply-add would make results differ between processors. GCC 12 sees an overlap (-Wrestrict) in
+# What all code of this project is compiled with. Internal headers are included as FOLDER/FILE from the top, a path that
+# no user sees. Contraction to fused multiply-add would make results differ between processors. GCC 12 sees an overlap (-Wrestrict) in
 # every inlined concatenation of strings (its bug 105651).
 function(conelane_compile_options target)
     set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                              -ffp-contract=off
                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
                                              $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
+# The headers that users see are in a folder include/conelane beside the sources.
 # `conelane_library(NAME [COMPONENT C] SOURCES... PUBLIC LIBRARIES... PRIVATE LIBRARIES...)`: target conelane_NAME, for
 # users conelane::NAME. Without a component it is not installed.
 function(conelane_library name)
@@ -36,12 +39,17 @@ function(conelane_library name)
     add_library(conelane::${name} ALIAS ${target})
     set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
     target_compile_features(${target} PUBLIC cxx_std_20)
-    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/include)
+        target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    endif()
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
     conelane_compile_options(${target})
     if(ARG_COMPONENT)
         install(TARGETS ${target} EXPORT conelane_${ARG_COMPONENT})
+        if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/include)
+            install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+        endif()
         set_property(GLOBAL APPEND PROPERTY CONELANE_COMPONENTS ${ARG_COMPONENT})
     endif()
 endfunction()

@@ -1,7 +1,7 @@
 #include "conelane/detectors.hpp"
 
-#include "detectors/recipe.hpp"
 #include "conelane/invalid_input.hpp"
+#include "detectors/recipe.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,9 +1,9 @@
 #include "conelane/drivable_lane.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "detectors/detail/lane_boundary.hpp"
 #include "detectors/detail/lane_rungs.hpp"
 #include "detectors/detail/smoothing_spline.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
-#include "graph_search/clc_detector.hpp"
 #include "conelane/rld_solver.hpp"
+#include "graph_search/clc_detector.hpp"
 
 #include <memory>
 #include <span>

@@ -1,8 +1,8 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
 #include "experiments/commands/commands.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/files/interruption.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/provenance.hpp"
 
 #include <cerrno>

@@ -1,7 +1,7 @@
 #include "experiments/methods.hpp"
 
-#include "experiments/delaunay.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/delaunay.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 #pragma once
 
+#include "conelane/lane.hpp"
+#include "conelane/scene.hpp"
+#include "conelane/stop_reason.hpp"
 #include "graph_search/lane_beam.hpp"
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
@@ -7,9 +10,6 @@
 #include "graph_search/search_graph.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/deadline.hpp"
-#include "conelane/lane.hpp"
-#include "conelane/scene.hpp"
-#include "conelane/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>

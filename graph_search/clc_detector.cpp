@@ -1,8 +1,8 @@
 #include "graph_search/clc_detector.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "graph_search/shipped_weights.hpp"
 #include "model/deadline.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "conelane/lane_detector.hpp"
 #include "graph_search/candidate_search.hpp"
 #include "graph_search/lane_consensus.hpp"
 #include "graph_search/ranking.hpp"
-#include "conelane/lane_detector.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -1,10 +1,10 @@
 #include "graph_search/lane_beam.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "graph_search/neighbourhood.hpp"
 #include "graph_search/next_vertex.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/geometry.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

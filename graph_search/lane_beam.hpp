@@ -1,10 +1,10 @@
 #pragma once
 
+#include "conelane/scene.hpp"
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
 #include "graph_search/search_budget.hpp"
 #include "graph_search/search_graph.hpp"
-#include "conelane/scene.hpp"
 
 #include <array>
 #include <cstddef>

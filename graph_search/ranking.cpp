@@ -1,7 +1,7 @@
 #include "graph_search/ranking.hpp"
 
-#include "graph_search/simd_batch.hpp"
 #include "conelane/invalid_input.hpp"
+#include "graph_search/simd_batch.hpp"
 
 #include <algorithm>
 #include <array>

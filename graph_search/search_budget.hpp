@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/deadline.hpp"
 #include "conelane/stop_reason.hpp"
+#include "model/deadline.hpp"
 
 #include <cstddef>
 #include <cstdint>

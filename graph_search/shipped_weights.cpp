@@ -1,8 +1,8 @@
 #include "graph_search/shipped_weights.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/shipped_weight_tables.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/scene.hpp"
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
-#include "conelane/scene.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "model/binary_program.hpp"
-#include "model/formulation_parts.hpp"
 #include "conelane/lane_graph.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "model/binary_program.hpp"
+#include "model/formulation_parts.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "experiments/tracks/centre_line.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/tracks/boundary_matching.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/recorded_tracks.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "graph_search/clc_detector.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/no_time_limit.hpp"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "experiments/studies/confidence_and_colour.hpp"
 
-#include "experiments/files/input_error.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/files/input_error.hpp"
 #include "tests/file_test.hpp"
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 #include "conelane/drivable_lane.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/boundary_checks.hpp"
 #include "tests/recorded_tracks.hpp"
 

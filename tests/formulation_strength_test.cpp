@@ -1,8 +1,8 @@
 // What the relaxation of each formulation proves before any branching.
 
 #include "model/lane_graph_model.hpp"
-#include "solvers/relaxation/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <optional>

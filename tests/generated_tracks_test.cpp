@@ -1,8 +1,8 @@
 #include "experiments/tracks/generated_tracks.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/tracks/rounded_path.hpp"
 #include "experiments/tracks/track_layouts.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/boundary_checks.hpp"
 
 #include <cmath>

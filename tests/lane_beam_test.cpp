@@ -1,7 +1,7 @@
 #include "graph_search/lane_beam.hpp"
 
-#include "graph_search/start_vertices.hpp"
 #include "conelane/invalid_input.hpp"
+#include "graph_search/start_vertices.hpp"
 
 #include <algorithm>
 #include <cmath>

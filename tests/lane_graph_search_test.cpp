@@ -2,9 +2,9 @@
 
 #include "experiments/checking/lane_graph_search.hpp"
 
-#include "experiments/checking/infeasibility.hpp"
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "experiments/checking/infeasibility.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"

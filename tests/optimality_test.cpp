@@ -2,8 +2,8 @@
 
 #include "experiments/studies/optimality.hpp"
 
-#include "experiments/scenes/scene_set.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/scenes/scene_set.hpp"
 #include "tests/straight_scene.hpp"
 
 #include <string>

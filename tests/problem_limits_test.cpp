@@ -1,9 +1,9 @@
 // The making of a problem, and of its program, within a deadline and a bound of memory.
 
-#include "model/deadline.hpp"
 #include "conelane/invalid_input.hpp"
-#include "model/lane_graph_model.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "model/deadline.hpp"
+#include "model/lane_graph_model.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <limits>

@@ -1,7 +1,7 @@
 #include "experiments/files/rank_net_file.hpp"
 
-#include "graph_search/shipped_weights.hpp"
 #include "conelane/invalid_input.hpp"
+#include "graph_search/shipped_weights.hpp"
 
 #include <bit>
 #include <cmath>
@@ -76,7 +76,8 @@ TEST(RankNetFile, ErrorsNameTheirKey) {
 }
 
 std::string shipped_file(const std::string& name) {
-    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name, std::ios::binary);
+    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name,
+                         std::ios::binary);
     EXPECT_TRUE(stream) << name;
     std::ostringstream text;
     text << stream.rdbuf();

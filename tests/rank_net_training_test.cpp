@@ -1,12 +1,12 @@
 #include "experiments/training/rank_net_training.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/rank_net_file.hpp"
 #include "experiments/tracks/track_spec.hpp"
 #include "experiments/training/adam.hpp"
 #include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

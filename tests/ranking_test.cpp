@@ -1,8 +1,8 @@
 #include "graph_search/ranking.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/no_time_limit.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/files/solution_file.hpp"
-#include "conelane/invalid_input.hpp"
 #include "tests/file_test.hpp"
 
 #include <limits>

@@ -1,7 +1,7 @@
 #include "experiments/scenes/scene_generation.hpp"
 
-#include "experiments/scenes/scene_file.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "experiments/scoring/score.hpp"
 
-#include "experiments/scenes/annotated_scene.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
 #include "tests/straight_scene.hpp"
 
 #include <cmath>

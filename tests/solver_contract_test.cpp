@@ -49,8 +49,8 @@ Scene scene_of(const std::vector<Point>& positions) {
 /// Edges as cone indices; the car stands at the origin and looks along +x.
 class SolverContract : public testing::TestWithParam<Contestant> {
   protected:
-    RldReport solve(const Scene& scene, const RldParameters& parameters = {},
-                    const SolveLimits& limits = {}, const LaneGraph* start = nullptr) {
+    RldReport solve(const Scene& scene, const RldParameters& parameters = {}, const SolveLimits& limits = {},
+                    const LaneGraph* start = nullptr) {
         const std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
         return solver->solve(make_problem(scene, parameters, solver->extent()), limits, start);
     }

@@ -2,8 +2,8 @@
 // limits are odd or a backend fails.
 
 #include "conelane/check.hpp"
-#include "model/deadline.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "model/deadline.hpp"
 #include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/registry.hpp"

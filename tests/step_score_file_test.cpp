@@ -1,7 +1,7 @@
 #include "experiments/files/step_score_file.hpp"
 
-#include "graph_search/shipped_weights.hpp"
 #include "conelane/invalid_input.hpp"
+#include "graph_search/shipped_weights.hpp"
 
 #include <bit>
 #include <cstddef>
@@ -68,7 +68,8 @@ TEST(StepScoreFile, ErrorsNameTheirKey) {
 }
 
 std::string shipped_file(const std::string& name) {
-    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name, std::ios::binary);
+    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name,
+                         std::ios::binary);
     EXPECT_TRUE(stream) << name;
     std::ostringstream text;
     text << stream.rdbuf();

@@ -1,7 +1,7 @@
 #include "experiments/training/step_score_training.hpp"
 
-#include "experiments/training/training_run.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/training/training_run.hpp"
 
 #include <string>
 

@@ -1,11 +1,11 @@
 // Studies: what is listed, the table they share, and the exact backends under one objective.
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 #include "tests/straight_scene.hpp"
 

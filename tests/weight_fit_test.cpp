@@ -3,11 +3,11 @@
 
 #include "experiments/tuning/weight_fit.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <cmath>

@@ -9,8 +9,8 @@
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/search_graph.hpp"
 
-#include <limits>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -52,8 +52,7 @@ void build_search_graph(benchmark::State& state, const EdgeRule& rule) {
     SearchGraph graph;
     std::size_t turn = 0;
     for ([[maybe_unused]] auto iteration : state) {
-        graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m,
-                    rule);
+        graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m, rule);
         benchmark::DoNotOptimize(graph.directed_edge_count());
     }
 }
@@ -102,7 +101,7 @@ void detect(benchmark::State& state, const ClcOptions& options) {
     std::size_t turn = 0;
     for ([[maybe_unused]] auto iteration : state) {
         LaneAnswer answer = detector->detect(scenes()[turn++ % scenes().size()],
-                                               {.time_limit_ms = std::numeric_limits<double>::infinity()});
+                                             {.time_limit_ms = std::numeric_limits<double>::infinity()});
         benchmark::DoNotOptimize(answer);
     }
 }

@@ -7,9 +7,9 @@
 // Scenes are of generated tracks with three false positives among ten points, or those of the file that the
 // environment variable CONELANE_SCENES names.
 
+#include "conelane/lane_graph_problem.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>

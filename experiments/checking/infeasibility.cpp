@@ -1,10 +1,10 @@
 #include "experiments/checking/infeasibility.hpp"
 
-#include "experiments/checking/lane_graph_search.hpp"
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
-#include "model/deadline.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "experiments/checking/lane_graph_search.hpp"
+#include "model/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 

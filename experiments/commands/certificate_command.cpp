@@ -1,3 +1,6 @@
+#include "conelane/bound_certificate.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/certificate_file.hpp"
 #include "experiments/files/input_error.hpp"
@@ -5,9 +8,6 @@
 #include "experiments/progress.hpp"
 #include "experiments/scenes/cone_index.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "conelane/bound_certificate.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <limits>

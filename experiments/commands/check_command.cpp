@@ -1,3 +1,4 @@
+#include "conelane/check.hpp"
 #include "experiments/checking/infeasibility.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/comparison/answer_check.hpp"
@@ -6,7 +7,6 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "conelane/check.hpp"
 
 #include <algorithm>
 #include <cmath>

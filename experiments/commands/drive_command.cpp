@@ -1,12 +1,12 @@
 #include "conelane/drivable_lane.hpp"
+#include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "experiments/files/drivable_lane_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/lane_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <memory>
 #include <optional>

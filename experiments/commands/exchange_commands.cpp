@@ -1,10 +1,10 @@
+#include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "conelane/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
 #include "model/program_files.hpp"
 

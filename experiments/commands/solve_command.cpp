@@ -1,10 +1,10 @@
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <memory>

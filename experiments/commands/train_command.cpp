@@ -1,3 +1,4 @@
+#include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
@@ -6,7 +7,6 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <cstdint>
 #include <fstream>

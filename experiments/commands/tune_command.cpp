@@ -1,3 +1,5 @@
+#include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameters.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
@@ -11,8 +13,6 @@
 #include "experiments/tuning/failure_causes.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/rld_parameters.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "experiments/files/lane_file.hpp"
 #include "conelane/lane.hpp"
 #include "conelane/lane_graph.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
+#include "experiments/files/lane_file.hpp"
 
 #include <optional>
 

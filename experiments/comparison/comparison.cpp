@@ -1,10 +1,10 @@
 #include "experiments/comparison/comparison.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <iterator>

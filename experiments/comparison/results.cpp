@@ -1,9 +1,9 @@
 #include "experiments/comparison/results.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <map>
 #include <string>

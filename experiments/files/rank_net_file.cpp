@@ -1,7 +1,7 @@
 #include "experiments/files/rank_net_file.hpp"
 
-#include "graph_search/lane_features.hpp"
 #include "conelane/invalid_input.hpp"
+#include "graph_search/lane_features.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
 #include "conelane/lane.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -1,9 +1,9 @@
 #include "experiments/scenes/scene_file.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <array>
 #include <string>

@@ -1,10 +1,10 @@
 #include "experiments/scenes/scene_generation.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/seeded_random.hpp"
 #include "experiments/tracks/centre_line.hpp"
 #include "model/geometry.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

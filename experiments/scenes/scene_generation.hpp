@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/scene.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/tracks/track.hpp"
-#include "conelane/scene.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "experiments/scoring/divergence.hpp"
 
-#include "model/geometry.hpp"
 #include "conelane/invalid_input.hpp"
+#include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>

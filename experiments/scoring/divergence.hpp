@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/scene.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
-#include "conelane/scene.hpp"
 
 #include <optional>
 #include <span>

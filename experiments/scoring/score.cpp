@@ -1,10 +1,10 @@
 #include "experiments/scoring/score.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/divergence.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "model/geometry.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <iterator>

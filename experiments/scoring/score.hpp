@@ -1,9 +1,9 @@
 #pragma once
 
+#include "conelane/lane_detector.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
-#include "conelane/lane_detector.hpp"
 
 #include <array>
 #include <cstddef>

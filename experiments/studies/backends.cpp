@@ -1,5 +1,7 @@
 #include "experiments/studies/backends.hpp"
 
+#include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
@@ -9,9 +11,7 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "conelane/check.hpp"
 #include "model/deadline.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "experiments/studies/confidence_and_colour.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/options/shared_options.hpp"
@@ -8,7 +9,6 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 #include "experiments/tuning/tuner.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/rld_parameters.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tuning/evaluation.hpp"
-#include "conelane/rld_parameters.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,5 +1,6 @@
 #include "experiments/studies/formulations.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
@@ -7,10 +8,9 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "conelane/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/relaxation/linear_relaxation.hpp"
 #include "solvers/registry.hpp"
+#include "solvers/relaxation/linear_relaxation.hpp"
 
 #include <algorithm>
 #include <array>

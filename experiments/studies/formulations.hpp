@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/formulation.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/studies/cone_sets.hpp"
-#include "conelane/formulation.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -1,5 +1,8 @@
 #include "experiments/studies/optimality.hpp"
 
+#include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/runner.hpp"
@@ -12,9 +15,6 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "conelane/check.hpp"
-#include "conelane/invalid_input.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

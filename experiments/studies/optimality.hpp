@@ -1,9 +1,9 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scoring/score.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/score.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -1,5 +1,6 @@
 #include "experiments/studies/relaxations.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/ground_truth.hpp"
@@ -9,7 +10,6 @@
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
 #include <string_view>

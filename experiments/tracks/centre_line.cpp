@@ -1,7 +1,7 @@
 #include "experiments/tracks/centre_line.hpp"
 
-#include "experiments/tracks/boundary_matching.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/tracks/boundary_matching.hpp"
 
 #include <algorithm>
 #include <cmath>

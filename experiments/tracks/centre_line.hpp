@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/tracks/track_boundaries.hpp"
 #include "conelane/scene.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 
 #include <vector>
 

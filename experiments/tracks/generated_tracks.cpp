@@ -1,7 +1,7 @@
 #include "experiments/tracks/generated_tracks.hpp"
 
-#include "experiments/tracks/track_layouts.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/tracks/track_layouts.hpp"
 
 #include <algorithm>
 #include <array>

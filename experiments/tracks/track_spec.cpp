@@ -1,9 +1,9 @@
 #include "experiments/tracks/track_spec.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 #include "experiments/tracks/track_readers.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,10 +1,10 @@
 #include "experiments/training/rank_net_training.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/seeded_random.hpp"
 #include "experiments/training/adam.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 #include "experiments/training/step_score_training.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/seeded_random.hpp"
 #include "experiments/training/adam.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "conelane/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "experiments/tuning/evaluation.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "conelane/solve_scene.hpp"
-#include "experiments/scenes/scene_set.hpp"
 #include "conelane/lane_detector.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/rld_solver.hpp"
+#include "conelane/solve_scene.hpp"
+#include "experiments/scenes/scene_set.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,10 +1,10 @@
 #include "experiments/tuning/failure_causes.hpp"
 
+#include "conelane/lane_graph_problem.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/tuning/objective_sums.hpp"
-#include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/tuning/evaluation.hpp"
 #include "conelane/lane.hpp"
 #include "conelane/rld_parameters.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tuning/evaluation.hpp"
 
 #include <array>
 #include <cstddef>

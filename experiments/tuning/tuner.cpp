@@ -1,7 +1,7 @@
 #include "experiments/tuning/tuner.hpp"
 
-#include "experiments/tuning/parameter_ranges.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 
 #include <algorithm>
 #include <exception>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "conelane/rld_parameters.hpp"
 #include "experiments/tuning/objective_sums.hpp"
 #include "experiments/tuning/parameter_ranges.hpp"
-#include "conelane/rld_parameters.hpp"
 
 #include <cstddef>
 #include <span>

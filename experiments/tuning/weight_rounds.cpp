@@ -1,9 +1,9 @@
 #include "experiments/tuning/weight_rounds.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/tuning/weight_fit.hpp"
-#include "conelane/invalid_input.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/tuning/evaluation.hpp"
 #include "conelane/rld_parameters.hpp"
+#include "experiments/tuning/evaluation.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "solvers/milp/cbc_main_solver.hpp"
 
 #include "model/deadline.hpp"
-#include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/detail/exclusive_section.hpp"
+#include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
 
 #include <algorithm>

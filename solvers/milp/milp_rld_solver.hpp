@@ -1,8 +1,8 @@
 #pragma once
 
 #include "conelane/formulation.hpp"
-#include "solvers/milp/milp_solver.hpp"
 #include "conelane/rld_solver.hpp"
+#include "solvers/milp/milp_solver.hpp"
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/binary_program.hpp"
 #include "conelane/solve_report.hpp"
+#include "model/binary_program.hpp"
 
 #include <limits>
 #include <memory>

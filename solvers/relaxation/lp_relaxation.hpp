@@ -1,7 +1,7 @@
 #pragma once
 
-#include "model/deadline.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "model/deadline.hpp"
 
 #include <optional>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "conelane/lane_graph_problem.hpp"
-#include "model/deadline.hpp"
 #include "conelane/rld_solver.hpp"
+#include "model/deadline.hpp"
 
 #include <functional>
 #include <memory>

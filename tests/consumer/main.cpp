@@ -1,7 +1,8 @@
 // The first program of the README: the lane between six cones and a stray one, and its centre line.
 #include <cmath>
-#include <conelane/detectors.hpp>
 #include <iostream>
+
+#include <conelane/detectors.hpp>
 
 int main() {
     conelane::Scene scene{.id = "now", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};

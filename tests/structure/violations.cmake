@@ -55,6 +55,19 @@ expect("may not include ../model/scene.hpp" includes solvers/a.cpp "#include \".
 expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"solvers/../model/scene.hpp\"")
 expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"model/nothing.hpp\"")
 
+# Public headers.
+set(also model/include/conelane/lane.hpp)
+expect("" includes solvers/a.cpp "#include \"conelane/lane.hpp\"")
+expect("" includes model/lane.cpp "#include \"conelane/lane.hpp\"\n#include <cmath>")
+expect("model/lane.cpp does not include conelane/lane.hpp first" includes model/lane.cpp
+       "#include <cmath>\n#include \"conelane/lane.hpp\"")
+expect("which is no public header" includes solvers/a.cpp "#include \"conelane/nothing.hpp\"")
+expect("is public and may not include model/scene.hpp" includes solvers/include/conelane/a.hpp
+       "#pragma once\n#include \"model/scene.hpp\"")
+set(also detectors/include/conelane/lane.hpp)
+expect("solvers/a.cpp may not include conelane/lane.hpp" includes solvers/a.cpp "#include \"conelane/lane.hpp\"")
+set(also)
+
 expect("" includes solvers/a.cpp "#include <CbcModel.hpp>\n#include <boost/geometry.hpp>")
 expect("" includes solvers/detail/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#pragma once\n#include <CbcModel.hpp>")

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "conelane/point.hpp"
 #include "conelane/lane.hpp"
 #include "conelane/lane_detector.hpp"
+#include "conelane/point.hpp"
 #include "conelane/scene.hpp"
 
 #include <optional>

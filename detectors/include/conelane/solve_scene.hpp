@@ -2,8 +2,8 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameters.hpp"
-#include "conelane/scene.hpp"
 #include "conelane/rld_solver.hpp"
+#include "conelane/scene.hpp"
 
 namespace conelane {
 

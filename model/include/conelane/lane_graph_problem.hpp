@@ -1,6 +1,5 @@
 #pragma once
 
-#include "model/deadline.hpp"
 #include "conelane/lane_graph.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
@@ -14,6 +13,8 @@
 #include <vector>
 
 namespace conelane {
+
+class Deadline;  // internal
 
 /// The car's distance to an edge's midpoint is at least this in (25): the cost has a pole where it is 0 [m].
 inline constexpr double kShortestCarDistance_m = 0.5;

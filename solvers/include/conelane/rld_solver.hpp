@@ -13,9 +13,9 @@ class RldSolver {
     /// The extent that `solve` wants its problems to be made with.
     [[nodiscard]] virtual EdgeExtent extent() const { return EdgeExtent::candidates; }
 
-    /// Building the program is inside the time limit. `start` is a lane graph to start from, or nullptr: a hint
-    /// that solvers may use as their first incumbent; one that is not feasible for the problem is dropped.
-    /// Throws nothing but std::bad_alloc.
+    /// Building the program is inside the time limit. `start` is a lane graph to start from, or nullptr: a
+    /// hint that solvers may use as their first incumbent; one that is not feasible for the problem is
+    /// dropped. Throws nothing but std::bad_alloc.
     [[nodiscard]] virtual RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
                                           const LaneGraph* start = nullptr) = 0;
 };
