@@ -1,6 +1,7 @@
 #include "graph_search/candidate_search.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "model/lane_graph_model.hpp"
 
 #include "model/constraints/families.hpp"
+#include "model/deadline.hpp"
 
 namespace conelane {
 

@@ -1,5 +1,6 @@
 #include "conelane/lane_graph_problem.hpp"
 
+#include "model/deadline.hpp"
 #include "model/geometry.hpp"
 #include "model/shape_costs.hpp"
 

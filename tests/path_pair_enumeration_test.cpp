@@ -1,5 +1,7 @@
 #include "graph_search/path_pair_enumeration.hpp"
 
+#include "model/deadline.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "solvers/relaxation/lp_relaxation.hpp"
 
+#include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/detail/coin_deadline.hpp"
 #include "solvers/milp/detail/osi_program.hpp"

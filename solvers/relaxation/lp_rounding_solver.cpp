@@ -1,5 +1,6 @@
 #include "solvers/relaxation/lp_rounding_solver.hpp"
 
+#include "model/deadline.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 
 #include <vector>

@@ -1,5 +1,6 @@
 #include "solvers/relaxation/nlopt_relaxation.hpp"
 
+#include "model/deadline.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 

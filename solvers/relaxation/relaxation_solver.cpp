@@ -1,5 +1,6 @@
 #include "solvers/relaxation/relaxation_solver.hpp"
 
+#include "model/deadline.hpp"
 #include "solvers/detail/guarded_solve.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/relaxation/lp_relaxation.hpp"
