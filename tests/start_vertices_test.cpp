@@ -50,6 +50,31 @@ TEST(StartPairs, LeavesOutPairsThatNoLaneCanStartWith) {
     EXPECT_THAT(start_pairs(scene_of({}), 3, {}), IsEmpty());
 }
 
+TEST(StartPairs, KeepToTheWidthsOfTheLanesBounds) {
+    const Scene narrow = scene_of({{1, 1.2}, {1, -1.2}});
+    LaneBounds bounds;
+    bounds.w_min_m = 2.0;
+    EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), ElementsAre(StartPair{0, 1}));
+    bounds.w_max_m = 2.4;
+    EXPECT_THAT(start_pairs(narrow, 3, {}, bounds), IsEmpty());
+}
+
+TEST(StartPairs, OfACrowdAreThoseOfTheNearestVertices) {
+    std::vector<Point> points;
+    for (int i = 0; i < 400; ++i) {
+        points.emplace_back(7.0 - 0.01 * i, 2.0);
+        points.emplace_back(7.0 - 0.01 * i, -2.0);
+    }
+    StartPairs pairs;
+    pairs.find(scene_of(points), {}, {});
+    EXPECT_FALSE(pairs.complete());
+    EXPECT_EQ(pairs.ranked().size(), StartPairs::kMostVertices * StartPairs::kMostVertices);
+    EXPECT_EQ(pairs.ranked().front().pair, (StartPair{798, 799})) << "the nearest two";
+    points.resize(2 * StartPairs::kMostVertices);
+    pairs.find(scene_of(points), {}, {});
+    EXPECT_TRUE(pairs.complete());
+}
+
 TEST(StartPairMeasures, ByHand) {
     for (const double sign : {1.0, -1.0}) {  // the scene and its mirror image
         const Scene scene = scene_of({{3.0, sign * 1.5}, {-1.0, sign * -4.5}});
