@@ -1,13 +1,21 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/files/interruption.hpp"
 #include "experiments/provenance.hpp"
 
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace {
 
@@ -20,6 +28,25 @@ std::string one_line(std::string text) {
     }
     while (!text.empty() && text.back() == ' ') text.pop_back();
     return text;
+}
+
+/// A stream that was closed at the start would be given to the next file that is opened, which then holds the
+/// program's messages. It becomes one that refuses them.
+void open_standard_streams() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+        // The lowest free number is taken, which is this one.
+        if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor) std::abort();
+    }
+}
+
+/// The exit code, or that of a failure where the output did not reach its place.
+int flushed(int exit_code) {
+    std::cout.flush();
+    const bool failed_before = std::ferror(stdout) != 0 || !std::cout;
+    if (std::fflush(stdout) == 0 && !failed_before) return exit_code;
+    fmt::print(stderr, "conelane: standard output cannot be written to its end\n");
+    return kBadInput;
 }
 
 /// An unset variable of a script must not pass for an option that was not given.
@@ -44,22 +71,23 @@ int run(int argument_count, char** arguments) {
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);
-    experiments::add_extras_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
     experiments::add_methods_command(program);
+    experiments::add_drive_command(program);
     experiments::add_score_command(program);
     experiments::add_solve_command(program);
     experiments::add_solvers_command(program);
     experiments::add_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
-    experiments::add_formulations_command(program);
-    experiments::add_backends_command(program);
-    experiments::add_optimality_command(program);
-    experiments::add_relaxations_command(program);
+    experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);
+    // All options are read by then, and no command has begun.
+    program.parse_complete_callback([&program] {
+        for (CLI::App* command : program.get_subcommands()) experiments::refuse_lost_inputs(*command);
+    });
     try {
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& help) {
@@ -70,6 +98,7 @@ int run(int argument_count, char** arguments) {
         fmt::print(stderr, "conelane: {}\n", one_line(bad_option.what()));
         return kBadInput;
     } catch (const std::exception& failure) {
+        if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` says it
         fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
         return kBadInput;
     }
@@ -83,5 +112,7 @@ int run(int argument_count, char** arguments) {
 }  // namespace
 
 int main(int argument_count, char** arguments) {
-    return run(argument_count, arguments);
+    open_standard_streams();
+    conelane::experiments::end_cleanly_on_signals();
+    return flushed(run(argument_count, arguments));
 }

@@ -99,18 +99,23 @@ class Checker {
     [[nodiscard]] bool is_near(std::size_t cone) const {
         return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
     }
+    /// More edges may mend it.
     void violated(std::string what) { report_.violations.push_back(std::move(what)); }
+    void violated_for_good(std::string what) {
+        violated(std::move(what));
+        report_.is_final = true;
+    }
 
     bool edges_are_simple() {
         std::set<std::pair<std::size_t, std::size_t>> seen;
         for (const Edge& edge : graph_.edges) {
             if (edge.i >= scene_.cones.size() || edge.j >= scene_.cones.size()) {
-                violated("an edge ends in no cone of the scene");
+                violated_for_good("an edge ends in no cone of the scene");
                 return false;
             }
-            if (edge.i == edge.j) violated("edge " + name(edge) + " is a loop");
+            if (edge.i == edge.j) violated_for_good("edge " + name(edge) + " is a loop");
             if (!seen.emplace(std::min(edge.i, edge.j), std::max(edge.i, edge.j)).second) {
-                violated("edge " + name(edge) + " is there twice");
+                violated_for_good("edge " + name(edge) + " is there twice");
             }
             neighbours_[edge.i].push_back(edge.j);
             neighbours_[edge.j].push_back(edge.i);
@@ -122,7 +127,7 @@ class Checker {
         std::vector<std::size_t> near_ends, far_ends;
         for (const auto& [cone, others] : neighbours_) {
             if (others.size() > 2)
-                violated("(2) cone " + name(cone) + " has degree " + std::to_string(others.size()));
+                violated_for_good("(2) cone " + name(cone) + " has degree " + std::to_string(others.size()));
             if (others.size() == 1) (is_near(cone) ? near_ends : far_ends).push_back(cone);
         }
         const std::size_t ends = near_ends.size() + far_ends.size();
@@ -161,7 +166,7 @@ class Checker {
                 degrees += neighbours_[cone].size();
                 if (neighbours_[cone].size() == 1 && is_near(cone)) ++near_ends;
             }
-            if (degrees / 2 >= component.size()) violated("(5) a cycle through cone " + name(start));
+            if (degrees / 2 >= component.size()) violated_for_good("(5) a cycle through cone " + name(start));
             if (p_.pairing == Pairing::near_far && near_ends == 2) {
                 violated("pairing: the path through cone " + name(start) + " joins both near endpoints");
             }
@@ -179,10 +184,10 @@ class Checker {
                 const Real ends = std::min({length(at[0] - at[2]), length(at[0] - at[3]),
                                             length(at[1] - at[2]), length(at[1] - at[3])});
                 if (nearest.distance < static_cast<Real>(p_.d_min) - kTie && ends > nearest.distance + kTie) {
-                    violated("(6) edges " + name(a) + " and " + name(b) + " are closer than d_min");
+                    violated_for_good("(6) edges " + name(a) + " and " + name(b) + " are closer than d_min");
                 }
                 if (p_.forbid_crossing && cross(at[0], at[1], at[2], at[3])) {
-                    violated("crossing: edges " + name(a) + " and " + name(b) + " cross");
+                    violated_for_good("crossing: edges " + name(a) + " and " + name(b) + " cross");
                 }
             }
         }
@@ -265,7 +270,6 @@ class Checker {
 
     void costs() {
         Real sum = 0;
-        int along_heading = 0;
         const std::vector<FacingEdge> facing = p_.w_v > 0 ? facing_edges() : std::vector<FacingEdge>{};
         for (const Edge& edge : graph_.edges) {
             const Vector from = position(edge.i);
@@ -273,8 +277,8 @@ class Checker {
             const Vector v = to - from;
             const Real spacing = fourth((length(v) - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
             if (spacing > static_cast<Real>(p_.s_crit) + kTie)
-                violated("(27) edge " + name(edge) + " exceeds s_crit");
-            if (length(v) == 0) violated("edge " + name(edge) + " has no length");
+                violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
+            if (length(v) == 0) violated_for_good("edge " + name(edge) + " has no length");
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
             sum += static_cast<Real>(p_.w_s) * spacing +
@@ -283,12 +287,13 @@ class Checker {
                 nearest_points(from, to, car_, car_).distance <= static_cast<Real>(p_.d_h) + kTie;
             const Real angle = std::atan2(across, std::abs(dot(v, heading_)));
             const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
-            if (along_the_heading) ++along_heading;
+            if (along_the_heading) ++report_.along_heading;
             sum += static_cast<Real>(p_.w_color) * static_cast<Real>(color_faults(edge, along_the_heading));
             if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge, facing);
         }
-        if (along_heading < 2)
-            violated("(9) " + std::to_string(along_heading) + " edges along the heading instead of 2");
+        if (report_.along_heading < 2)
+            violated("(9) " + std::to_string(report_.along_heading) +
+                     " edges along the heading instead of 2");
         for (const auto& [cone, others] : neighbours_) {
             if (others.size() == 1 && is_near(cone)) sum -= near_end_benefit(cone);
             for (std::size_t a = 0; a < others.size(); ++a) {
@@ -299,7 +304,7 @@ class Checker {
                     const Real cost =
                         fourth((angle - static_cast<Real>(p_.theta_e)) / static_cast<Real>(p_.theta_t));
                     if (cost > static_cast<Real>(p_.t_crit) + kTie)
-                        violated("(28) the angle at cone " + name(cone) + " exceeds t_crit");
+                        violated_for_good("(28) the angle at cone " + name(cone) + " exceeds t_crit");
                     const Real uneven = (length(to_a) - length(to_b)) / static_cast<Real>(p_.d_t);
                     sum += static_cast<Real>(p_.w_t) * cost + static_cast<Real>(p_.w_u) * uneven * uneven;
                 }

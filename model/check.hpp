@@ -4,6 +4,7 @@
 #include "model/rld_parameters.hpp"
 #include "model/scene.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@ struct CheckReport {
     std::vector<std::string>
         violations;                   ///< a sentence each, naming constraint and cones; empty: a lane graph
     std::optional<double> objective;  ///< (29), where every edge joins two cones of the scene
+    std::size_t along_heading = 0;    ///< edges that count in (9)
+    /// A violation stays whatever edges are added: one of (2), (5), (6), (27), (28), a crossing, or an edge
+    /// that is none.
+    bool is_final = false;
 };
 
 /// Recomputes every constraint of the model and the objective from the scene alone. Shares no code with the

@@ -1,14 +1,17 @@
 // The program as a user or a script calls it: files in, files out, one line and exit code 2 on bad input.
 
+#include "experiments/files/folder_lock.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/parameter_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "tests/file_test.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <map>
 #include <string>
 #include <thread>
@@ -18,11 +21,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace conelane::experiments {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Program : public FileTest {
   protected:
@@ -69,7 +74,8 @@ TEST_F(Program, HelpIsEverywhere) {
     EXPECT_EQ(run("--help").exit_code, 0);
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
-          "formulations", "optimality", "backends", "report", "tune", "extras"}) {
+          "study", "study formulations", "study optimality", "study backends", "study relaxations",
+          "study confidence-and-colour", "report", "tune"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -106,7 +112,7 @@ TEST_F(Program, BadOptionsAreNamed) {
     // As a script leaves them whose variable is not set.
     expect_refused("scenes --tracks generated:circle --out ''", {"--out", "empty"});
     expect_refused("compare --tracks generated:circle --fp '' --out results", {"--fp", "empty"});
-    expect_refused("formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
+    expect_refused("study formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
     expect_refused("certify --scenes a.scenes.jsonl --verify ''", {"--verify", "empty"});
     expect_refused("solve --scenes a.scenes.jsonl --params '' --out l.solutions.jsonl",
                    {"--params", "empty"});
@@ -217,8 +223,8 @@ TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     file_with("{", "bad.scenes.jsonl");
     std::filesystem::create_directory(path("folder"));
     for (const char* command :
-         {"detect --method clc", "solve", "certify", "formulations", "backends", "optimality", "relaxations",
-          "export --id a", "import-solution --id a --sol a.sol"}) {
+         {"detect --method clc", "solve", "certify", "study formulations", "study backends",
+          "study optimality", "study relaxations", "export --id a", "import-solution --id a --sol a.sol"}) {
         const std::string begun = std::string(command) + " --scenes bad.scenes.jsonl --out ";
         expect_refused(begun + "nowhere/x.lp", {"--out", "nowhere/x.lp"});
         expect_refused(begun + "folder", {"--out", "folder"});
@@ -273,6 +279,60 @@ TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
     file_with("{", "bad.scenes.jsonl");
     EXPECT_EQ(run("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl").exit_code, 2);
     EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+}
+
+/// Under another name, through links, by the companion: nothing that is read is written.
+TEST_F(Program, AnOutputIsNoInput) {
+    make_scenes("--fp 0.2");
+    const std::string scenes = text_of(path("s.scenes.jsonl"));
+    std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));
+    std::filesystem::create_hard_link(path("s.scenes.jsonl"), path("hard"));
+    std::filesystem::create_directory(path("sub"));
+    for (const char* command : {"detect --method clc", "solve", "certify", "export --id a"}) {
+        for (const char* out :
+             {"s.scenes.jsonl", "./sub/../s.scenes.jsonl", "link", "hard", "s.tracks.json"}) {
+            expect_refused(std::string(command) + " --scenes s.scenes.jsonl --out " + out,
+                           {"--out", out, "--scenes"});
+        }
+        expect_refused(std::string(command) + " --scenes link --out s.scenes.jsonl", {"--out", "--scenes"});
+    }
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    expect_refused("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json l.lanes.jsonl",
+                   {"--json", "l.lanes.jsonl", "--lanes"});
+    ASSERT_EQ(run("certify --scenes s.scenes.jsonl --out c.certificates.jsonl").exit_code, 0);
+    write_rld_parameters(path("p.json"), RldParameters{});
+    expect_refused("solve --scenes s.scenes.jsonl --params p.json --out p.json", {"--out", "--params"});
+    file_with("tag,x,y,direction,x_variance,y_variance,xy_covariance\n", "t.csv");
+    expect_refused("scenes --tracks eufs:t.csv --out t.csv", {"--out", "--tracks"});
+    std::filesystem::create_directory(path("r"));
+    file_with("", "r/results.jsonl");
+    expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
+    EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
+    // What is no file may have a file's name.
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+}
+
+TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
+    make_scenes("--fp 0.2");
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    const auto exit_code = [&](const std::string& arguments) {
+        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
+                                    " 2>" + path("stderr").string();
+        return WEXITSTATUS(std::system(command.c_str()));
+    };
+    for (const char* command :
+         {"methods", "--version", "--help", "score --scenes s.scenes.jsonl --lanes l.lanes.jsonl"}) {
+        for (const char* stream : {" >/dev/full", " >&-"}) {
+            EXPECT_EQ(exit_code(std::string(command) + stream), 2) << command << stream;
+            EXPECT_EQ(text_of(path("stderr")), "conelane: standard output cannot be written to its end\n");
+        }
+    }
+    // A closed output is not given to the next file that is opened.
+    EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
+    EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));
+    EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out m.lanes.jsonl >&-"), 0)
+        << "it has nothing to say";
 }
 
 TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
@@ -345,6 +405,117 @@ TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
 }
 
+/// One line for each claim, whoever makes it; the scene has ten cones in two rows, or too few.
+class Claims : public Program {
+  protected:
+    static nlohmann::json scene(const std::string& id, int pairs) {
+        nlohmann::json scene{{"id", id}, {"pose", {{"x", -1}, {"y", 0}, {"yaw", 0}}}};
+        for (int i = 0; i < pairs; ++i) {
+            scene["cones"].push_back({{"id", 1 + i}, {"x", 4.0 * i}, {"y", 1.75}});
+            scene["cones"].push_back({{"id", 101 + i}, {"x", 4.0 * i}, {"y", -1.75}});
+        }
+        return scene;
+    }
+    static std::string infeasible(const std::string& id, const std::string& solver) {
+        return nlohmann::json{{"scene", id},
+                              {"solver", solver},
+                              {"formulation", "tight"},
+                              {"status", "infeasible"},
+                              {"edges", nlohmann::json::array()},
+                              {"build_ms", 1},
+                              {"solve_ms", 1}}
+                   .dump() +
+               "\n";
+    }
+    Outcome check(const std::string& solutions, const std::string& options = "") {
+        file_with(solutions, "c.solutions.jsonl");
+        return run("check --scenes c.scenes.jsonl --solutions c.solutions.jsonl " + options);
+    }
+};
+
+TEST_F(Claims, AnUnprovenInfeasibleFails) {
+    file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
+    for (const char* solver : {"cbc", "path-pair", "exhaustive", "stranger"}) {
+        const Outcome outcome = check(infeasible("lane", solver));
+        EXPECT_EQ(outcome.exit_code, 1) << solver;
+        EXPECT_THAT(outcome.output, HasSubstr("lane: " + std::string(solver) + " claims infeasible, but"));
+        EXPECT_THAT(outcome.output, HasSubstr("0 passed, 1 failed"));
+    }
+    // Too many cones for a search of the checker's own: a solver finds the lane graph, the checker accepts
+    // it.
+    make_scenes("--fp 0.3", "c");
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("c.scenes.jsonl"));
+    std::string forged;
+    for (AnnotatedScene scene : scenes) forged += infeasible(scene.scene.id, "cbc");
+    const Outcome outcome = check(forged);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.output, HasSubstr("0 passed, " + std::to_string(scenes.size()) + " failed"));
+}
+
+TEST_F(Claims, AProvenInfeasiblePasses) {
+    // A pair of cones is no lane; far away ones have no edge that counts in (9).
+    nlohmann::json behind = scene("behind", 5);
+    behind["pose"]["x"] = 100;
+    file_with(scene("pair", 1).dump() + "\n" + behind.dump() + "\n", "c.scenes.jsonl");
+    const Outcome outcome = check(infeasible("pair", "path-pair") + infeasible("behind", "path-pair"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("2 passed, 0 failed"));
+}
+
+TEST_F(Claims, AnInfeasibleThatNothingConfirmsFails) {
+    file_with(scene("a", 30).dump() + "\n", "c.scenes.jsonl");
+    const Outcome outcome = check(infeasible("a", "cbc"), "--time-limit 1e-6");
+    EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+    EXPECT_THAT(outcome.output, HasSubstr("neither confirmed nor refuted"));
+}
+
+TEST_F(Claims, AMissingAnswerFails) {
+    std::string scenes;
+    for (int i = 0; i < 22; ++i) scenes += scene("s" + std::to_string(i), 5).dump() + "\n";
+    file_with(scenes, "c.scenes.jsonl");
+    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out all.solutions.jsonl").exit_code, 0);
+    const std::string all = text_of(path("all.solutions.jsonl"));
+    EXPECT_EQ(check(all).exit_code, 0);
+    const Outcome one = check(all.substr(0, all.find('\n') + 1));
+    EXPECT_EQ(one.exit_code, 1);
+    EXPECT_THAT(one.output, HasSubstr("s21: cbc (tight) gives no answer"));
+    EXPECT_THAT(one.output, HasSubstr("1 passed, 21 failed"));
+    const Outcome partial = check(all.substr(0, all.find('\n') + 1), "--partial");
+    EXPECT_EQ(partial.exit_code, 0);
+    EXPECT_THAT(partial.output, HasSubstr("1 passed, 0 failed"));
+}
+
+/// An optimum is none where another lane graph of the file is better.
+TEST_F(Claims, ABetterLaneGraphRefutesAnOptimum) {
+    file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
+    ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out best.solutions.jsonl").exit_code, 0);
+    ASSERT_EQ(run("solve --nearest 8 --scenes c.scenes.jsonl --out some.solutions.jsonl").exit_code, 0);
+    nlohmann::json some = nlohmann::json::parse(text_of(path("some.solutions.jsonl")));
+    EXPECT_EQ(some["nearest"], 8);
+    EXPECT_EQ(check(some.dump() + "\n").exit_code, 0) << "the optimum of its cone set";
+    some.erase("nearest");
+    some["solver"] = "hasty";
+    const Outcome outcome = check(some.dump() + "\n" + text_of(path("best.solutions.jsonl")));
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.output, HasSubstr("lane: hasty claims the bound"));
+    EXPECT_THAT(outcome.output, HasSubstr("1 passed, 1 failed"));
+}
+
+TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
+    file_with(scene("lane", 8).dump() + "\n", "c.scenes.jsonl");
+    ASSERT_EQ(
+        run("solve --solver cbc --time-limit 1e-6 --scenes c.scenes.jsonl --out c.solutions.jsonl").exit_code,
+        0);
+    const std::string solutions = text_of(path("c.solutions.jsonl"));
+    const nlohmann::json record = nlohmann::json::parse(solutions);
+    EXPECT_EQ(record["status"], "time_limit");
+    EXPECT_EQ(record["stopped_by"], "time");
+    const Outcome outcome = check(solutions);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.output, HasSubstr("1 claim nothing"));
+    EXPECT_THAT(outcome.output, HasSubstr("0 passed, 0 failed"));
+}
+
 /// What faces an edge is a matter of the cone set.
 TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     make_scenes("--fp 0.5");
@@ -353,7 +524,9 @@ TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     const Outcome good = run("check " + on + "--solutions n.solutions.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
-    EXPECT_EQ(run("check --params shape --scenes s.scenes.jsonl --solutions n.solutions.jsonl").exit_code, 1);
+    const std::string shape = "check --params shape --scenes s.scenes.jsonl --solutions n.solutions.jsonl ";
+    EXPECT_EQ(run(shape).exit_code, 0) << "the solutions say it";
+    EXPECT_EQ(run(shape + "--nearest 20").exit_code, 1);
 }
 
 TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
@@ -418,7 +591,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
-TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
+TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColourStudyUses) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
         "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
@@ -437,19 +610,20 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
     EXPECT_TRUE(record.contains("wrong_cones"));
     EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
 
-    const Outcome extras = run("extras --record p.record.json --out extras.jsonl");
-    ASSERT_EQ(extras.exit_code, 0) << extras.errors;
-    EXPECT_THAT(extras.output, HasSubstr("colours, 20 % wrong"));
+    const Outcome study = run("study confidence-and-colour --record p.record.json --out study.jsonl");
+    ASSERT_EQ(study.exit_code, 0) << study.errors;
+    EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
     // Geometry alone, on the held-out tracks: what the tuning says.
-    std::ifstream lines(path("extras.jsonl"));
+    std::ifstream lines(path("study.jsonl"));
     std::string first;
     std::getline(lines, first);
     const nlohmann::json geometry = nlohmann::json::parse(first);
     EXPECT_EQ(geometry["known"], "geometry alone");
     EXPECT_EQ(geometry["context"], 16);
     EXPECT_NEAR(geometry["accurate"].get<double>(), record["held_out_figures"]["mean"].get<double>(), 1e-12);
-    expect_refused("extras --record p.json", {"p.json"});
-    expect_refused("extras --record p.record.json --tracks generated:circle", {"--tracks", "straight"});
+    expect_refused("study confidence-and-colour --record p.json", {"p.json"});
+    expect_refused("study confidence-and-colour --record p.record.json --tracks generated:circle",
+                   {"--tracks", "straight"});
 }
 
 /// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a
@@ -491,14 +665,36 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(results_in(path("stopped")).size(), 4U * 2U);  // methods, rates
 }
 
-TEST_F(Program, OtherOptionsInTheSameDirectoryStartAnew) {
-    ASSERT_EQ(
-        run("compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results").exit_code, 0);
+TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
+    const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
+    const std::string record = text_of(path("results") / "run.json");
+    expect_refused(clc + "--fp 0,0.3", {"results", "differs in fp", "--overwrite"});
+    expect_refused(clc + "--fp 0 --time-limit 77", {"results", "time_limit_ms", "--overwrite"});
+    expect_refused("sweep --tracks generated:circle --sizes 8 --out results", {"results", "--overwrite"});
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes);
+    EXPECT_EQ(text_of(path("results") / "run.json"), record);
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes)
+        << "times of the first run: it has resumed";
     const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
-    ASSERT_EQ(
-        run("compare --tracks generated:circle --every 15 --methods clc --fp 0,0.3 --out results").exit_code,
-        0);
+    ASSERT_EQ(run(clc + "--fp 0,0.3 --overwrite").exit_code, 0);
     EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
+    std::filesystem::remove(path("results") / "run.json");
+    expect_refused(clc + "--fp 0", {"results", "run.json", "--overwrite"});
+}
+
+TEST_F(Program, OneComparisonAtATimeWritesIntoAFolder) {
+    const std::string clc =
+        "compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results ";
+    std::filesystem::create_directory(path("results"));
+    {
+        const FolderLock lock(path("results"));
+        expect_refused(clc, {"results", "another conelane is writing there"});
+        expect_refused(clc + "--overwrite", {"results", "another conelane is writing there"});
+    }
+    EXPECT_EQ(run(clc).exit_code, 0);
 }
 
 TEST_F(Program, MergedShardsEqualOneRun) {
@@ -520,6 +716,10 @@ TEST_F(Program, MergedShardsEqualOneRun) {
         run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
     expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
     expect_refused("compare --shard 3/3 --out again", {"--shard"});
+    const std::string part = text_of(path("part1") / "run.json");
+    expect_refused("merge part0 part1 part2 --overwrite --out part1", {"part1", "one of the shards"});
+    EXPECT_EQ(text_of(path("part1") / "run.json"), part);
+    expect_refused("merge part0 part1 part2 --out other", {"other", "--overwrite"});
 }
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
@@ -536,7 +736,7 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
 
 TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     make_scenes("--fp 0.2");
-    const Outcome optimality = run("optimality --scenes s.scenes.jsonl --out optimality.jsonl");
+    const Outcome optimality = run("study optimality --scenes s.scenes.jsonl --out optimality.jsonl");
     ASSERT_EQ(optimality.exit_code, 0) << optimality.errors;
     EXPECT_THAT(optimality.output, HasSubstr("equal %"));
     std::ifstream lines(path("optimality.jsonl"));
@@ -550,13 +750,25 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
                          std::max(0.0, candidate - optimum) / std::max(1.0, std::abs(optimum)));
     }
     EXPECT_EQ(rows, read_scenes(path("s.scenes.jsonl")).size());
-    const Outcome backends = run("backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
+    const Outcome backends = run("study backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
     ASSERT_EQ(backends.exit_code, 0) << backends.errors;
-    EXPECT_THAT(backends.output, HasSubstr("cbc-main/paper"));
-    expect_refused("optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
+    EXPECT_THAT(backends.output, HasSubstr("cbc-main/tight"));
+    EXPECT_THAT(backends.output, HasSubstr("exhaustive"));
+    const Outcome printed =
+        run("study backends --scenes s.scenes.jsonl --sizes 6,10 --solvers all,cbc-main/paper");
+    ASSERT_EQ(printed.exit_code, 0) << printed.errors;
+    EXPECT_THAT(printed.output, HasSubstr("cbc-main/paper"));
+    EXPECT_THAT(printed.output, HasSubstr("exhaustive takes at most 9 cones: left out at n = 10"));
+    expect_refused("study optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
                    {"method", "enumerate"});
-    expect_refused("optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
-    expect_refused("backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    expect_refused("study optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
+    expect_refused("study backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
+                   {"--solvers", "magic"});
+    const Outcome list = run("study");
+    EXPECT_EQ(list.exit_code, 0);
+    EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    expect_refused("study magic", {"magic"});
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {
@@ -566,6 +778,97 @@ TEST_F(Program, SweepComparesConeSetSizes) {
     for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
         EXPECT_EQ(record.nearest, 8U);
         EXPECT_LE(record.answer.lane.left.size() + record.answer.lane.right.size(), 8U);
+    }
+}
+
+/// Work that is begun, and a signal to all of it, as Ctrl-C gives.
+class Interruption : public Program {
+  protected:
+    /// Runs the program until `begun` says so, then ends it by the signal. Its temporary files go to `tmp`.
+    void interrupt(const std::string& arguments, int signal, const std::function<bool()>& begun) {
+        std::filesystem::create_directories(path("tmp"));
+        const std::string command = "cd " + path("").string() + " && TMPDIR=tmp exec " CONELANE_PROGRAM " " +
+                                    arguments + " >stdout 2>stderr";
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::setpgid(0, 0);
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            ::_exit(127);
+        }
+        ::setpgid(child, child);
+        int status = 0;
+        bool ready = false;
+        for (int wait = 0; wait < 6000 && !(ready = begun()); ++wait) {
+            ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        EXPECT_TRUE(ready);
+        ::kill(-child, signal);
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << "status " << status;
+        EXPECT_EQ(text_of(path("stderr")), "conelane: interrupted\n");
+        EXPECT_EQ(text_of(path("stdout")), "");
+        EXPECT_TRUE(std::filesystem::is_empty(path("tmp")));
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(""))) {
+            EXPECT_THAT(entry.path().string(), Not(HasSubstr(".tmp")));
+        }
+    }
+    /// Seconds of work.
+    void make_dense_scenes() {
+        ASSERT_EQ(run("scenes --tracks generated:kidney --every 1.1 --fp 0,0.1,0.2,0.3,0.4,0.5 --out "
+                      "s.scenes.jsonl")
+                      .exit_code,
+                  0);
+    }
+    [[nodiscard]] bool has_a_temporary_file(const std::string& folder) const {
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(folder))) {
+            if (entry.path().string().find(".tmp") != std::string::npos) return true;
+        }
+        return false;
+    }
+};
+
+TEST_F(Interruption, OfADetectionLeavesTheOldAnswers) {
+    make_dense_scenes();
+    file_with("old\n", "l.lanes.jsonl");
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        const auto start = std::chrono::steady_clock::now();
+        interrupt("detect --method rld-cbc --nearest 30 --scenes s.scenes.jsonl --out l.lanes.jsonl", signal,
+                  [&] { return std::chrono::steady_clock::now() - start > std::chrono::milliseconds(400); });
+        EXPECT_EQ(text_of(path("l.lanes.jsonl")), "old\n");
+    }
+}
+
+TEST_F(Interruption, OfAComparisonLeavesWhatItAnsweredAndTheNextOneGoesOn) {
+    const std::string compare =
+        "compare --tracks generated:circle generated:kidney --every 4 --fp 0,0.1,0.2,0.3 --methods "
+        "clc,rld-cbc "
+        "--nearest 20 --out results";
+    const auto part = path("results") / "rld-cbc.n020.lanes.jsonl.part";
+    interrupt(compare, SIGINT, [&] { return !text_of(part).empty(); });
+    const std::string answered = text_of(part);
+    const std::string whole_laps = answered.substr(0, answered.rfind('\n') + 1);
+    const std::string clc = text_of(path("results") / "clc.n020.lanes.jsonl");
+    ASSERT_FALSE(std::filesystem::exists(path("results") / "rld-cbc.n020.lanes.jsonl"))
+        << "it was done too early";
+    ASSERT_EQ(run(compare).exit_code, 0);
+    EXPECT_EQ(text_of(path("results") / "clc.n020.lanes.jsonl"), clc);
+    EXPECT_TRUE(text_of(path("results") / "rld-cbc.n020.lanes.jsonl").starts_with(whole_laps.substr(0, 200)));
+}
+
+TEST_F(Interruption, OfAReportLeavesNoPage) {
+    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --methods clc --out results").exit_code, 0);
+    if (!std::filesystem::exists(path("results") / "report.html"))
+        GTEST_SKIP() << "no Python with matplotlib";
+    for (const int signal : {SIGINT, SIGTERM}) {
+        interrupt("report --results results --out page.html --png pictures", signal, [&] {
+            for (const auto& entry : std::filesystem::recursive_directory_iterator(path("tmp"))) {
+                if (entry.path().filename() == "report.zip") return true;
+            }
+            return false;
+        });
+        EXPECT_FALSE(std::filesystem::exists(path("page.html")));
+        EXPECT_FALSE(std::filesystem::exists(path("pictures")));
     }
 }
 

@@ -113,6 +113,18 @@ TEST_F(LaneFileTest, NamesBadRecords) {
     EXPECT_TRUE(read_lanes(file_with("")).empty());
 }
 
+/// Version 0.1 knew one limit.
+TEST_F(LaneFileTest, ReadsTheOldNameOfAStop) {
+    const std::vector<LaneRecord> read =
+        read_lanes(file_with(lane("time_limit", "[]") + lane("stopped", "[]", R"(, "nearest": 6)") +
+                             lane("stopped", "[]", R"(, "stopped_by": "iterations", "nearest": 7)")));
+    ASSERT_EQ(read.size(), 3u);
+    EXPECT_EQ(read[0].answer.status, LaneStatus::stopped);
+    EXPECT_EQ(read[0].answer.stopped_by, StopReason::time);
+    EXPECT_FALSE(read[1].answer.stopped_by.has_value());
+    EXPECT_EQ(read[2].answer.stopped_by, StopReason::iterations);
+}
+
 class SolutionFileTest : public FileTest {
   protected:
     [[nodiscard]] std::string error_in(const std::string& text) const {
@@ -125,10 +137,13 @@ class SolutionFileTest : public FileTest {
 };
 
 TEST_F(SolutionFileTest, RoundTrip) {
-    const SolutionRecord optimal{"a",     "cbc",   "tight", "optimal", "", {{49, 17}, {5, 10}},
-                                 -3.2187, -3.2187, 0,       0.41,      2.9};
-    const SolutionRecord failed{"b", "cbc", "tight", "error", "no licence", {}, {}, -kInfinity, {}, 0.5, 0.0};
-    write_solutions(path("s"), std::vector{optimal, failed});
+    const SolutionRecord optimal{"a", "cbc", "tight", "optimal", "", {{49, 17}, {5, 10}}, -3.2187, -3.2187,
+                                 0,   0.41,  2.9,     {},        {}};
+    const SolutionRecord failed{"b",        "cbc", "tight", "error", "no licence", {}, {},
+                                -kInfinity, {},    0.5,     0.0,     {},           {}};
+    const SolutionRecord stopped{"c", "cbc", "tight", "time_limit",     "", {}, {}, {},
+                                 {},  0.5,   0.0,     StopReason::time, 12U};
+    write_solutions(path("s"), std::vector{optimal, failed, stopped});
     EXPECT_EQ(
         text_of(path("s")),
         R"({"scene":"a","solver":"cbc","formulation":"tight","status":"optimal","edges":[[49,17],[5,10]],)"
@@ -136,9 +151,12 @@ TEST_F(SolutionFileTest, RoundTrip) {
         "\n"
         R"({"scene":"b","solver":"cbc","formulation":"tight","status":"error","edges":[],)"
         R"("build_ms":0.5,"solve_ms":0.0,"message":"no licence"})"
+        "\n"
+        R"({"scene":"c","solver":"cbc","formulation":"tight","status":"time_limit","edges":[],)"
+        R"("build_ms":0.5,"solve_ms":0.0,"stopped_by":"time","nearest":12})"
         "\n");
     const std::vector<SolutionRecord> read = read_solutions(path("s"));
-    ASSERT_EQ(read.size(), 2u);
+    ASSERT_EQ(read.size(), 3u);
     EXPECT_EQ(read[0].solver, "cbc");
     EXPECT_EQ(read[0].formulation, "tight");
     EXPECT_EQ(read[0].status, "optimal");
@@ -152,6 +170,9 @@ TEST_F(SolutionFileTest, RoundTrip) {
     EXPECT_FALSE(read[1].objective.has_value());
     EXPECT_FALSE(read[1].bound.has_value());
     EXPECT_FALSE(read[1].nodes.has_value());
+    EXPECT_FALSE(read[1].stopped_by.has_value());
+    EXPECT_EQ(read[2].stopped_by, StopReason::time);
+    EXPECT_EQ(read[2].nearest, 12U);
 }
 
 TEST_F(SolutionFileTest, NamesBadRecords) {

@@ -1,6 +1,6 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
@@ -37,6 +37,11 @@ Shard parse_shard(const std::string& text) {
     throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
 }
 
+void add_overwrite_flag(CLI::App& command, bool& overwrite) {
+    command.add_flag("--overwrite", overwrite,
+                     "replace another comparison in that directory; without it that is refused");
+}
+
 void add_shared_options(CLI::App& command, Options& options) {
     ComparisonOptions& comparison = options.comparison;
     command.add_option(
@@ -59,6 +64,7 @@ void add_shared_options(CLI::App& command, Options& options) {
         .add_option("--out", options.directory,
                     "directory of the results; a run that was stopped there goes on")
         ->required();
+    add_overwrite_flag(command, comparison.overwrite);
 }
 
 /// The results are whole without the page, which takes Python and matplotlib.
@@ -136,10 +142,12 @@ void add_merge_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("merge", "joins the shards of one comparison");
     auto shards = std::make_shared<std::vector<std::filesystem::path>>();
     auto directory = std::make_shared<std::string>();
+    auto overwrite = std::make_shared<bool>(false);
     command.add_option("shards", *shards, "directories of all shards, in any order")->required();
     command.add_option("--out", *directory, "directory of the whole")->required();
-    command.callback([shards, directory] {
-        fmt::print("{}\n", score_table(merge(*shards, *directory)));
+    add_overwrite_flag(command, *overwrite);
+    command.callback([shards, directory, overwrite] {
+        fmt::print("{}\n", score_table(merge(*shards, *directory, *overwrite)));
         write_page(*directory);
     });
 }

@@ -1,9 +1,9 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_model.hpp"
 #include "model/program_files.hpp"
@@ -146,7 +146,8 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 void import_solution(const ImportOptions& options) {
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.model.program());
-    const SolutionRecord record = to_record(solution, program, options.source.formulation);
+    SolutionRecord record = to_record(solution, program, options.source.formulation);
+    record.nearest = options.source.nearest;
     write_solutions(options.out, std::array{record});
     fmt::print("{}{}\n", record.status, record.message.empty() ? "" : ": " + record.message);
 }

@@ -1,4 +1,5 @@
 #include "experiments/commands/commands.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/report/report.hpp"
 
 #include <memory>
@@ -28,7 +29,7 @@ void add_report_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("report", "one HTML page from stored results");
     auto options = std::make_shared<Options>();
     command.add_option("--results", options->results, "directory that `conelane compare` wrote")->required();
-    command.add_option("--out", options->page, "PAGE.html")->required();
+    add_output_option(command, "--out", options->page, "PAGE.html")->required();
     command.add_option("--png", options->pictures, "folder for the main figures as PNG too");
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
     command.callback([options] { make_report(*options); });

@@ -1,9 +1,9 @@
 #include "detectors/solve_scene.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
@@ -59,7 +59,9 @@ void solve_all(const Options& options) {
                               report.bound,
                               report.nodes,
                               report.build_ms,
-                              report.solve_ms};
+                              report.solve_ms,
+                              report.stopped_by,
+                              options.nearest};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);

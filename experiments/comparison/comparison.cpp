@@ -73,7 +73,7 @@ std::vector<ScoreRow> compare(const ComparisonOptions& options, const fs::path& 
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
 
     const std::string record = run_record(options);
-    open_run(directory, record);
+    const FolderLock lock = open_run(directory, record, options.overwrite);
     write_scene_set(directory / kScenesFile, set);
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {

@@ -20,15 +20,15 @@ namespace conelane::experiments {
 ///   table.txt              the same for reading
 ///
 /// A run that was stopped goes on after its last whole lap. Returns the rows of the table. Throws InputError
-/// or InvalidInput.
+/// or InvalidInput, so where the directory holds another run (see open_run).
 [[nodiscard]] std::vector<ScoreRow> compare(const ComparisonOptions& options,
                                             const std::filesystem::path& directory);
 
 /// Joins the shards of one run into what the whole run would have written, but for the times. Throws
 /// InputError where they are not all shards of one run: other commit, compiler or options, one missing, one
-/// twice.
+/// twice; where the directory is one of them, or holds another run that may not be overwritten.
 [[nodiscard]] std::vector<ScoreRow> merge(const std::vector<std::filesystem::path>& shards,
-                                          const std::filesystem::path& directory);
+                                          const std::filesystem::path& directory, bool overwrite = false);
 
 /// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there.
 [[nodiscard]] std::vector<ScoreRow> score_directory(const std::filesystem::path& directory,

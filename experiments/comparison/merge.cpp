@@ -1,13 +1,14 @@
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <optional>
 #include <set>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -86,7 +87,13 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
 
 }  // namespace
 
-std::vector<ScoreRow> merge(const std::vector<fs::path>& shards, const fs::path& directory) {
+std::vector<ScoreRow> merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
+    for (const fs::path& shard : shards) {
+        std::error_code ignored;
+        if (fs::equivalent(shard, directory, ignored)) {
+            throw InputError(directory, 0, "", "is one of the shards, so the whole cannot go there");
+        }
+    }
     const ShardedRun run = sort_shards(shards);
     SceneSet set;
     std::vector<std::vector<AnnotatedScene>> scenes;
@@ -99,7 +106,7 @@ std::vector<ScoreRow> merge(const std::vector<fs::path>& shards, const fs::path&
     }
     set.scenes = interleave<AnnotatedScene>(starts, scenes);
 
-    open_run(directory, run.record.dump());
+    const FolderLock lock = open_run(directory, run.record.dump(), overwrite);
     write_scene_set(directory / "scenes.scenes.jsonl", set);
     std::vector<std::string> lanes_files;
     for (const ordered_json& method : run.record.at("methods")) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/comparison/runner.hpp"
+#include "experiments/files/folder_lock.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/scenes/scene_set.hpp"
 
@@ -20,22 +21,26 @@ struct Entrant {
     [[nodiscard]] std::string lanes_file() const;
 };
 
-/// All that the answers of a comparison depend on.
+/// All that the answers of a comparison depend on, and whether they may replace others.
 struct ComparisonOptions {
     std::vector<std::string> tracks;  ///< SPECs of load_tracks
     std::vector<Entrant> entrants;
     SceneOptions scenes;
     RunOptions run;
     Shard shard;
+    bool overwrite = false;  ///< results of another run in the directory
 };
 
-/// The options, and commit, compiler and machine of this program, as a JSON object in one line.
+/// The options, and commit, compiler and machine of this program, as a JSON object in one line. Where the
+/// commit does not say which program it is (changed sources, or none known), a hash of the program does.
 [[nodiscard]] std::string run_record(const ComparisonOptions& options);
 
-/// Makes the directory ready for a run: where its run.json holds the same record, what was answered stays;
-/// else files of another run there are removed first. A record of changed sources ("-dirty") is the same as
-/// no other. Throws InputError.
-void open_run(const std::filesystem::path& directory, const std::string& record);
+/// Makes the directory ready for a run and keeps others out of it: where its run.json holds the same record,
+/// what was answered stays; where it holds results of another run, these are removed with `overwrite`, and
+/// without it nothing is touched and InputError thrown. Throws InputError too where another process is
+/// writing there.
+[[nodiscard]] FolderLock open_run(const std::filesystem::path& directory, const std::string& record,
+                                  bool overwrite);
 
 /// What run.json of a directory holds. Throws InputError.
 [[nodiscard]] std::string read_run_record(const std::filesystem::path& directory);

@@ -59,7 +59,11 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target)
     }
     if (target.filename().empty()) fail(target, EISDIR);
     if (fs::exists(status)) place_ = fs::canonical(target);
-    temporary_ = create_temporary(place_, target);
+    {
+        const auto held = hold_interruption();
+        temporary_ = create_temporary(place_, target);
+        clearing_.emplace([name = temporary_] { ::unlink(name.c_str()); });
+    }
     if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
     stream_.open(temporary_, std::ios::binary | std::ios::trunc);
     if (!stream_) {
@@ -81,10 +85,12 @@ void AtomicFile::commit() {
     // The stream does not keep the reason of a write that failed before.
     if (!stream_) throw InputError(target_, 0, "", "cannot be written to its end");
     if (temporary_.empty()) return;
+    const auto held = hold_interruption();
     std::error_code error;
     fs::rename(temporary_, place_, error);
     if (error) fail(target_, error.value());
     temporary_.clear();
+    clearing_.reset();
 }
 
 void require_writable(const fs::path& target) {

@@ -1,14 +1,18 @@
 #pragma once
 
+#include "experiments/files/interruption.hpp"
+
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <ostream>
 
 namespace conelane::experiments {
 
 /// A file that appears under its name whole or not at all: it is written under a temporary name in the same
-/// folder and renamed by `commit`. Destroyed without `commit`, it leaves the target as it was. A target that
-/// is no regular file, such as a pipe or /dev/stdout, is written directly.
+/// folder and renamed by `commit`. Destroyed without `commit`, or where a signal ends the program, it leaves
+/// the target as it was. A target that is no regular file, such as a pipe or /dev/stdout, is written
+/// directly.
 class AtomicFile {
   public:
     /// Throws InputError naming the target where it cannot be written.
@@ -27,6 +31,7 @@ class AtomicFile {
     std::filesystem::path target_;     ///< as the caller spelled it, for messages
     std::filesystem::path place_;      ///< where the file goes: the target with symbolic links followed
     std::filesystem::path temporary_;  ///< empty where the target is written directly or is in place
+    std::optional<ClearOnInterruption> clearing_;  ///< of the temporary file
     std::ofstream stream_;
 };
 

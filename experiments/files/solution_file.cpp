@@ -15,6 +15,7 @@ using nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 5> kStatuses{"optimal", "feasible", "infeasible", "time_limit",
                                                     "error"};
+constexpr std::array kStopReasons{StopReason::time, StopReason::iterations, StopReason::memory};
 
 std::vector<std::pair<ConeId, ConeId>> read_edges(const JsonNode& json) {
     std::vector<std::pair<ConeId, ConeId>> edges;
@@ -45,6 +46,10 @@ SolutionRecord read_record(const JsonNode& json) {
     if (const auto nodes = json.find("nodes")) record.nodes = nodes->non_negative_integer();
     record.build_ms = json.member("build_ms").non_negative_number();
     record.solve_ms = json.member("solve_ms").non_negative_number();
+    if (const auto reason = json.find("stopped_by")) record.stopped_by = reason->one_of(kStopReasons);
+    if (const auto nearest = json.find("nearest")) {
+        record.nearest = static_cast<std::size_t>(nearest->non_negative_integer());
+    }
     return record;
 }
 
@@ -61,6 +66,8 @@ ordered_json to_json(const SolutionRecord& record, const std::string& key) {
     if (record.nodes) json["nodes"] = *record.nodes;
     json["build_ms"] = require_finite(record.build_ms, key + "build_ms");
     json["solve_ms"] = require_finite(record.solve_ms, key + "solve_ms");
+    if (record.stopped_by) json["stopped_by"] = to_string(*record.stopped_by);
+    if (record.nearest) json["nearest"] = *record.nearest;
     if (!record.message.empty()) json["message"] = record.message;
     return json;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "model/scene.hpp"
+#include "model/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,9 @@ struct SolutionRecord {
     std::optional<std::int64_t> nodes;
     double build_ms = 0.0;
     double solve_ms = 0.0;
-    std::size_t line = 0;  ///< in the file that was read; 0: none was
+    std::optional<StopReason> stopped_by;  ///< the limit that ended the search, where one did
+    std::optional<std::size_t> nearest;    ///< size of the cone set that was solved; absent: all cones
+    std::size_t line = 0;                  ///< in the file that was read; 0: none was
 };
 
 /// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside

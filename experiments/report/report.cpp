@@ -1,12 +1,16 @@
 #include "experiments/report/report.hpp"
 
+#include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/interruption.hpp"
 #include "experiments/report/archive.hpp"
 #include "experiments/scoring/published_figures.hpp"
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -19,28 +23,35 @@
 namespace conelane::experiments {
 namespace {
 
-/// A folder of its own below the system's temporary one, gone with the object.
+/// A folder of its own below the system's temporary one, gone with the object or with the program.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
         std::string name = std::filesystem::temp_directory_path() / "conelane-XXXXXX";
+        const auto held = hold_interruption();
         if (mkdtemp(name.data()) == nullptr) throw InputError(name, 0, "", "cannot be made");
         path_ = name;
+        clearing_.emplace([this] { remove(); });
     }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
+    ~TemporaryFolder() { remove(); }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
   private:
+    void remove() const {
+        const auto held = hold_interruption();
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+
     std::filesystem::path path_;
+    std::optional<ClearOnInterruption> clearing_;
 };
 
-/// Runs a program found on PATH; its exit code, or -1 where there is no such program or it was killed.
+/// Runs a program found on PATH; its exit code, or -1 where there is no such program or it was killed. It
+/// ends with this one.
 int run(std::vector<std::string> command, bool quiet) {
     std::vector<char*> arguments;
     for (std::string& word : command) arguments.push_back(word.data());
@@ -48,14 +59,22 @@ int run(std::vector<std::string> command, bool quiet) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     if (quiet) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    auto held = hold_interruption();
     pid_t child = 0;
     const int failure = posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (failure != 0) return -1;
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0) {
-        if (errno != EINTR) return -1;
+    const ClearOnInterruption ending([child] {
+        ::kill(child, SIGKILL);
+        ::waitpid(child, nullptr, 0);
+    });
+    held.unlock();
+    siginfo_t ended{};
+    while (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
     }
+    held.lock();  // only now may its number go to another program
+    int status = 0;
+    if (::waitpid(child, &status, 0) != child) return -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -116,10 +135,19 @@ void write_archive(const std::filesystem::path& file) {
     if (!stream) throw InputError(file, 0, "", "cannot be written");
 }
 
+/// Puts a file in its place whole or not at all.
+void put(const std::filesystem::path& file, const std::filesystem::path& place) {
+    std::ifstream from(file, std::ios::binary);
+    AtomicFile to(place);
+    to.stream() << from.rdbuf();
+    to.commit();
+}
+
 }  // namespace
 
 void write_report(const std::filesystem::path& results, const std::filesystem::path& page,
                   const std::filesystem::path& pictures, const std::string& wished_python) {
+    require_writable(page);
     const std::string python = find_python(wished_python);
     const TemporaryFolder folder;
     const std::filesystem::path archive = folder.path() / "report.zip";
@@ -127,11 +155,21 @@ void write_report(const std::filesystem::path& results, const std::filesystem::p
     const std::string start =
         "import sys, runpy; sys.path.insert(0, sys.argv.pop(1)); "
         "runpy.run_module('report', run_name='__main__', alter_sys=True)";
+    const std::filesystem::path made_page = folder.path() / "page.html";
+    const std::filesystem::path made_pictures = pictures.empty() ? "" : folder.path() / "pictures";
     const int code =
-        run({python, "-c", start, archive, results.string(), page.string(), published(), pictures.string()},
-            false);
+        run({python, "-c", start, archive, results.string(), made_page, published(), made_pictures}, false);
     if (code == 2) throw ReportRefused();
     if (code != 0) throw std::runtime_error("the report failed, see above");
+    if (!pictures.empty()) {
+        std::error_code failure;
+        std::filesystem::create_directories(pictures, failure);
+        if (failure) throw InputError(pictures, 0, "", "cannot be made: " + failure.message());
+        for (const auto& picture : std::filesystem::directory_iterator(made_pictures)) {
+            put(picture.path(), pictures / picture.path().filename());
+        }
+    }
+    put(made_page, page);
 }
 
 }  // namespace conelane::experiments

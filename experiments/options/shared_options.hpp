@@ -1,0 +1,53 @@
+#pragma once
+
+#include "experiments/methods.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+/// Options that several commands have, declared once.
+namespace conelane::experiments {
+
+/// The options of scene making but --tracks, --out and --nearest. Absent lists keep what `options` holds.
+void add_scene_options(CLI::App& command, SceneOptions& options);
+
+/// --params and --pairing.
+struct ParameterSource {
+    std::string name;     ///< of a shipped set, else a file; empty: the command's default
+    std::string pairing;  ///< empty: as in the parameters
+    /// What was asked for, RldParameters{} where nothing was.
+    [[nodiscard]] RldParameters load() const;
+    /// Tells methods what was asked for; they have parameters of their own.
+    void apply_to(DetectorOptions& options) const;
+};
+/// `without` says what holds where --params is not given.
+void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);
+
+/// --nearest N
+void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning);
+/// For methods that are compared in real time, as in the RLD paper.
+inline constexpr double kRealTimeLimit_ms = 400.0;
+/// --time-limit MS; what `time_limit_ms` holds is the default
+void add_time_limit_option(CLI::App& command, double& time_limit_ms);
+/// A file to write. That it can be is looked at before the work, not after it.
+CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
+                               const std::string& meaning);
+/// Refuses the options of a command that is about to run where a file of add_output_option would replace an
+/// input or another output: the same file, be it under another name, through a symbolic or a hard link. Any
+/// other option that names a file counts as an input, a track by its SPEC and a scenes file with its
+/// companion too. Throws CLI::ValidationError naming both.
+void refuse_lost_inputs(CLI::App& command);
+/// --seed N, for where another place holds the default
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning);
+/// --threads T
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,79 @@
+// The checker's own search against the exact solvers, and its verdicts on claims of infeasibility.
+
+#include "experiments/checking/lane_graph_search.hpp"
+
+#include "experiments/checking/infeasibility.hpp"
+#include "model/check.hpp"
+#include "model/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/path_pair_solver.hpp"
+#include "tests/random_scenes.hpp"
+#include "tests/straight_scene.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// Some of these scenes have a lane graph, some have none.
+void expect_agreement(RldSolver& solver, const RldParameters& parameters, std::size_t cones) {
+    int with_lane = 0;
+    constexpr int kScenes = 60;
+    for (int seed = 0; seed < kScenes; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = tests::random_scene(static_cast<std::uint64_t>(seed), cones);
+        const LaneGraphSearchResult result = search_lane_graph(scene, parameters, kNoLimit);
+        EXPECT_TRUE(result.complete);
+        const RldReport report = solver.solve(make_problem(scene, parameters, solver.extent()), {});
+        EXPECT_EQ(result.witness.has_value(), report.lane_graph.has_value());
+        if (!result.witness) continue;
+        ++with_lane;
+        EXPECT_TRUE(check(scene, parameters, *result.witness).violations.empty());
+    }
+    EXPECT_GT(with_lane, kScenes / 10);
+    EXPECT_LT(with_lane, kScenes);
+}
+
+TEST(LaneGraphSearch, AgreesWithEveryPairOfPaths) {
+    RldParameters parameters;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+    parameters.pairing = Pairing::paper;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+    parameters.forbid_crossing = true;
+    parameters.d_max = 4.0;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+}
+
+TEST(LaneGraphSearch, AgreesWithThePairSearch) {
+    expect_agreement(*make_path_pair_solver(), {}, 12);
+}
+
+TEST(LaneGraphSearch, SaysWhereTheTimeRanOut) {
+    const LaneGraphSearchResult result = search_lane_graph(tests::random_scene(3, 60), {}, 0.0);
+    EXPECT_FALSE(result.complete);
+    EXPECT_FALSE(result.witness);
+}
+
+/// Beyond the lane there is no near endpoint.
+TEST(Infeasibility, IsJudgedWithoutTheClaimant) {
+    using Kind = InfeasibilityVerdict::Kind;
+    const Scene straight = straight_scene().scene;
+    for (const char* claimant : {"cbc", "path-pair", "exhaustive"}) {
+        const InfeasibilityVerdict refuted = judge_infeasible(straight, {}, claimant, kNoLimit);
+        EXPECT_EQ(refuted.kind, Kind::refuted);
+        EXPECT_NE(refuted.by, claimant);
+        ASSERT_TRUE(refuted.witness);
+        EXPECT_TRUE(check(straight, {}, *refuted.witness).violations.empty());
+        Scene passed = straight;
+        passed.pose.position.x() = 200.0;
+        EXPECT_EQ(judge_infeasible(passed, {}, claimant, kNoLimit).kind, Kind::confirmed);
+    }
+    EXPECT_EQ(judge_infeasible(straight, {}, "cbc", 0.0).kind, Kind::open);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
