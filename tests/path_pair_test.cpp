@@ -7,6 +7,7 @@
 #include "solvers/milp/cbc_solver.hpp"
 #include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/branch_and_bound.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"
 #include "solvers/path_pair/leg_search.hpp"
@@ -378,6 +379,45 @@ TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
         }
     }
     EXPECT_GT(unfinished, 20);
+}
+
+/// The clock strikes at each of the looks at it in turn: what is claimed complete is, and the bound is one.
+TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
+    int cut_short = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
+        SearchClock no_limit;
+        ArcGraph graph;
+        graph.build(problem, no_limit);
+        LegSystem system;
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            system.kinds[0].start.push_back(graph.near(cone) ? 1 : 0);
+            system.kinds[0].end.push_back(graph.near(cone) ? 0 : 1);
+        }
+        Incumbent incumbent;
+        const PathPairOptions options;
+        BranchAndBound search(graph, incumbent, options);
+        constexpr double kTolerance = 1e-9;
+        int looks = 0;
+        incumbent.reset(graph, 0.0);
+        ASSERT_TRUE(search.run(system, kTolerance, [&looks] { return ++looks < 0; }).complete);
+        const double optimum = incumbent.cutoff();
+        for (int strike = 1; strike <= looks + 1; strike += 1 + looks / 200) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike << " of " << looks);
+            int look = 0;
+            incumbent.reset(graph, 0.0);
+            const BranchAndBound::Outcome outcome =
+                search.run(system, kTolerance, [&] { return ++look >= strike; });
+            EXPECT_GE(incumbent.cutoff(), optimum - kTolerance);
+            EXPECT_LE(outcome.bound, optimum + kTolerance);
+            if (outcome.complete) {
+                EXPECT_NEAR(incumbent.cutoff(), optimum, 2.0 * kTolerance);
+            } else {
+                ++cut_short;
+            }
+        }
+    }
+    EXPECT_GT(cut_short, 100);
 }
 
 TEST(PathPair, TakesLargeConeSets) {

@@ -29,7 +29,7 @@ void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch) {
     constexpr int kInterrupt = 2;  // 1: initialSolve installs no handler of SIGINT
     ClpSolve options;
     options.setSpecialOption(kInterrupt, 1);
-    (void)options;
+    solver.setSolveOptions(options);
 }
 
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program) {
