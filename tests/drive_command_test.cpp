@@ -139,10 +139,10 @@ TEST_F(DriveCommand, WritesTheColumnsOfTumAndOfFtFsd) {
     ASSERT_EQ(drive(kInputs + "--id b --step 2 --out d.jsonl").exit_code, 0);
     const nlohmann::json points = nlohmann::json::parse(text_of(path("d.jsonl"))).at("points");
     ASSERT_EQ(drive(kInputs + "--id b --step 2 --format tum --out d.csv").exit_code, 0);
-    EXPECT_THAT(text_of(path("d.csv")), StartsWith("# x_m,y_m,w_tr_right_m,w_tr_left_m\n0.0"));
+    EXPECT_THAT(text_of(path("d.csv")), StartsWith("# x_m,y_m,w_tr_right_m,w_tr_left_m\n0."));
     const std::vector<std::vector<double>> tum = rows_of(text_of(path("d.csv")));
     ASSERT_EQ(drive(kInputs + "--id b --step 2 --format ftfsd --out e.csv").exit_code, 0);
-    EXPECT_THAT(text_of(path("e.csv")), StartsWith("# s_m,x_m,y_m,curvature_1pm\n0.0"));
+    EXPECT_THAT(text_of(path("e.csv")), StartsWith("# s_m,x_m,y_m,curvature_1pm\n0.000000,0."));
     const std::vector<std::vector<double>> ft_fsd = rows_of(text_of(path("e.csv")));
     ASSERT_EQ(tum.size(), points.size());
     ASSERT_EQ(ft_fsd.size(), points.size());

@@ -115,7 +115,7 @@ void add_drive_command(CLI::App& program) {
     command.add_option("--id", options->id, "only lanes of this scene");
     command.add_option("--method", options->method, "only lanes of this method");
     command.add_option("--step", options->drivable.step_m, "from point to point [m], in [0.01, 100]")
-        ->check(CLI::Range(0.01, 100.0))
+        ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
     command.callback([options] { drive_all(*options); });
 }
