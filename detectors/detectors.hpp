@@ -1,5 +1,6 @@
 #pragma once
 
+#include "detectors/drivable_lane.hpp"
 #include "model/lane_detector.hpp"
 #include "model/rld_parameters.hpp"
 #include "model/scene.hpp"

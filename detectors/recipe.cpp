@@ -26,7 +26,7 @@ ClcOptions warm_clc_options() {
 constexpr std::array kRecipes{
     DetectorRecipe{"clc",
                    "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
-                   "features and agreement of the candidates that it puts first",
+                   "features and consensus of the candidates that it puts first",
                    ClcRecipe{extended_clc_options}},
     DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
                    ClcRecipe{warm_clc_options}},

@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <new>
+#include <utility>
 
 namespace conelane {
 
@@ -13,9 +14,16 @@ SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParamete
     const Deadline deadline(limits.time_limit_ms);
     SolvedScene solved;
     try {
-        solved.problem = make_problem(scene, parameters, solver.extent());
+        LimitedProblem made = make_problem(scene, parameters, solver.extent(), deadline);
         const double problem_ms = watch.elapsed_ms();
-        solved.report = solver.solve(solved.problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
+        if (made.problem) {
+            solved.problem = *std::move(made.problem);
+            solved.report =
+                solver.solve(solved.problem, {deadline.remaining_ms(), limits.absolute_gap}, start);
+        } else {
+            solved.report.status = SolveStatus::stopped;
+            solved.report.stopped_by = made.stopped_by;
+        }
         solved.report.build_ms += problem_ms;
     } catch (const std::bad_alloc&) {
         throw;

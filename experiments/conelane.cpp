@@ -1,7 +1,7 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/files/interruption.hpp"
 #include "experiments/provenance.hpp"
 #include "solvers/registry.hpp"
@@ -81,20 +81,17 @@ int run(int argument_count, char** arguments) {
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);
-    experiments::add_extras_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
     experiments::add_methods_command(program);
+    experiments::add_drive_command(program);
     experiments::add_score_command(program);
     experiments::add_solve_command(program);
     experiments::add_solvers_command(program);
     experiments::add_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
-    experiments::add_formulations_command(program);
-    experiments::add_backends_command(program);
-    experiments::add_optimality_command(program);
-    experiments::add_relaxations_command(program);
+    experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);
     // All options are read by then, and no command has begun.

@@ -1,5 +1,6 @@
 #include "experiments/methods.hpp"
 
+#include "experiments/delaunay.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 
@@ -28,15 +29,15 @@ ClcOptions without_beam() {
     return clc;
 }
 
-ClcOptions without_agreement() {
+ClcOptions without_consensus() {
     ClcOptions clc = extended_clc_options();
-    clc.agreeing_candidates = 0;
+    clc.consensus_candidates = 0;
     return clc;
 }
 
 ClcOptions on_delaunay_graph() {
     ClcOptions clc = paper_clc_options();
-    clc.graph = SearchGraphKind::delaunay;
+    clc.edge_rule = delaunay_edges;
     return clc;
 }
 
@@ -59,8 +60,8 @@ std::vector<Method> all_methods() {
     }
     add("clc-no-beam", "clc whose first search follows no lane of a beam search", ClcRecipe{without_beam},
         true);
-    add("clc-no-agreement", "clc that answers with the candidate of the highest score",
-        ClcRecipe{without_agreement}, true);
+    add("clc-no-consensus", "clc that answers with the candidate of the highest score",
+        ClcRecipe{without_consensus}, true);
     add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
         ClcRecipe{on_delaunay_graph}, true);
     add("clc-longest", "CLC without network: the longest of the enumerated lanes", ClcRecipe{longest_lane},

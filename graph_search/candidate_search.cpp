@@ -3,14 +3,11 @@
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <string>
-#include <unordered_map>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -19,45 +16,12 @@ void require(bool valid, const std::string& key, const std::string& reason) {
     if (!valid) throw InvalidInput(key, reason);
 }
 
-SearchBudget::Clock::time_point deadline(double time_limit_ms) {
-    using Clock = SearchBudget::Clock;
-    const Clock::time_point now = Clock::now();
-    const std::chrono::duration<double, std::milli> limit(std::max(time_limit_ms, 0.0));
-    // Written so that NaN and what the clock cannot hold mean no limit.
-    if (!(limit < std::chrono::hours(24))) return Clock::time_point::max();
-    return now + std::chrono::duration_cast<Clock::duration>(limit);
-}
-
-/// What is left of a lane: from the first cone of each side that is still seen and ahead of the car, as far
-/// as every cone is seen. Nothing where a side has none left.
-std::optional<PathPairVertices> still_ahead(const Lane& lane, const Scene& scene) {
-    std::unordered_map<ConeId, Vertex> vertex_of;  // for look-up only
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
-        vertex_of.emplace(scene.cones[i].id, static_cast<Vertex>(i));
-    }
-    PathPairVertices rest;
-    for (const Side side : {kLeft, kRight}) {
-        for (const ConeId id : side == kLeft ? lane.left : lane.right) {
-            const auto found = vertex_of.find(id);
-            const bool seen = found != vertex_of.end();
-            if (rest[side].empty() &&
-                (!seen || scene.pose.ahead_m(scene.cones[found->second].position) < 0.0)) {
-                continue;
-            }
-            if (!seen) break;
-            rest[side].push_back(found->second);
-        }
-        if (rest[side].empty()) return std::nullopt;
-    }
-    if (rest[kLeft].front() == rest[kRight].front()) return std::nullopt;
-    return rest;
-}
-
 }  // namespace
 
 void validate(const CandidateSearchOptions& options) {
     const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
     require(options.iteration_limit > 0, "iteration_limit", "must be positive");
+    require(options.memory_limit_bytes > 0, "memory_limit_bytes", "must be positive");
     require(options.starting_pairs > 0, "starting_pairs", "must be positive");
     require(options.beam_width > 0, "beam_width", "must be positive");
     if (options.step_scores) validate(*options.step_scores);
@@ -81,8 +45,6 @@ void validate(const CandidateSearchOptions& options) {
 
 CandidateSearch::CandidateSearch(const CandidateSearchOptions& options) : options_(options) {
     validate(options);
-    options_.start.w_min_m = options.bounds.w_min_m;
-    options_.start.w_max_m = options.bounds.w_max_m;
     rules_.bounds = options.bounds;
     rules_.d_max_m = options.d_max_m;
     rules_.width_backtracking = options.width_backtracking;
@@ -93,49 +55,94 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     Report report;
     rules_.with_features = request.with_features;
     budget_ = SearchBudget{};
-    budget_.deadline = deadline(request.time_limit_ms);
+    budget_.deadline = request.deadline;
+    budget_.memory_limit_bytes = options_.memory_limit_bytes;
+    pairs_.clear();
+    seed_count_ = 0;
+    starts_.find(scene, options_.start, options_.bounds);
+    report.exhausted = starts_.complete();
+    has_remaining_ = request.last_lane != nullptr && find_remaining(*request.last_lane, scene);
+    // Without a start there is no lane, whatever the graph is.
+    if (starts_.ranked().empty() && !has_remaining_) return report;
+
     points_.clear();
     for (const Cone& cone : scene.cones) points_.push_back(cone.position);
-    graph_.build(points_, options_.d_max_m, options_.graph);
-    pairs_.clear();
-
-    find_seeds(scene, request.last_lane);
-    for (std::size_t i = 0; i < seeds_.size(); ++i) {
-        run_from(seeds_[i], i + 1 == seeds_.size(), scene, report);
-        seeds_[i].found_end = pairs_.found().size();
+    if (graph_.build(points_, options_.d_max_m, options_.edge_rule, budget_)) {
+        find_seeds(scene, report);
+        for (Seed& seed : seeds()) {
+            run_from(seed, &seed == &seeds().back(), scene, report);
+            seed.found_end = pairs_.found().size();
+        }
+        if (rules_.with_features) add_scene_features(scene);
+    } else {
+        report.complete = false;
     }
-    if (rules_.with_features) add_scene_features(scene);
+    report.exhausted &= report.complete;
     report.iterations = budget_.iterations;
-    report.out_of_time = budget_.out_of_time;
+    if (budget_.stopped_by) report.stopped_by = budget_.stopped_by;
+    if (!report.complete && !report.stopped_by) report.stopped_by = StopReason::iterations;
     return report;
 }
 
-void CandidateSearch::find_seeds(const Scene& scene, const Lane* last_lane) {
-    seeds_.clear();
-    const auto add_guide = [&](const std::optional<PathPairVertices>& guide) {
-        if (!guide) return;
-        const bool is_known =
-            std::ranges::any_of(seeds_, [&](const Seed& seed) { return seed.guide == *guide; });
-        if (!is_known) seeds_.push_back({{(*guide)[kLeft].front(), (*guide)[kRight].front()}, *guide, 0});
-    };
-    const std::vector<RankedStartPair> starts = ranked_start_pairs(scene, options_.start);
-    if (last_lane != nullptr) add_guide(still_ahead(*last_lane, scene));
-    if (options_.step_scores) add_guide(beam_lane(scene, starts));
-    const std::size_t guided = seeds_.size();
-    for (const StartPair& start : start_pairs(starts, options_.starting_pairs, options_.start)) {
-        const bool is_met = std::any_of(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(guided),
-                                        [&](const Seed& seed) { return seed.start == start; });
-        if (!is_met) seeds_.push_back({start, {}, 0});
+void CandidateSearch::find_seeds(const Scene& scene, Report& report) {
+    if (has_remaining_) add_guided(remaining_);
+    if (options_.step_scores && find_beam_guide(scene, report)) add_guided(beam_guide_);
+    const std::size_t guided = seed_count_;
+    starts_.best(options_.starting_pairs, pairs_to_try_);
+    for (const StartPair& start : pairs_to_try_) {
+        if (std::ranges::find(seeds().first(guided), start, &Seed::start) == seeds().begin() + guided)
+            new_seed(start);
     }
+    if (pairs_to_try_.size() < starts_.ranked().size()) report.exhausted = false;
 }
 
-std::optional<PathPairVertices> CandidateSearch::beam_lane(const Scene& scene,
-                                                           std::span<const RankedStartPair> starts) {
-    beam_.start(graph_, scene, start_pairs(starts, starts.size(), options_.start), *options_.step_scores,
-                options_.bounds, options_.beam_width);
-    const std::size_t best = beam_.run();
-    if (best == LaneBeam::kNone) return std::nullopt;
-    return beam_.vertices(best);
+bool CandidateSearch::find_remaining(const Lane& lane, const Scene& scene) {
+    vertex_of_.clear();
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        vertex_of_.emplace_back(scene.cones[i].id, static_cast<Vertex>(i));
+    }
+    std::ranges::sort(vertex_of_);
+    for (const Side side : {kLeft, kRight}) {
+        std::vector<Vertex>& rest = remaining_[side];
+        rest.clear();
+        for (const ConeId id : side == kLeft ? lane.left : lane.right) {
+            const auto found = std::ranges::lower_bound(vertex_of_, std::pair(id, Vertex{0}));
+            const bool seen = found != vertex_of_.end() && found->first == id;
+            if (rest.empty() && (!seen || scene.pose.ahead_m(scene.cones[found->second].position) < 0.0)) {
+                continue;
+            }
+            if (!seen) break;
+            rest.push_back(found->second);
+        }
+        if (rest.empty()) return false;
+    }
+    return remaining_[kLeft].front() != remaining_[kRight].front();
+}
+
+bool CandidateSearch::find_beam_guide(const Scene& scene, Report& report) {
+    starts_.best(starts_.ranked().size(), pairs_to_try_);
+    beam_.start(graph_, scene, pairs_to_try_, *options_.step_scores, options_.bounds, options_.beam_width);
+    SearchBudget half = budget_;
+    half.deadline = Deadline(budget_.deadline.remaining_ms() / 2.0);
+    const std::size_t best = beam_.run(half);
+    if (half.stopped_by) report.stopped_by = half.stopped_by;
+    if (best == LaneBeam::kNone) return false;
+    beam_.vertices(best, beam_guide_);
+    return true;
+}
+
+void CandidateSearch::add_guided(const PathPairVertices& guide) {
+    if (std::ranges::find(seeds(), guide, &Seed::guide) != seeds().end()) return;
+    new_seed({guide[kLeft].front(), guide[kRight].front()}).guide = guide;
+}
+
+CandidateSearch::Seed& CandidateSearch::new_seed(StartPair start) {
+    if (seed_count_ == seeds_.size()) seeds_.emplace_back();
+    Seed& seed = seeds_[seed_count_++];
+    seed.start = start;
+    for (std::vector<Vertex>& side : seed.guide) side.clear();
+    seed.found_end = 0;
+    return seed;
 }
 
 void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scene, Report& report) {
@@ -158,29 +165,33 @@ void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scen
 void CandidateSearch::add_scene_features(const Scene& scene) {
     const std::span<LaneFeatures> features = pairs_.features();
     double longest_m = 0.0;
-    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[0]);
+    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[kLength]);
     std::size_t i = 0;
     for (const Seed& seed : seeds_) {
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
-        const std::array<double, kLaneFeatureCount - kStartPlaceFeatures> of_start{
-            measures.lead_m, measures.shift_m, measures.nearest_side_m, measures.nearest_ahead_m,
-            measures.farthest_ahead_m};
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];
-            lane[kLongestShareFeature] = lane[0] / longest_m;
-            lane[kStartAsymmetryFeature] = measures.asymmetry_m;
-            lane[kStartDistanceFeature] = measures.distance_m;
-            lane[kConesFeature] = static_cast<double>(scene.cones.size());
-            std::ranges::copy(of_start, lane.begin() + kStartPlaceFeatures);
+            lane[kLongestShare] = lane[kLength] / longest_m;
+            lane[kStartAsymmetry] = measures.asymmetry_m;
+            lane[kStartDistance] = measures.distance_m;
+            lane[kSceneCones] = static_cast<double>(scene.cones.size());
+            lane[kStartLead] = measures.lead_m;
+            lane[kStartShift] = measures.shift_m;
+            lane[kStartNearestSide] = measures.nearest_side_m;
+            lane[kStartNearestAhead] = measures.nearest_ahead_m;
+            lane[kStartFarthestAhead] = measures.farthest_ahead_m;
         }
     }
 }
 
-Lane CandidateSearch::lane(const PathPair& pair, const Scene& scene) const {
-    const PathPairVertices vertices = pairs_.vertices(pair);
+Lane CandidateSearch::lane(const PathPair& pair, const Scene& scene) {
     Lane lane;
-    for (const Vertex vertex : vertices[kLeft]) lane.left.push_back(scene.cones[vertex].id);
-    for (const Vertex vertex : vertices[kRight]) lane.right.push_back(scene.cones[vertex].id);
+    for (const Side side : {kLeft, kRight}) {
+        pairs_.vertices(pair, side, side_);
+        std::vector<ConeId>& ids = side == kLeft ? lane.left : lane.right;
+        ids.reserve(side_.size());
+        for (const Vertex vertex : side_) ids.push_back(scene.cones[vertex].id);
+    }
     lane.closed = pair.closed;
     return lane;
 }

@@ -3,17 +3,20 @@
 #include "graph_search/lane_beam.hpp"
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/search_budget.hpp"
 #include "graph_search/search_graph.hpp"
 #include "graph_search/start_vertices.hpp"
+#include "model/deadline.hpp"
 #include "model/lane.hpp"
 #include "model/scene.hpp"
+#include "model/stop_reason.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -21,9 +24,9 @@ namespace conelane {
 struct CandidateSearchOptions {
     std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, of all starting pairs
     double d_max_m = 5.5;                 ///< largest distance of consecutive cones
-    SearchGraphKind graph = SearchGraphKind::all_pairs;
+    EdgeRule edge_rule;                   ///< none: all pairs within d_max, equation (2)
     LaneBounds bounds;
-    StartVertexRules start;          ///< its w_min_m and w_max_m are taken from `bounds`
+    StartVertexRules start;
     std::size_t starting_pairs = 3;  ///< how many are tried
     WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
     /// Of the next-vertex decider, see there; 0: equation (3) as printed.
@@ -37,6 +40,8 @@ struct CandidateSearchOptions {
     /// of few lanes; the second sees fewer vertices of all of a lane, and finds some pairs again. 0: none, as
     /// in the paper.
     std::uint32_t second_search_discrepancies = 0;
+    /// A search that has filled so much memory, about, stops. 2500 iterations need some 5 MB.
+    std::size_t memory_limit_bytes = std::size_t{1} << 29U;
 };
 
 /// Throws InvalidInput naming the option that is out of its range.
@@ -47,11 +52,13 @@ class CandidateSearch {
   public:
     struct Report {
         std::int64_t iterations = 0;
-        bool complete = true;  ///< every starting pair tried was searched to its end
-        bool out_of_time = false;
+        bool complete = true;   ///< every starting pair tried was searched to its end
+        bool exhausted = true;  ///< and none was left out
+        /// The limit that cut a search short; that of iterations only where the others did not.
+        std::optional<StopReason> stopped_by;
     };
     struct Request {
-        double time_limit_ms = std::numeric_limits<double>::infinity();
+        Deadline deadline;
         bool with_features = false;
         /// Where the search begins (warm start, section IV-F): the lane of the scene before, by cone id; may
         /// be null. What the car has passed and what is no longer seen drops out of it.
@@ -62,38 +69,54 @@ class CandidateSearch {
     explicit CandidateSearch(const CandidateSearchOptions& options);
 
     /// Finds `pairs()` anew. Each starting pair but the last may use half of the iterations that are left; a
-    /// warm start and then the lane of the beam search come before them and may as well.
+    /// warm start and then the lane of the beam search come before them and may as well. The beam search may
+    /// use half of the time that is left. Precondition: the scene is valid.
     Report run(const Scene& scene, const Request& request);
 
     [[nodiscard]] const PathPairs& pairs() const { return pairs_; }
     [[nodiscard]] const SearchGraph& graph() const { return graph_; }
     /// A pair of `pairs()` of the last run, which was on `scene`.
-    [[nodiscard]] Lane lane(const PathPair& pair, const Scene& scene) const;
+    [[nodiscard]] Lane lane(const PathPair& pair, const Scene& scene);
 
   private:
     /// Where a search starts and what it follows first; see PathPairEnumeration::run.
     struct Seed {
-        StartPair start;
+        StartPair start{};
         PathPairVertices guide;
-        std::size_t found_end;  ///< number of the pairs found when it was done
+        std::size_t found_end = 0;  ///< number of the pairs found when it was done
     };
 
-    /// Finds the searches to be made, in their order.
-    void find_seeds(const Scene& scene, const Lane* last_lane);
-    [[nodiscard]] std::optional<PathPairVertices> beam_lane(const Scene& scene,
-                                                            std::span<const RankedStartPair> starts);
+    /// Finds the searches to be made, in their order, after `starts_` and what is left of the last lane.
+    void find_seeds(const Scene& scene, Report& report);
+    /// Sets `remaining_` to what is left of a lane: from the first cone of each side that is still seen and
+    /// ahead of the car, as far as every cone is seen. Returns false where a side has none left.
+    bool find_remaining(const Lane& lane, const Scene& scene);
+    /// Sets `beam_guide_` to the lane of the beam search; returns whether there is one.
+    bool find_beam_guide(const Scene& scene, Report& report);
+    /// Adds a search that follows the guide, unless there is one already.
+    void add_guided(const PathPairVertices& guide);
     void run_from(const Seed& seed, bool is_last, const Scene& scene, Report& report);
     /// Sets the features that belong to the scene.
     void add_scene_features(const Scene& scene);
+    [[nodiscard]] std::span<Seed> seeds() { return {seeds_.data(), seed_count_}; }
+    Seed& new_seed(StartPair start);
 
     CandidateSearchOptions options_;
     EnumerationRules rules_;
     SearchGraph graph_;
     SearchBudget budget_;
+    StartPairs starts_;
+    std::vector<StartPair> pairs_to_try_;
+    std::vector<std::pair<ConeId, Vertex>> vertex_of_;
+    bool has_remaining_ = false;
+    PathPairVertices remaining_;
     LaneBeam beam_;
-    std::vector<Seed> seeds_;
+    PathPairVertices beam_guide_;
+    std::vector<Seed> seeds_;  ///< the first seed_count_ count, the others keep their memory
+    std::size_t seed_count_ = 0;
     PathPairEnumeration enumeration_;
     PathPairs pairs_;
+    std::vector<Vertex> side_;
     std::vector<Point> points_;
 };
 

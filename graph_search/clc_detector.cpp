@@ -1,13 +1,15 @@
 #include "graph_search/clc_detector.hpp"
 
-#include "graph_search/rank_net_file.hpp"
-#include "graph_search/step_score_file.hpp"
+#include "graph_search/shipped_weights.hpp"
+#include "model/deadline.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -18,20 +20,23 @@ namespace {
 constexpr double kNextVertexDistanceWeight = 0.8;
 /// The same.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
-/// Fewer lanes leave the track within 20 m, on tracks left out of a training; the lanes are a
-/// little shorter.
-constexpr std::size_t kAgreeingCandidates = 24;
+/// On tracks left out of the training, fewer lanes leave the track within 20 m; the lanes are a little
+/// shorter.
+constexpr std::size_t kConsensusCandidates = 24;
+
+/// Candidates between two looks at the clock: under 1 ms of work, and more than 2500 iterations find.
+constexpr std::size_t kRankedAtOnce = 4096;
 
 class ClcDetector final : public LaneDetector {
   public:
     explicit ClcDetector(const ClcOptions& options)
         : ranking_(options.ranking),
-          agreeing_candidates_(options.agreeing_candidates),
+          consensus_candidates_(options.consensus_candidates),
           warm_start_(options.warm_start),
           search_(options) {
-        if (agreeing_candidates_ > LaneAgreement::kMostCandidates) {
-            throw InvalidInput("agreeing_candidates",
-                               "must be at most " + std::to_string(LaneAgreement::kMostCandidates));
+        if (consensus_candidates_ > LaneConsensus::kMostCandidates) {
+            throw InvalidInput("consensus_candidates",
+                               "must be at most " + std::to_string(LaneConsensus::kMostCandidates));
         }
     }
 
@@ -39,8 +44,9 @@ class ClcDetector final : public LaneDetector {
 
   private:
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
+        const Deadline deadline(limits.time_limit_ms);
         CandidateSearch::Request request;
-        request.time_limit_ms = limits.time_limit_ms;
+        request.deadline = deadline;
         request.with_features = ranking_ != nullptr;
         if (last_lane_) request.last_lane = &*last_lane_;
         const CandidateSearch::Report report = search_.run(scene, request);
@@ -48,39 +54,56 @@ class ClcDetector final : public LaneDetector {
 
         LaneAnswer answer;
         answer.enumeration = Enumeration{report.iterations, report.complete, {}};
+        answer.stopped_by = report.stopped_by;
         if (limits.keep_candidates) {
             for (const PathPair& pair : found) {
                 answer.enumeration->candidates.push_back({search_.lane(pair, scene), pair.iteration});
             }
         }
         if (found.empty()) {
-            answer.status = report.out_of_time ? LaneStatus::stopped : LaneStatus::none;
-            if (report.out_of_time) answer.stopped_by = StopReason::time;
+            answer.status = report.exhausted ? LaneStatus::none : LaneStatus::stopped;
+            if (!report.exhausted && !report.stopped_by) answer.stopped_by = StopReason::iterations;
             return answer;
         }
+        const std::size_t chosen = choose(deadline, answer.stopped_by);
         answer.status = LaneStatus::found;
-        answer.lane = search_.lane(best(), scene);
+        answer.lane = search_.lane(found[chosen], scene);
         if (warm_start_) last_lane_ = answer.lane;
         return answer;
     }
 
-    /// Of the pairs found, of which there must be one.
-    const PathPair& best() {
+    /// Returns the place of the answer among the pairs found, of which there must be one. Where the time is
+    /// up before all are ranked, the others are left out and `stopped_by` says so.
+    std::size_t choose(const Deadline& deadline, std::optional<StopReason>& stopped_by) {
         const std::vector<PathPair>& found = search_.pairs().found();
-        if (!ranking_) return *std::ranges::max_element(found, {}, &PathPair::length_m);
-        scores_.resize(found.size());
-        ranking_->score(search_.pairs().features(), scores_);
-        if (agreeing_candidates_ > 0) {
-            return found[agreement_.choose(search_.pairs(), search_.graph(), scores_, agreeing_candidates_)];
+        if (!ranking_) {
+            return static_cast<std::size_t>(std::ranges::max_element(found, {}, &PathPair::length_m) -
+                                            found.begin());
         }
-        return found[static_cast<std::size_t>(std::ranges::max_element(scores_) - scores_.begin())];
+        scores_.resize(found.size());
+        const std::span<const LaneFeatures> features = std::as_const(search_).pairs().features();
+        std::size_t ranked = 0;
+        while (ranked < found.size()) {
+            const std::size_t count = std::min(kRankedAtOnce, found.size() - ranked);
+            ranking_->score(features.subspan(ranked, count), std::span(scores_).subspan(ranked, count));
+            ranked += count;
+            if (ranked < found.size() && deadline.passed()) {
+                stopped_by = StopReason::time;
+                break;
+            }
+        }
+        const std::span<const double> scores(scores_.data(), ranked);
+        if (consensus_candidates_ > 0) {
+            return consensus_.choose(search_.pairs(), search_.graph(), scores, consensus_candidates_);
+        }
+        return static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
     }
 
     std::shared_ptr<const LaneRanking> ranking_;
-    std::size_t agreeing_candidates_;
+    std::size_t consensus_candidates_;
     bool warm_start_;
     CandidateSearch search_;
-    LaneAgreement agreement_;
+    LaneConsensus consensus_;
     std::vector<double> scores_;
     std::optional<Lane> last_lane_;
 };
@@ -105,7 +128,7 @@ ClcOptions extended_clc_options() {
     ClcOptions options;
     static_cast<CandidateSearchOptions&>(options) = extended_search_options();
     options.ranking = extended_rank_net();
-    options.agreeing_candidates = kAgreeingCandidates;
+    options.consensus_candidates = kConsensusCandidates;
     return options;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "graph_search/candidate_search.hpp"
-#include "graph_search/lane_agreement.hpp"
+#include "graph_search/lane_consensus.hpp"
 #include "graph_search/ranking.hpp"
 #include "model/lane_detector.hpp"
 
@@ -12,33 +12,48 @@ namespace conelane {
 
 struct ClcOptions : CandidateSearchOptions {
     std::shared_ptr<const LaneRanking> ranking;  ///< none: the longest lane is the answer
-    /// The answer is the one that agrees best with the others among so many of the highest scores, see
-    /// LaneAgreement; at most LaneAgreement::kMostCandidates. 0: the highest score, as in the paper. Only
+    /// The answer is the consensus (minimum Bayes risk) of so many candidates, those of the highest scores,
+    /// see LaneConsensus; at most LaneConsensus::kMostCandidates. 0: the highest score, as in the paper. Only
     /// with a ranking.
-    std::size_t agreeing_candidates = 0;
+    std::size_t consensus_candidates = 0;
     /// Each search after the first starts from the last answer, section IV-F, until `reset`.
     bool warm_start = false;
 };
 
 /// The search and the ranking of the paper: equation (3), the network on eight features.
 [[nodiscard]] ClcOptions paper_clc_options();
-/// The same algorithm with five things more: the first search follows a lane that a beam search by learned
-/// scores finds, the next-vertex decider weighs distances, a second search follows where one is not complete,
-/// the network sees all features, and of the candidates that it puts first the one is taken that agrees best
-/// with the others. The network was trained to choose well among all of these: a lane that leaves
-/// the track within 20 m costs as much as several whole lanes, so where the scene is ambiguous before that, a
-/// shorter lane that is certain goes before a longer one that is not.
+/// The same algorithm with five additions: the first search follows the lane of a beam search by learned
+/// scores; the next-vertex decider weighs distances; where a search is not complete a second one follows; the
+/// network sees all features; the answer is the consensus of the candidates with the highest scores. The
+/// network was trained with a cost for lanes that leave the track within 20 m: so where the scene is
+/// ambiguous there, a short lane that is certain goes before a long one that is not.
 [[nodiscard]] ClcOptions extended_clc_options();
-/// The first half of it.
+/// The search of these, without the ranking.
 [[nodiscard]] CandidateSearchOptions extended_search_options();
 
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
-/// cones a side that has the highest score of the ranking or agrees best with those that do, or without a
+/// cones a side that has the highest score of the ranking or is the consensus of those that do, or without a
 /// ranking the longest (mean length of both boundaries). Of equal ones, the one met first.
-/// LaneAnswer::enumeration is always there; `complete`: every starting pair tried was searched to its end, as
-/// far as width_backtracking follows lanes. With two guides or a second search a candidate may be there
-/// twice, its vertices added in another order, on which features depend. Throws InvalidInput where an option
-/// is out of its range.
+///
+/// LaneAnswer::status:
+/// - found: `stopped_by` is absent where every starting pair tried was searched to its end. `iterations`: the
+///   limit it_max ended a search, the usual end in a scene with many cones, and the same on every machine.
+///   `time` or `memory`: the answer is the best of what was found until then.
+/// - none: no candidate exists. Every pair of cones that a lane may start with, within start.largest_radius_m
+/// of
+///   the car, was searched to its end, as far as width_backtracking follows lanes.
+/// - stopped: nothing was found, but `stopped_by` ended the search, or there are more starting pairs than
+///   starting_pairs (which counts as `iterations`).
+/// - error: the scene or a limit is not valid, the message says why.
+///
+/// LaneAnswer::enumeration is there unless status is error; `complete`: every starting pair tried was
+/// searched to its end. With two guides or a second search a candidate may be there twice, its vertices added
+/// in another order, on which features depend. Without a warm start an answer depends on nothing but the
+/// scene, the options and, where it is `stopped_by` time, the clock. Once memory is warm, `detect` allocates
+/// the two boundaries of the answer and nothing else; two exceptions: kept candidates, and lanes whose ends
+/// are near enough to close.
+///
+/// Throws InvalidInput where an option is out of its range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_clc_detector(const ClcOptions& options);
 
 }  // namespace conelane

@@ -1,8 +1,8 @@
 #include "graph_search/lane_beam.hpp"
 
+#include "graph_search/neighbourhood.hpp"
 #include "graph_search/next_vertex.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "graph_search/surroundings.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
 
@@ -137,7 +137,7 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     keep_best();
 }
 
-bool LaneBeam::advance() {
+bool LaneBeam::advance(SearchBudget& budget) {
     next_.clear();
     Step step;
     for (const std::size_t number : level_) {
@@ -145,7 +145,12 @@ bool LaneBeam::advance() {
         const Side side = next_side(from);
         const Vertex facing = from.last[opposite(side)];
         const bool is_lane = from.vertices[opposite(side)] > 1;
-        for (const Vertex vertex : graph_->neighbours(from.last[side])) {
+        const std::span<const Vertex> neighbours = graph_->neighbours(from.last[side]);
+        // Looking for a vertex on the lane goes back along it, looking about a segment sees all neighbours.
+        const std::size_t work =
+            10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours.size() / 8;
+        for (const Vertex vertex : neighbours) {
+            if (budget.spend(work)) return false;
             if (!measure(number, side, vertex, step)) continue;
             const auto [low, high] = std::minmax(vertex, facing);
             const Extension extension{from.score + scores_->score(step.measures),
@@ -159,17 +164,24 @@ bool LaneBeam::advance() {
         }
     }
     keep_best();
-    return !level_.empty();
+    return !level_.empty() &&
+           !budget.occupy(states_.size() * sizeof(State) + next_.size() * sizeof(Extension));
 }
 
-std::size_t LaneBeam::run() {
-    while (advance()) {
+std::size_t LaneBeam::run(SearchBudget& budget) {
+    while (advance(budget)) {
     }
     return best_.parent == kNone ? kNone : extend(best_.parent, best_.vertex);
 }
 
 PathPairVertices LaneBeam::vertices(std::size_t number) const {
-    PathPairVertices vertices;
+    PathPairVertices both;
+    vertices(number, both);
+    return both;
+}
+
+void LaneBeam::vertices(std::size_t number, PathPairVertices& vertices) const {
+    for (std::vector<Vertex>& side : vertices) side.clear();
     for (; states_[number].parent != kNone; number = states_[number].parent) {
         const State& state = states_[number];
         vertices[state.pushed].push_back(state.last[state.pushed]);
@@ -178,7 +190,6 @@ PathPairVertices LaneBeam::vertices(std::size_t number) const {
         vertices[side].push_back(states_[number].last[side]);
         std::ranges::reverse(vertices[side]);
     }
-    return vertices;
 }
 
 Side LaneBeam::next_side(const State& state) const {
@@ -252,8 +263,8 @@ bool LaneBeam::measure(std::size_t number, Side side, Vertex vertex, Step& step)
     const Point along = step.direction + from.direction[facing];
     const double along_length = along.norm();
     measures[kAdvanceMeasure] = along_length == 0.0 ? 0.0 : (point - facing_tip).dot(along) / along_length;
-    const Surroundings cones =
-        surroundings(*graph_, from.last[side], tip, facing_tip, point, point, facing_tip);
+    const Neighbourhood cones =
+        neighbourhood(*graph_, from.last[side], tip, facing_tip, point, point, facing_tip);
     measures[kBesideMeasure] = cones.beside;
     measures[kCloseMeasure] = cones.close;
     measures[kInsideMeasure] = cones.inside;

@@ -2,6 +2,7 @@
 
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/search_budget.hpp"
 #include "graph_search/search_graph.hpp"
 #include "model/scene.hpp"
 
@@ -102,16 +103,19 @@ class LaneBeam {
     /// memory from call to call. Precondition: width > 0.
     void start(const SearchGraph& graph, const Scene& scene, std::span<const StartPair> starts,
                const StepScores& scores, const LaneBounds& bounds, std::size_t width);
-    /// The next level; returns whether it has a state.
-    bool advance();
-    /// All the levels to the last one. Returns the state with the highest score among those with two vertices
-    /// a side, kNone where there is none.
-    std::size_t run();
+    /// The next level; returns whether it has a state. Returns false and leaves the level where the budget is
+    /// spent before.
+    bool advance(SearchBudget& budget);
+    /// All the levels to the last one, or as many as the budget's time and memory allow. Returns the state
+    /// with the highest score among those with two vertices a side, kNone where there is none.
+    std::size_t run(SearchBudget& budget);
 
     /// Best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
     [[nodiscard]] const State& state(std::size_t number) const { return states_[number]; }
     [[nodiscard]] PathPairVertices vertices(std::size_t number) const;
+    /// The same in the place of what `vertices` holds.
+    void vertices(std::size_t number, PathPairVertices& vertices) const;
     /// The side that the state grows by.
     [[nodiscard]] Side next_side(const State& state) const;
 

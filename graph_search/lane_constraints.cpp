@@ -1,6 +1,6 @@
 #include "graph_search/lane_constraints.hpp"
 
-#include "graph_search/wide_loops.hpp"
+#include "graph_search/simd_batch.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>
@@ -31,8 +31,8 @@ bool segment_meets(const Segment& line, const Segment& segment) {
 /// The first of `count` segments of a boundary, from `first` on, that `line` may meet, rounded down to
 /// a whole number of chunks from `first`; `count` where there is none. Sides are told by the ends of each
 /// against the line through the other, without a branch, so that the loop vectorises.
-CONELANE_WIDE_LOOPS std::size_t first_suspicious_chunk(const BoundaryArrays& boundary, std::size_t first,
-                                                       std::size_t count, const Segment& line) {
+CONELANE_SIMD std::size_t first_suspicious_chunk(const BoundaryArrays& boundary, std::size_t first,
+                                                 std::size_t count, const Segment& line) {
     const double* const x = boundary.x.data();
     const double* const y = boundary.y.data();
     const double* const all_dx = boundary.dx.data();

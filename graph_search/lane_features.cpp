@@ -10,54 +10,74 @@
 namespace conelane {
 namespace {
 
-constexpr std::array<std::string_view, kLaneFeatureCount> kNames{
-    "length_m", "cones_left", "cones_right", "width_variance_m2", "segment_length_variance_m2_left",
-    "segment_length_variance_m2_right", "turn_variance_rad2_left", "turn_variance_rad2_right",
-    // Length over that of the longest candidate of the scene.
-    "longest_share",
-    // Of the two first cones, as StartVertexRules has them.
-    "start_asymmetry_m", "start_distance_m",
-    // Of the scene.
-    "cones",
-    // Of |theta_r - theta_l| at the far ends, equation (4), as advance_deviation has it.
-    "end_deviation",
-    // Inside of the lane: no cone should lie there. As the triangles see them that the lane grows by.
-    "cones_inside",
-    // Neighbours of its cones in the search graph.
-    "mean_degree", "sharpest_turn_rad", "sharpest_turn_change_rad", "longest_segment_m",
-    // Chord between the direction of a segment and that of the last one opposite when it was added, squared.
-    "mean_squared_skew",
-    // Between the two last cones after each step.
-    "mean_across_m", "across_variance_m2", "mean_segment_length_m_left", "mean_segment_length_m_right",
-    "absolute_mean_turn_rad_left", "absolute_mean_turn_rad_right", "mean_squared_turn_change_rad2_left",
-    "mean_squared_turn_change_rad2_right", "shortest_segment_m",
-    // Largest chord between the direction of a first segment and the car's heading.
-    "start_skew",
-    // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
-    "cones_beside",
-    // At the far ends: the sharper turn, the longer segment, the last change of a turn.
-    "end_turn_rad", "end_segment_m", "end_turn_change_rad",
-    // Vertices off where the two on each side of them would have one; skew as above.
-    "largest_offset_m", "rms_offset_m", "largest_skew",
-    // Of the widths at the vertices; a change is from a vertex to the next of its side.
-    "narrowest_m", "widest_m", "largest_width_change_m",
-    // Of the near part alone.
-    "near_sharpest_turn_rad", "near_sharpest_turn_change_rad", "near_rms_turn_change_rad",
-    "near_largest_offset_m", "near_rms_offset_m", "near_largest_segment_change_m",
-    "near_rms_segment_change_m", "near_longest_segment_m", "near_shortest_segment_m", "near_largest_skew",
-    "near_rms_skew", "near_curvature_difference_rad_per_m", "near_cones_inside", "near_cones_beside",
-    // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
-    "near_cones_close", "near_closeness", "near_vertices", "near_narrowest_m", "near_widest_m",
-    "near_mean_width_m", "near_width_deviation_m", "near_largest_width_change_m", "near_rms_width_change_m",
-    // Of the two first cones again: where a false one stands in the place of one of them, a lane may be
-    // right in all the rest.
-    "start_lead_m", "start_shift_m", "start_nearest_side_m", "start_nearest_ahead_m",
-    "start_farthest_ahead_m"};
-
-constexpr std::size_t kWholeOffset = 33;
-constexpr std::size_t kWholeWidths = 36;
-constexpr std::size_t kNearSteps = 39;
-constexpr std::size_t kNearWidths = 56;
+constexpr std::array<std::string_view, kLaneFeatureCount> kNames{// In the order of LaneFeature.
+                                                                 "length_m",
+                                                                 "cones_left",
+                                                                 "cones_right",
+                                                                 "width_variance_m2",
+                                                                 "segment_length_variance_m2_left",
+                                                                 "segment_length_variance_m2_right",
+                                                                 "turn_variance_rad2_left",
+                                                                 "turn_variance_rad2_right",
+                                                                 "longest_share",
+                                                                 "start_asymmetry_m",
+                                                                 "start_distance_m",
+                                                                 "cones",
+                                                                 "end_deviation",
+                                                                 "cones_inside",
+                                                                 "mean_degree",
+                                                                 "sharpest_turn_rad",
+                                                                 "sharpest_turn_change_rad",
+                                                                 "longest_segment_m",
+                                                                 "mean_squared_skew",
+                                                                 "mean_across_m",
+                                                                 "across_variance_m2",
+                                                                 "mean_segment_length_m_left",
+                                                                 "mean_segment_length_m_right",
+                                                                 "absolute_mean_turn_rad_left",
+                                                                 "absolute_mean_turn_rad_right",
+                                                                 "mean_squared_turn_change_rad2_left",
+                                                                 "mean_squared_turn_change_rad2_right",
+                                                                 "shortest_segment_m",
+                                                                 "start_skew",
+                                                                 "cones_beside",
+                                                                 "end_turn_rad",
+                                                                 "end_segment_m",
+                                                                 "end_turn_change_rad",
+                                                                 "largest_offset_m",
+                                                                 "rms_offset_m",
+                                                                 "largest_skew",
+                                                                 "narrowest_m",
+                                                                 "widest_m",
+                                                                 "largest_width_change_m",
+                                                                 "near_sharpest_turn_rad",
+                                                                 "near_sharpest_turn_change_rad",
+                                                                 "near_rms_turn_change_rad",
+                                                                 "near_largest_offset_m",
+                                                                 "near_rms_offset_m",
+                                                                 "near_largest_segment_change_m",
+                                                                 "near_rms_segment_change_m",
+                                                                 "near_longest_segment_m",
+                                                                 "near_shortest_segment_m",
+                                                                 "near_largest_skew",
+                                                                 "near_rms_skew",
+                                                                 "near_curvature_difference_rad_per_m",
+                                                                 "near_cones_inside",
+                                                                 "near_cones_beside",
+                                                                 "near_cones_close",
+                                                                 "near_closeness",
+                                                                 "near_vertices",
+                                                                 "near_narrowest_m",
+                                                                 "near_widest_m",
+                                                                 "near_mean_width_m",
+                                                                 "near_width_deviation_m",
+                                                                 "near_largest_width_change_m",
+                                                                 "near_rms_width_change_m",
+                                                                 "start_lead_m",
+                                                                 "start_shift_m",
+                                                                 "start_nearest_side_m",
+                                                                 "start_nearest_ahead_m",
+                                                                 "start_farthest_ahead_m"};
 
 /// From `middle` to the cubic through two points before and two after it at even steps, across the chord of
 /// its neighbours [m].
@@ -105,12 +125,12 @@ PaperFeatures paper_features(std::span<const Point> left, std::span<const Point>
             turn.add(turning_angle(segments[i - 1], segments[i]));
         }
         if (closed) turn.add(turning_angle(segments.back(), segments.front()));
-        features[0] += length.sum / 2.0;
-        features[1 + side] = static_cast<double>(boundary.size());
-        features[4 + side] = length.variance();
-        features[6 + side] = turn.variance();
+        features[kLength] += length.sum / 2.0;
+        features[kConesLeft + side] = static_cast<double>(boundary.size());
+        features[kSegmentLengthVarianceLeft + side] = length.variance();
+        features[kTurnVarianceLeft + side] = turn.variance();
     }
-    features[kWidthVarianceFeature] = width.variance();
+    features[kWidthVariance] = width.variance();
     return features;
 }
 
@@ -121,7 +141,7 @@ struct LaneGrowth::Step {
     double offset_m = -1.0;
     double segment_change_m = -1.0;
     double skew = -1.0;
-    Surroundings cones;
+    Neighbourhood cones;
 };
 
 void LaneGrowth::add(const Step& step, Side side, Stretch& stretch) {
@@ -185,7 +205,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
         start_skew_ = std::max(start_skew_, (direction - heading_).norm());
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
-    step.cones = surroundings(graph, vertex, tip_[side], facing_tip, point);
+    step.cones = neighbourhood(graph, vertex, tip_[side], facing_tip, point);
     // Up to where the step begins.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);
@@ -210,54 +230,53 @@ LaneFeatures LaneGrowth::features() const {
     const Boundary& left = boundaries_[kLeft];
     const Boundary& right = boundaries_[kRight];
     LaneFeatures features{};
-    features[0] = (left.segment_lengths.sum + right.segment_lengths.sum) / 2.0;
+    features[kLength] = (left.segment_lengths.sum + right.segment_lengths.sum) / 2.0;
     for (const Side side : {kLeft, kRight}) {
         const Boundary& boundary = boundaries_[side];
-        features[1 + side] = static_cast<double>(boundary.vertices);
-        features[4 + side] = boundary.segment_lengths.variance();
-        features[6 + side] = boundary.turns.variance();
-        features[21 + side] = boundary.segment_lengths.mean();
-        features[23 + side] = std::abs(boundary.turns.mean());
-        features[25 + side] = boundary.turn_changes.mean_of_squares();
+        features[kConesLeft + side] = static_cast<double>(boundary.vertices);
+        features[kSegmentLengthVarianceLeft + side] = boundary.segment_lengths.variance();
+        features[kTurnVarianceLeft + side] = boundary.turns.variance();
+        features[kMeanSegmentLengthLeft + side] = boundary.segment_lengths.mean();
+        features[kAbsoluteMeanTurnLeft + side] = std::abs(boundary.turns.mean());
+        features[kMeanSquaredTurnChangeLeft + side] = boundary.turn_changes.mean_of_squares();
     }
-    features[12] = advance_deviation(tip_[kLeft], left.direction, tip_[kRight], right.direction);
-    features[13] = whole_.cones.inside;
-    features[14] = degree_.mean();
-    features[15] = whole_.sharpest_turn_rad;
-    features[16] = whole_.sharpest_turn_change_rad;
-    features[17] = whole_.longest_segment_m;
-    features[18] = whole_.skew.mean_of_squares();
-    features[19] = across_.mean();
-    features[20] = across_.variance();
-    features[27] = whole_.shortest_segment_m;
-    features[28] = start_skew_;
-    features[29] = whole_.cones.beside;
-    features[30] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
-    features[31] = std::max(left.last_segment_m, right.last_segment_m);
-    features[32] = last_turn_change_rad_;
-    features[kWholeOffset] = whole_.largest_offset_m;
-    features[kWholeOffset + 1] = std::sqrt(whole_.offsets_m.mean_of_squares());
-    features[kWholeOffset + 2] = whole_.largest_skew;
-    const std::array<double, kNearWidths - kNearSteps> of_near_steps{
-        near_.sharpest_turn_rad,
-        near_.sharpest_turn_change_rad,
-        std::sqrt(near_.turn_changes.mean_of_squares()),
-        near_.largest_offset_m,
-        std::sqrt(near_.offsets_m.mean_of_squares()),
-        near_.largest_segment_change_m,
-        std::sqrt(near_.segment_changes_m.mean_of_squares()),
-        near_.longest_segment_m,
-        near_.shortest_segment_m,
-        near_.largest_skew,
-        std::sqrt(near_.skew.mean_of_squares()),
+    features[kEndDeviation] = advance_deviation(tip_[kLeft], left.direction, tip_[kRight], right.direction);
+    features[kConesInside] = whole_.cones.inside;
+    features[kMeanDegree] = degree_.mean();
+    features[kSharpestTurn] = whole_.sharpest_turn_rad;
+    features[kSharpestTurnChange] = whole_.sharpest_turn_change_rad;
+    features[kLongestSegment] = whole_.longest_segment_m;
+    features[kMeanSquaredSkew] = whole_.skew.mean_of_squares();
+    features[kMeanAcross] = across_.mean();
+    features[kAcrossVariance] = across_.variance();
+    features[kShortestSegment] = whole_.shortest_segment_m;
+    features[kStartSkew] = start_skew_;
+    features[kConesBeside] = whole_.cones.beside;
+    features[kEndTurn] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
+    features[kEndSegment] = std::max(left.last_segment_m, right.last_segment_m);
+    features[kEndTurnChange] = last_turn_change_rad_;
+    features[kLargestOffset] = whole_.largest_offset_m;
+    features[kRmsOffset] = std::sqrt(whole_.offsets_m.mean_of_squares());
+    features[kLargestSkew] = whole_.largest_skew;
+    features[kNearSharpestTurn] = near_.sharpest_turn_rad;
+    features[kNearSharpestTurnChange] = near_.sharpest_turn_change_rad;
+    features[kNearRmsTurnChange] = std::sqrt(near_.turn_changes.mean_of_squares());
+    features[kNearLargestOffset] = near_.largest_offset_m;
+    features[kNearRmsOffset] = std::sqrt(near_.offsets_m.mean_of_squares());
+    features[kNearLargestSegmentChange] = near_.largest_segment_change_m;
+    features[kNearRmsSegmentChange] = std::sqrt(near_.segment_changes_m.mean_of_squares());
+    features[kNearLongestSegment] = near_.longest_segment_m;
+    features[kNearShortestSegment] = near_.shortest_segment_m;
+    features[kNearLargestSkew] = near_.largest_skew;
+    features[kNearRmsSkew] = std::sqrt(near_.skew.mean_of_squares());
+    features[kNearCurvatureDifference] =
         std::abs(curvature(near_.turned_rad[kLeft], near_.length_m[kLeft]) -
-                 curvature(near_.turned_rad[kRight], near_.length_m[kRight])),
-        near_.cones.inside,
-        near_.cones.beside,
-        near_.cones.close,
-        near_.cones.closeness,
-        static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2)};
-    std::ranges::copy(of_near_steps, features.begin() + kNearSteps);
+                 curvature(near_.turned_rad[kRight], near_.length_m[kRight]));
+    features[kNearConesInside] = near_.cones.inside;
+    features[kNearConesBeside] = near_.cones.beside;
+    features[kNearConesClose] = near_.cones.close;
+    features[kNearCloseness] = near_.cones.closeness;
+    features[kNearVertices] = static_cast<double>(near_.steps[kLeft] + near_.steps[kRight] + 2);
     return features;
 }
 
@@ -291,16 +310,16 @@ void add_width_features(const OnlineLaneWidth& width, const std::array<std::size
             if (i > 0) near_changes.add(change_m);
         }
     }
-    lane[kWidthVarianceFeature] = width.variance();
-    lane[kWholeWidths] = whole.narrowest_m;
-    lane[kWholeWidths + 1] = whole.widest_m;
-    lane[kWholeWidths + 2] = whole.largest_change_m;
-    lane[kNearWidths] = near.narrowest_m;
-    lane[kNearWidths + 1] = near.widest_m;
-    lane[kNearWidths + 2] = near_widths.mean();
-    lane[kNearWidths + 3] = std::sqrt(near_widths.variance());
-    lane[kNearWidths + 4] = near.largest_change_m;
-    lane[kNearWidths + 5] = std::sqrt(near_changes.mean_of_squares());
+    lane[kWidthVariance] = width.variance();
+    lane[kNarrowest] = whole.narrowest_m;
+    lane[kWidest] = whole.widest_m;
+    lane[kLargestWidthChange] = whole.largest_change_m;
+    lane[kNearNarrowest] = near.narrowest_m;
+    lane[kNearWidest] = near.widest_m;
+    lane[kNearMeanWidth] = near_widths.mean();
+    lane[kNearWidthDeviation] = std::sqrt(near_widths.variance());
+    lane[kNearLargestWidthChange] = near.largest_change_m;
+    lane[kNearRmsWidthChange] = std::sqrt(near_changes.mean_of_squares());
 }
 
 }  // namespace conelane

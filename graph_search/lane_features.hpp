@@ -1,8 +1,8 @@
 #pragma once
 
 #include "graph_search/lane_width.hpp"
+#include "graph_search/neighbourhood.hpp"
 #include "graph_search/search_graph.hpp"
-#include "graph_search/surroundings.hpp"
 #include "model/geometry.hpp"
 
 #include <array>
@@ -13,14 +13,102 @@
 
 namespace conelane {
 
-/// What the ranking of candidates sees of a lane. The first eight are those of section VII of the CLC paper,
-/// in its order: (1) length, the mean of both boundaries' [m]; (2), (3) number of cones left, right; (4)
-/// variance of the lane width, over W(L, R) of equation (12) with every query counted [m^2]; (5), (6)
-/// variance of the segment lengths left, right [m^2]; (7), (8) variance of the signed turning angles between
-/// consecutive segments left, right [rad^2]. Variances are those of the whole population, 0 where there is
-/// nothing to vary. The others are this project's, see lane_feature_names.
+/// What the ranking of candidates sees of a lane, and where it stands in LaneFeatures. The first eight are
+/// those of section VII of the CLC paper, in its order: length, the mean of both boundaries' [m]; number of
+/// cones; variance of the lane width, over W(L, R) of equation (12) with every query counted [m^2]; variance
+/// of the segment lengths [m^2]; variance of the signed turning angles between consecutive segments [rad^2].
+/// Variances are those of the whole population, 0 where there is nothing to vary. The others are this
+/// project's. lane_feature_names gives the units. Features of a pair of sides stand left, right: kConesLeft +
+/// side.
+enum LaneFeature : std::size_t {
+    // Those of the paper.
+    kLength,
+    kConesLeft,
+    kConesRight,
+    kWidthVariance,
+    kSegmentLengthVarianceLeft,
+    kSegmentLengthVarianceRight,
+    kTurnVarianceLeft,
+    kTurnVarianceRight,
+    // Length over that of the longest candidate of the scene.
+    kLongestShare,
+    // Of the two first cones, as StartVertexRules has them.
+    kStartAsymmetry,
+    kStartDistance,
+    // Of the scene.
+    kSceneCones,
+    // Of |theta_r - theta_l| at the far ends, equation (4), as advance_deviation has it.
+    kEndDeviation,
+    // Inside of the lane: no cone should lie there. As the triangles see them that the lane grows by.
+    kConesInside,
+    // Neighbours of its cones in the search graph.
+    kMeanDegree,
+    kSharpestTurn,
+    kSharpestTurnChange,
+    kLongestSegment,
+    // Chord between the direction of a segment and that of the last one opposite when it was added, squared.
+    kMeanSquaredSkew,
+    // Between the two last cones after each step.
+    kMeanAcross,
+    kAcrossVariance,
+    kMeanSegmentLengthLeft,
+    kMeanSegmentLengthRight,
+    kAbsoluteMeanTurnLeft,
+    kAbsoluteMeanTurnRight,
+    kMeanSquaredTurnChangeLeft,
+    kMeanSquaredTurnChangeRight,
+    kShortestSegment,
+    // Largest chord between the direction of a first segment and the car's heading.
+    kStartSkew,
+    // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
+    kConesBeside,
+    // At the far ends: the sharper turn, the longer segment, the last change of a turn.
+    kEndTurn,
+    kEndSegment,
+    kEndTurnChange,
+    // Vertices off where the two on each side of them would have one; skew as above.
+    kLargestOffset,
+    kRmsOffset,
+    kLargestSkew,
+    // Of the widths at the vertices; a change is from a vertex to the next of its side.
+    kNarrowest,
+    kWidest,
+    kLargestWidthChange,
+    // Of the near part alone.
+    kNearSharpestTurn,
+    kNearSharpestTurnChange,
+    kNearRmsTurnChange,
+    kNearLargestOffset,
+    kNearRmsOffset,
+    kNearLargestSegmentChange,
+    kNearRmsSegmentChange,
+    kNearLongestSegment,
+    kNearShortestSegment,
+    kNearLargestSkew,
+    kNearRmsSkew,
+    kNearCurvatureDifference,
+    kNearConesInside,
+    kNearConesBeside,
+    // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
+    kNearConesClose,
+    kNearCloseness,
+    kNearVertices,
+    kNearNarrowest,
+    kNearWidest,
+    kNearMeanWidth,
+    kNearWidthDeviation,
+    kNearLargestWidthChange,
+    kNearRmsWidthChange,
+    // Of the two first cones again: where a false one stands in the place of one of them, a lane may be
+    // right in all the rest.
+    kStartLead,
+    kStartShift,
+    kStartNearestSide,
+    kStartNearestAhead,
+    kStartFarthestAhead,
+    kLaneFeatureCount
+};
 inline constexpr std::size_t kPaperFeatureCount = 8;
-inline constexpr std::size_t kLaneFeatureCount = 67;
 using PaperFeatures = std::array<double, kPaperFeatureCount>;
 using LaneFeatures = std::array<double, kLaneFeatureCount>;
 
@@ -65,7 +153,7 @@ class LaneGrowth {
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
     /// All features but those of the width, which add_width_features sets, and what belongs to the scene
-    /// (`longest_share`, `cones`, of `start_*` all but `start_skew`); these are left 0.
+    /// (kLongestShare, kSceneCones, of kStart* all but kStartSkew); these are left 0.
     [[nodiscard]] LaneFeatures features() const;
     /// By side, the vertices of the near part, its first one included.
     [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;
@@ -99,7 +187,7 @@ class LaneGrowth {
         std::array<double, 2> turned_rad{0.0, 0.0};  ///< by side, with sign
         std::array<double, 2> length_m{0.0, 0.0};
         std::array<std::size_t, 2> steps{0, 0};
-        Surroundings cones;
+        Neighbourhood cones;
     };
     /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
     struct Step;
@@ -120,13 +208,5 @@ class LaneGrowth {
 /// the scene. `near_vertices`: by side, at least one.
 void add_width_features(const OnlineLaneWidth& width, const std::array<std::size_t, 2>& near_vertices,
                         LaneFeatures& lane);
-
-/// Features that LaneGrowth leaves to others.
-inline constexpr std::size_t kWidthVarianceFeature = 3;
-inline constexpr std::size_t kLongestShareFeature = 8;
-inline constexpr std::size_t kStartAsymmetryFeature = 9;
-inline constexpr std::size_t kStartDistanceFeature = 10;
-inline constexpr std::size_t kConesFeature = 11;
-inline constexpr std::size_t kStartPlaceFeatures = 62;  ///< the first of five, see lane_feature_names
 
 }  // namespace conelane

@@ -1,6 +1,6 @@
 #include "graph_search/lane_width.hpp"
 
-#include "graph_search/wide_loops.hpp"
+#include "graph_search/simd_batch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +31,10 @@ SquaredDistance to_segment(double px, double py, double dx, double dy, double in
     return {ex * ex + ey * ey, foot};
 }
 
-static_assert(kDoubles <= BoundaryArrays::kSpare);
+static_assert(kDoublesPerBatch <= BoundaryArrays::kSpare);
 
 constexpr std::size_t whole_fours(std::size_t count) {
-    return (count + kDoubles - 1) / kDoubles * kDoubles;
+    return (count + kDoublesPerBatch - 1) / kDoublesPerBatch * kDoublesPerBatch;
 }
 
 /// Of the first `count`; those behind them, up to a whole number of fours, are overwritten.
@@ -43,8 +43,8 @@ inline double smallest(double* values, std::size_t count) {
     const std::size_t end = whole_fours(count);
     for (std::size_t i = count; i < end; ++i) values[i] = kNone;
     Doubles lanes{kNone, kNone, kNone, kNone};
-    for (std::size_t i = 0; i < end; i += kDoubles) {
-        const Doubles next = *reinterpret_cast<const LooseDoubles*>(values + i);
+    for (std::size_t i = 0; i < end; i += kDoublesPerBatch) {
+        const Doubles next = *reinterpret_cast<const UnalignedDoubles*>(values + i);
         lanes = next < lanes ? next : lanes;
     }
     return std::min(std::min(lanes[0], lanes[1]), std::min(lanes[2], lanes[3]));
@@ -62,11 +62,11 @@ struct Measured {
 
 /// `i`: the segment of `own` that is new. Where there is one facing vertex, nothing is nearest to the new
 /// one.
-CONELANE_WIDE_LOOPS void measure(const BoundaryArrays& own, std::size_t i, const BoundaryArrays& facing,
-                                 Measured& measured) {
+CONELANE_SIMD void measure(const BoundaryArrays& own, std::size_t i, const BoundaryArrays& facing,
+                           Measured& measured) {
     const std::size_t n = facing.size;
-    const auto at = [](const std::vector<double>& values, std::size_t k) -> const LooseDoubles& {
-        return *reinterpret_cast<const LooseDoubles*>(values.data() + k);
+    const auto at = [](const std::vector<double>& values, std::size_t k) -> const UnalignedDoubles& {
+        return *reinterpret_cast<const UnalignedDoubles*>(values.data() + k);
     };
     const double from_x = own.x[i];
     const double from_y = own.y[i];
@@ -76,7 +76,7 @@ CONELANE_WIDE_LOOPS void measure(const BoundaryArrays& own, std::size_t i, const
     const double dy = own.dy[i];
     const double inverse = own.inverse_squared_length[i];
     // As to_segment does it, up to a whole number of fours: what lies behind the last one is spare.
-    for (std::size_t k = 0; k < whole_fours(n); k += kDoubles) {
+    for (std::size_t k = 0; k < whole_fours(n); k += kDoublesPerBatch) {
         const Doubles px = at(facing.x, k) - from_x;
         const Doubles py = at(facing.y, k) - from_y;
         Doubles foot = (px * dx + py * dy) * inverse;
@@ -84,10 +84,10 @@ CONELANE_WIDE_LOOPS void measure(const BoundaryArrays& own, std::size_t i, const
         foot = foot < 1.0 ? foot : Doubles{} + 1.0;
         const Doubles ex = px - foot * dx;
         const Doubles ey = py - foot * dy;
-        *reinterpret_cast<LooseDoubles*>(measured.to_segment + k) = ex * ex + ey * ey;
-        *reinterpret_cast<LooseDoubles*>(measured.foot + k) = foot;
+        *reinterpret_cast<UnalignedDoubles*>(measured.to_segment + k) = ex * ex + ey * ey;
+        *reinterpret_cast<UnalignedDoubles*>(measured.foot + k) = foot;
     }
-    for (std::size_t k = 0; k < whole_fours(n - 1); k += kDoubles) {
+    for (std::size_t k = 0; k < whole_fours(n - 1); k += kDoublesPerBatch) {
         const Doubles px = to_x - at(facing.x, k);
         const Doubles py = to_y - at(facing.y, k);
         const Doubles facing_dx = at(facing.dx, k);
@@ -97,7 +97,7 @@ CONELANE_WIDE_LOOPS void measure(const BoundaryArrays& own, std::size_t i, const
         foot = foot < 1.0 ? foot : Doubles{} + 1.0;
         const Doubles ex = px - foot * facing_dx;
         const Doubles ey = py - foot * facing_dy;
-        *reinterpret_cast<LooseDoubles*>(measured.to_vertex + k) = ex * ex + ey * ey;
+        *reinterpret_cast<UnalignedDoubles*>(measured.to_vertex + k) = ex * ex + ey * ey;
     }
     measured.nearest_to_segment = smallest(measured.to_segment, n);
     measured.nearest_to_vertex = smallest(measured.to_vertex, n - 1);
@@ -118,8 +118,8 @@ struct TooWide {
 };
 
 /// The row of `n` queries, lowered by what was measured.
-CONELANE_WIDE_LOOPS TooWide lower(const Row& before, const Measured& measured, std::size_t n,
-                                  double squared_w_max, const Row& after) {
+CONELANE_SIMD TooWide lower(const Row& before, const Measured& measured, std::size_t n, double squared_w_max,
+                            const Row& after) {
     const double* const __restrict old_vertex = before.vertex_squared;
     const double* const __restrict old_segment = before.segment_squared;
     const double* const __restrict to_segment_squared = measured.to_segment;
@@ -155,20 +155,21 @@ struct WidthSums {
     double squares = 0.0;
 };
 
-CONELANE_WIDE_LOOPS void add_widths(const double* squared, std::size_t count, WidthSums& sums) {
+CONELANE_SIMD void add_widths(const double* squared, std::size_t count, WidthSums& sums) {
     Doubles widths{};
     Doubles squares{};
     std::size_t i = 0;
-    for (; i + kDoubles <= count; i += kDoubles) {
-        const Doubles squared_m2 = *reinterpret_cast<const LooseDoubles*>(squared + i);
+    for (; i + kDoublesPerBatch <= count; i += kDoublesPerBatch) {
+        const Doubles squared_m2 = *reinterpret_cast<const UnalignedDoubles*>(squared + i);
         squares += squared_m2;
-        for (std::size_t lane = 0; lane < kDoubles; ++lane) widths[lane] += std::sqrt(squared_m2[lane]);
+        for (std::size_t lane = 0; lane < kDoublesPerBatch; ++lane)
+            widths[lane] += std::sqrt(squared_m2[lane]);
     }
     for (; i < count; ++i) {
         sums.widths += std::sqrt(squared[i]);
         sums.squares += squared[i];
     }
-    for (std::size_t lane = 0; lane < kDoubles; ++lane) {
+    for (std::size_t lane = 0; lane < kDoublesPerBatch; ++lane) {
         sums.widths += widths[lane];
         sums.squares += squares[lane];
     }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -10,6 +13,25 @@ double measure(double sine, double cosine) {
     const double sum = sine + std::abs(cosine);
     if (sum == 0.0) return 0.0;
     return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
+}
+
+/// Insertion is fastest up to about so many.
+constexpr std::size_t kFew = 48;
+
+/// Equal ones stay in the order of the vertices, which they come in.
+void sort_by_cost(std::span<NextVertex> options) {
+    if (options.size() > kFew) {
+        std::ranges::sort(options, {},
+                          [](const NextVertex& option) { return std::pair(option.cost, option.vertex); });
+        return;
+    }
+    for (std::size_t i = 1; i < options.size(); ++i) {
+        const NextVertex option = options[i];
+        std::size_t place = i;
+        for (; place > 0 && options[place - 1].cost > option.cost; --place)
+            options[place] = options[place - 1];
+        options[place] = option;
+    }
 }
 
 }  // namespace
@@ -41,15 +63,9 @@ NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& d
         const double turning = turning_measure(direction, segment);
         double cost = turning;
         if (distance_weight_per_m_ > 0.0) cost += distance_weight_per_m_ * segment.norm();
-        const NextVertex option{neighbour, edge++, turning, cost};
-        // Insertion keeps equal ones in the order of the vertices, which is that of `neighbours`.
-        options_.push_back(option);
-        std::size_t place = options_.size() - 1;
-        for (; place > begin && options_[place - 1].cost > option.cost; --place) {
-            options_[place] = options_[place - 1];
-        }
-        options_[place] = option;
+        options_.push_back({neighbour, edge++, turning, cost});
     }
+    sort_by_cost(std::span(options_).subspan(begin));
     return {begin, static_cast<std::uint32_t>(options_.size())};
 }
 

@@ -2,6 +2,7 @@
 
 #include "graph_search/search_graph.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -49,6 +50,8 @@ class NextVertexDecider {
             ranges_[edge] = sorted(to, graph_->position(to) - graph_->position(from));
         return ranges_[edge];
     }
+    /// Of all ranges so far.
+    [[nodiscard]] std::size_t option_count() const { return options_.size(); }
     [[nodiscard]] const NextVertex& option(std::uint32_t index) const { return options_[index]; }
 
   private:

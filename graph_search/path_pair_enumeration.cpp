@@ -8,8 +8,8 @@
 namespace conelane {
 namespace {
 
-/// The clock is read once in so many iterations.
-constexpr std::int64_t kIterationsPerClockReading = 32;
+/// Memory is added up once in so many iterations.
+constexpr std::int64_t kIterationsPerSum = 32;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
 constexpr std::uint32_t kNoOption = ~std::uint32_t{0};
@@ -86,28 +86,42 @@ void PathPairs::vertices(const PathPair& pair, Side side, std::vector<Vertex>& v
     std::ranges::reverse(vertices);
 }
 
-void PathPairs::add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
-                         const LaneConstraints& boundaries, const LaneGrowth& growth,
-                         const EnumerationRules& rules) {
+std::size_t PathPairs::bytes() const {
+    return steps_.size() * sizeof(Step) + found_.size() * (sizeof(PathPair) + 4 * sizeof(std::uint64_t)) +
+           features_.size() * sizeof(LaneFeatures);
+}
+
+std::size_t PathPairs::add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
+                                const LaneConstraints& boundaries, const LaneGrowth& growth,
+                                const EnumerationRules& rules) {
     const BoundaryArrays& left = boundaries.width().boundary(kLeft);
     const BoundaryArrays& right = boundaries.width().boundary(kRight);
-    if (left.size < 2 || right.size < 2) return;
-    if (!known_.insert(fingerprint)) return;
+    if (left.size < 2 || right.size < 2) return 0;
+    if (!known_.insert(fingerprint)) return 0;
     found_.push_back(pair);
     if (rules.with_features) {
         features_.push_back(growth.features());
         add_width_features(boundaries.width(), growth.near_vertices(), features_.back());
     }
+    return left.size + right.size + add_closed(pair, boundaries, rules);
+}
 
+std::size_t PathPairs::add_closed(const PathPair& pair, const LaneConstraints& boundaries,
+                                  const EnumerationRules& rules) {
+    const BoundaryArrays& left = boundaries.width().boundary(kLeft);
+    const BoundaryArrays& right = boundaries.width().boundary(kRight);
     const double left_gap_m = (left.vertex(left.size - 1) - left.vertex(0)).norm();
     const double right_gap_m = (right.vertex(right.size - 1) - right.vertex(0)).norm();
-    if (left_gap_m > rules.d_max_m || right_gap_m > rules.d_max_m) return;
+    if (left_gap_m > rules.d_max_m || right_gap_m > rules.d_max_m) return 0;
     for (const Side side : {kLeft, kRight}) {
         const BoundaryArrays& boundary = boundaries.width().boundary(side);
         closing_points_[side].clear();
         for (std::size_t i = 0; i < boundary.size; ++i) closing_points_[side].push_back(boundary.vertex(i));
     }
-    if (!can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules.d_max_m, rules.bounds)) return;
+    // Each segment against each other one, several times.
+    const std::size_t work = 4 * (left.size + right.size) * (left.size + right.size);
+    if (!can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules.d_max_m, rules.bounds))
+        return work;
     found_.push_back(
         {pair.last_step, true, pair.iteration, pair.length_m + (left_gap_m + right_gap_m) / 2.0});
     if (rules.with_features) {
@@ -116,21 +130,53 @@ void PathPairs::add_lane(const PathPair& pair, const PathPairFingerprint& finger
         std::ranges::copy(closed, features.begin());
         features_.push_back(features);
     }
+    return work;
 }
 
 bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const Point& heading,
                               const EnumerationRules& rules, SearchBudget& budget, PathPairs& pairs,
                               const PathPairVertices& guide) {
+    if (budget.read_clock()) return false;
+    begin(graph, start, heading, rules, pairs, guide);
+    std::size_t options = next_vertex_.option_count();
+    while (!calls_.empty()) {
+        if (budget.iterations % kIterationsPerSum == 0) {
+            (void)budget.occupy(pairs.bytes() + next_vertex_.option_count() * sizeof(NextVertex));
+        }
+        if (budget.spent()) return false;
+        ++budget.iterations;
+        Call& call = calls_.back();
+        const LaneConstraints::State& lane = constraints_.state();
+        const std::array<bool, 2> extensible{drop_visited(call, kLeft), drop_visited(call, kRight)};
+        const bool given_up = rules_.backtracking && lane.backtrack(extensible[kLeft], extensible[kRight]);
+        if (given_up || (!extensible[kLeft] && !extensible[kRight])) {
+            end_call();
+            continue;
+        }
+        const Choice choice = choose(call, extensible);
+        extend(choice, extensible, budget, pairs);
+        // The lane is measured along its length; options are sorted and looked at as they come.
+        const std::size_t measured =
+            constraints_.width().boundary(kLeft).size + constraints_.width().boundary(kRight).size;
+        (void)budget.spend(50 + measured + 10 * (next_vertex_.option_count() - options));
+        options = next_vertex_.option_count();
+    }
+    return true;
+}
+
+void PathPairEnumeration::begin(const SearchGraph& graph, StartPair start, const Point& heading,
+                                const EnumerationRules& rules, PathPairs& pairs,
+                                const PathPairVertices& guide) {
     graph_ = &graph;
     rules_ = rules;
-    const double phi_max = turning_measure(rules.bounds.phi_max_rad);
+    start_ = start;
+    phi_max_ = turning_measure(rules.bounds.phi_max_rad);
     next_vertex_.reset(graph, rules.next_vertex_distance_weight / rules.d_max_m);
     constraints_.reset(graph.position(start.left), graph.position(start.right), rules.bounds,
                        rules.width_backtracking);
     for (std::vector<std::uint8_t>& side : on_path_) side.assign(graph.vertex_count(), 0);
     on_path_[kLeft][start.left] = 1;
     on_path_[kRight][start.right] = 1;
-
     Call first{
         {next_vertex_.after_start(start.left, heading), next_vertex_.after_start(start.right, heading)},
         {0, 0},
@@ -148,82 +194,76 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
     calls_.assign(1, first);
     guide_ = guide;
     guide_position_ = {1, 1};
-    bool follows_guide = guide_[kLeft].size() > 1 || guide_[kRight].size() > 1;
+    follows_guide_ = guide_[kLeft].size() > 1 || guide_[kRight].size() > 1;
+}
 
-    while (!calls_.empty()) {
-        if (budget.iterations % kIterationsPerClockReading == 0 &&
-            budget.deadline != SearchBudget::Clock::time_point::max()) {
-            budget.out_of_time = SearchBudget::Clock::now() >= budget.deadline;
-        }
-        if (budget.spent()) return false;
-        ++budget.iterations;
-        Call& call = calls_.back();
-        const LaneConstraints::State& lane = constraints_.state();
-        const std::array<bool, 2> extensible{drop_visited(call, kLeft), drop_visited(call, kRight)};
-        const bool given_up = rules_.backtracking && lane.backtrack(extensible[kLeft], extensible[kRight]);
-        if (given_up || (!extensible[kLeft] && !extensible[kRight])) {
-            if (calls_.size() > 1) {
-                on_path_[call.pushed][call.last[call.pushed]] = 0;
-                constraints_.pop(call.pushed);
-            }
-            calls_.pop_back();
-            follows_guide = false;
-            continue;
-        }
-
-        NextOptions options{kNoOption, kNoOption};
-        if (follows_guide) options = guided_options(call);
-        const bool guided = options != NextOptions{kNoOption, kNoOption};
-        follows_guide = guided;
-        if (!guided) {
-            for (const Side side : {kLeft, kRight}) {
-                if (extensible[side]) options[side] = call.unvisited[side].begin;
-            }
-        }
-        Side side = options[kLeft] != kNoOption ? kLeft : kRight;
-        if (options[kLeft] != kNoOption && options[kRight] != kNoOption) side = choose_side(call, options);
-        const NextVertex next = next_vertex_.option(options[side]);
-        if (guided) {
-            call.visited_early[side] = next.vertex;
-            ++guide_position_[side];
-        } else {
-            ++call.unvisited[side].begin;
-            ++call.tried[side];
-        }
-        const Vertex from = call.last[side];
-        const bool first_segment = from == (side == kLeft ? start.left : start.right);
-        const Point segment = graph.position(next.vertex) - graph.position(from);
-        constraints_.push(side, graph.position(next.vertex), first_segment || next.turning < phi_max);
-        const LaneConstraints::State& extended = constraints_.state();
-        const bool backtrack =
-            rules_.backtracking && extended.backtrack(extensible[kLeft], extensible[kRight]);
-        if (backtrack && !extended.feasible) {
-            constraints_.pop(side);
-            follows_guide = false;
-            continue;
-        }
-        Call below = call;
-        if (!guided) below.discrepancies += call.tried[side] - 1;
-        below.tried[side] = 0;
-        below.last[side] = next.vertex;
-        below.direction[side] = segment;
-        const double segment_m = segment.norm();
-        below.length_m[side] += segment_m;
-        below.fingerprint.add(side, next.vertex);
-        if (rules_.with_features) below.growth.push(graph, side, next.vertex);
-        below.step = pairs.add_step(call.step, side, next.vertex);
-        below.pushed = side;
-        if (extended.feasible) {
-            const double length_m = (below.length_m[kLeft] + below.length_m[kRight]) / 2.0;
-            pairs.add_lane({below.step, false, budget.iterations, length_m}, below.fingerprint, constraints_,
-                           below.growth, rules_);
-        }
-        below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
-        below.visited_early[side] = kNoVertex;
-        on_path_[side][next.vertex] = 1;
-        calls_.push_back(below);
+void PathPairEnumeration::end_call() {
+    const Call& call = calls_.back();
+    if (calls_.size() > 1) {
+        on_path_[call.pushed][call.last[call.pushed]] = 0;
+        constraints_.pop(call.pushed);
     }
-    return true;
+    calls_.pop_back();
+    follows_guide_ = false;
+}
+
+PathPairEnumeration::Choice PathPairEnumeration::choose(Call& call, const std::array<bool, 2>& extensible) {
+    NextOptions options{kNoOption, kNoOption};
+    if (follows_guide_) options = guided_options(call);
+    const bool guided = options != NextOptions{kNoOption, kNoOption};
+    follows_guide_ = guided;
+    if (!guided) {
+        for (const Side side : {kLeft, kRight}) {
+            if (extensible[side]) options[side] = call.unvisited[side].begin;
+        }
+    }
+    Side side = options[kLeft] != kNoOption ? kLeft : kRight;
+    if (options[kLeft] != kNoOption && options[kRight] != kNoOption) side = choose_side(call, options);
+    const NextVertex next = next_vertex_.option(options[side]);
+    if (guided) {
+        call.visited_early[side] = next.vertex;
+        ++guide_position_[side];
+    } else {
+        ++call.unvisited[side].begin;
+        ++call.tried[side];
+    }
+    return {side, next, guided};
+}
+
+void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>& extensible,
+                                 SearchBudget& budget, PathPairs& pairs) {
+    const auto& [side, next, guided] = choice;
+    const Call& call = calls_.back();
+    const Vertex from = call.last[side];
+    const bool first_segment = from == (side == kLeft ? start_.left : start_.right);
+    const Point segment = graph_->position(next.vertex) - graph_->position(from);
+    constraints_.push(side, graph_->position(next.vertex), first_segment || next.turning < phi_max_);
+    const LaneConstraints::State& extended = constraints_.state();
+    if (rules_.backtracking && !extended.feasible &&
+        extended.backtrack(extensible[kLeft], extensible[kRight])) {
+        constraints_.pop(side);
+        follows_guide_ = false;
+        return;
+    }
+    Call below = call;
+    if (!guided) below.discrepancies += call.tried[side] - 1;
+    below.tried[side] = 0;
+    below.last[side] = next.vertex;
+    below.direction[side] = segment;
+    below.length_m[side] += segment.norm();
+    below.fingerprint.add(side, next.vertex);
+    if (rules_.with_features) below.growth.push(*graph_, side, next.vertex);
+    below.step = pairs.add_step(call.step, side, next.vertex);
+    below.pushed = side;
+    if (extended.feasible) {
+        const double length_m = (below.length_m[kLeft] + below.length_m[kRight]) / 2.0;
+        (void)budget.spend(pairs.add_lane({below.step, false, budget.iterations, length_m}, below.fingerprint,
+                                          constraints_, below.growth, rules_));
+    }
+    below.unvisited[side] = next_vertex_.after(from, next.vertex, next.edge);
+    below.visited_early[side] = kNoVertex;
+    on_path_[side][next.vertex] = 1;
+    calls_.push_back(below);
 }
 
 bool PathPairEnumeration::drop_visited(Call& call, Side side) const {

@@ -3,10 +3,10 @@
 #include "graph_search/lane_constraints.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/next_vertex.hpp"
+#include "graph_search/search_budget.hpp"
 #include "graph_search/search_graph.hpp"
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -34,18 +34,6 @@ struct EnumerationRules {
     /// k, and a lane's are added up.
     std::uint32_t most_discrepancies = std::numeric_limits<std::uint32_t>::max();
     bool with_features = false;  ///< whether PathPairs::features is filled
-};
-
-/// What a search may spend, and what it has spent; several enumerations may draw on one.
-struct SearchBudget {
-    using Clock = std::chrono::steady_clock;
-
-    std::int64_t iteration_limit = 2500;  ///< it_max
-    Clock::time_point deadline = Clock::time_point::max();
-    std::int64_t iterations = 0;
-    bool out_of_time = false;
-
-    [[nodiscard]] bool spent() const { return iterations >= iteration_limit || out_of_time; }
 };
 
 /// A feasible path pair, as the last of the steps that built it.
@@ -103,15 +91,23 @@ class PathPairs {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     /// Returns the number of the new step. The first two of a pair are its start, left and right.
     std::uint32_t add_step(std::uint32_t before, Side side, Vertex vertex);
+    /// About what is kept.
+    [[nodiscard]] std::size_t bytes() const;
     /// Adds a feasible lane, unless a side has a single vertex or it is there already by the same steps;
     /// where it can be closed (section IV-E) it is followed by itself, closed. `fingerprint`, `boundaries`
     /// and `growth` are those of `pair`, which is open; `growth` is read only where rules.with_features.
-    void add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
-                  const LaneConstraints& boundaries, const LaneGrowth& growth, const EnumerationRules& rules);
+    /// Returns the work done, as SearchBudget counts it.
+    std::size_t add_lane(const PathPair& pair, const PathPairFingerprint& fingerprint,
+                         const LaneConstraints& boundaries, const LaneGrowth& growth,
+                         const EnumerationRules& rules);
     /// To fill in what belongs to the scene.
     [[nodiscard]] std::span<LaneFeatures> features() { return features_; }
 
   private:
+    /// Adds `pair` closed, if its ends are near and the constraints hold. Returns the work.
+    std::size_t add_closed(const PathPair& pair, const LaneConstraints& boundaries,
+                           const EnumerationRules& rules);
+
     struct Step {
         std::uint32_t before;
         Vertex vertex;
@@ -139,8 +135,9 @@ class PathPairEnumeration {
     /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
     /// rules.most_discrepancies that are not there yet by the same steps, in the order met; each one that can
     /// be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in which an iteration is
-    /// one run of the loop in line 3. Returns whether the enumeration is complete. Keeps memory from call to
-    /// call. Precondition: `heading` is a unit vector, start.left != start.right.
+    /// one run of the loop in line 3; where it is spent the search stops, and what was found stays. Returns
+    /// whether the enumeration is complete. Keeps memory from call to call. Precondition: `heading` is a unit
+    /// vector, start.left != start.right.
     ///
     /// `guide`: a lane to follow first (warm start, section IV-F), its start included; empty for none. The
     /// search goes along it as far as it can, LRD deciding between the sides, and then on as ever: the same
@@ -167,6 +164,24 @@ class PathPairEnumeration {
     /// By side, an index of NextVertexDecider::option.
     using NextOptions = std::array<std::uint32_t, 2>;
 
+    /// Where a call goes on.
+    struct Choice {
+        Side side;
+        NextVertex next;
+        bool guided;
+    };
+
+    /// Starts with the call that has the start alone.
+    void begin(const SearchGraph& graph, StartPair start, const Point& heading, const EnumerationRules& rules,
+               PathPairs& pairs, const PathPairVertices& guide);
+    /// Returns from the last call.
+    void end_call();
+    /// Chooses the next vertex of the last call and marks it visited. Precondition: a side is extensible.
+    Choice choose(Call& call, const std::array<bool, 2>& extensible);
+    /// Extends the lane of the last call; unless BTD gives the longer lane up, that becomes a call, and where
+    /// it is feasible it is added to `pairs`.
+    void extend(const Choice& choice, const std::array<bool, 2>& extensible, SearchBudget& budget,
+                PathPairs& pairs);
     /// Drops visited vertices from the front of what a side has left; returns whether any is left.
     bool drop_visited(Call& call, Side side) const;
     /// Where the guide goes on, for the sides where it does; both sides' options keep kNoOption otherwise.
@@ -179,8 +194,11 @@ class PathPairEnumeration {
     LaneConstraints constraints_;
     std::array<std::vector<std::uint8_t>, 2> on_path_;
     std::vector<Call> calls_;
+    StartPair start_{};
+    double phi_max_ = 0.0;  ///< as turning_measure
     PathPairVertices guide_;
     std::array<std::size_t, 2> guide_position_{0, 0};  ///< next vertex of each side of the guide
+    bool follows_guide_ = false;
 };
 
 }  // namespace conelane

@@ -1,6 +1,6 @@
 #include "graph_search/ranking.hpp"
 
-#include "graph_search/wide_loops.hpp"
+#include "graph_search/simd_batch.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
@@ -18,7 +18,12 @@ constexpr std::size_t kBatch = 16;
 constexpr std::size_t kUnits = 4;
 
 /// First of each pair of sides.
-constexpr std::array<std::size_t, 6> kPairs{1, 4, 6, 21, 23, 25};
+constexpr std::array<LaneFeature, 6> kPairs{kConesLeft,
+                                            kSegmentLengthVarianceLeft,
+                                            kTurnVarianceLeft,
+                                            kMeanSegmentLengthLeft,
+                                            kAbsoluteMeanTurnLeft,
+                                            kMeanSquaredTurnChangeLeft};
 
 /// Numbers that the compiler keeps in registers, whatever their width is.
 using Floats [[gnu::vector_size(32)]] = float;
@@ -31,8 +36,8 @@ struct Batch {
 };
 
 /// Adds to `sums` what `kUnits` units make of a batch. `weights`: of all inputs, kUnits at a time.
-CONELANE_WIDE_LOOPS void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
-                                   const float* bias, const float* output, Batch& sums) {
+CONELANE_SIMD void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
+                             const float* bias, const float* output, Batch& sums) {
     std::array<Batch, kUnits> units;
     for (Batch& unit : units) unit.part[0] = unit.part[1] = Floats{};
     for (std::size_t i = 0; i < input_count; ++i, weights += kUnits) {
@@ -109,10 +114,10 @@ class RankNet final : public LaneRanking {
 void network_inputs(const LaneFeatures& lane, std::span<double> inputs) {
     assert(inputs.size() <= lane.size());
     std::copy_n(lane.begin(), inputs.size(), inputs.begin());
-    for (const std::size_t left : kPairs) {
+    for (const LaneFeature left : kPairs) {
         if (left >= inputs.size()) break;
-        inputs[left] = (lane[left] + lane[left + 1]) / 2.0;
-        inputs[left + 1] = std::abs(lane[left] - lane[left + 1]) / 2.0;
+        inputs[left] = (lane[left] + lane[left + kRight]) / 2.0;
+        inputs[left + kRight] = std::abs(lane[left] - lane[left + kRight]) / 2.0;
     }
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include "graph_search/search_budget.hpp"
 #include "model/geometry.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace conelane {
@@ -20,11 +23,9 @@ inline constexpr Side kRight = 1;
     return 1 - side;
 }
 
-/// Which pairs of points within d_max are joined.
-enum class SearchGraphKind {
-    all_pairs,  ///< equation (2)
-    delaunay,   ///< section IV-B: only those that the Delaunay triangulation joins, too few of them
-};
+/// Gives the pairs of points that may be joined, each one in any order; may give pairs that are too far
+/// apart.
+using EdgeRule = std::function<std::vector<std::pair<Vertex, Vertex>>(std::span<const Point>)>;
 
 /// Which points may follow each other on a boundary: the simple undirected graph of equations (1) and (2) of
 /// the CLC paper, all pairs at most d_max apart. Two points at the same place are not joined: a segment
@@ -34,11 +35,12 @@ class SearchGraph {
     /// A neighbour together with the number of the directed edge that leads to it.
     using DirectedEdge = std::uint32_t;
 
-    /// delaunay: the dual of the Voronoi diagram of the points, rounded to a grid that divides their extent
-    /// by 2^30. Of four and more points on an empty circle only the sides of their polygon are joined, of
-    /// points that fall on one place of the grid only the first is.
-    void build(std::span<const Point> points, double d_max_m,
-               SearchGraphKind kind = SearchGraphKind::all_pairs);
+    /// With a rule only those of its pairs that are at most d_max apart are joined.
+    void build(std::span<const Point> points, double d_max_m, const EdgeRule& rule = {});
+    /// The same within a budget of time and memory. Returns false where that is spent: then there is no
+    /// graph.
+    [[nodiscard]] bool build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
+                             SearchBudget& budget);
 
     [[nodiscard]] std::size_t vertex_count() const { return points_.size(); }
     /// Each undirected edge counts twice.
@@ -64,7 +66,7 @@ class SearchGraph {
     [[nodiscard]] bool adjacent(Vertex a, Vertex b) const;
 
   private:
-    void keep_delaunay_edges();
+    void keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs);
 
     struct Cell {
         double column;
@@ -78,7 +80,8 @@ class SearchGraph {
     std::vector<Vertex> neighbours_;
     std::vector<double> neighbour_x_;  ///< kSpare more than there are neighbours
     std::vector<double> neighbour_y_;
-    std::vector<Cell> cells_;
+    std::vector<Cell> cell_of_;  ///< by point
+    std::vector<Cell> cells_;    ///< the same in their own order
 };
 
 }  // namespace conelane

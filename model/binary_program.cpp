@@ -23,7 +23,20 @@ void BinaryProgram::truncate_rows(std::size_t first) {
     entry_values.resize(entry_columns.size());
 }
 
-RowWriter::RowWriter(BinaryProgram& program) : program_(program), position_(program.columns.size(), -1) {}
+RowWriter::RowWriter(BinaryProgram& program, const Deadline* deadline)
+    : program_(program), deadline_(deadline), position_(program.columns.size(), -1) {}
+
+bool RowWriter::stop() {
+    constexpr int kRowsPerClock = 8;
+    if (deadline_ == nullptr || struck_ || --until_clock_ > 0) return struck_.has_value();
+    until_clock_ = kRowsPerClock;
+    if (program_.columns.size() + program_.entry_columns.size() > kMostProgramEntries) {
+        struck_ = StopReason::memory;
+    } else if (deadline_->passed()) {
+        struck_ = StopReason::time;
+    }
+    return struck_.has_value();
+}
 
 void RowWriter::begin(const Label& label, double lower, double upper) {
     program_.rows.push_back({label, lower, upper});

@@ -1,7 +1,11 @@
 #pragma once
 
+#include "model/deadline.hpp"
+#include "model/stop_reason.hpp"
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -60,10 +64,19 @@ struct BinaryProgram {
     void truncate_rows(std::size_t first);
 };
 
+/// A program that is built within limits has at most so many columns and entries together, below 300 MB; a
+/// solver that is loaded with it takes several times as much.
+inline constexpr std::size_t kMostProgramEntries = 4'000'000;
+
 /// Writes rows into a program; terms of the same column add up.
 class RowWriter {
   public:
-    explicit RowWriter(BinaryProgram& program);
+    /// With a deadline, `stop` says when it has passed, or the program is as large as it may become.
+    explicit RowWriter(BinaryProgram& program, const Deadline* deadline = nullptr);
+
+    /// To be asked between rows by who writes many of them: what is written from then on is of no use.
+    [[nodiscard]] bool stop();
+    [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
 
     void begin(const Label& label, double lower, double upper);
     void add(int column, double coefficient);
@@ -71,6 +84,9 @@ class RowWriter {
 
   private:
     BinaryProgram& program_;
+    const Deadline* deadline_;
+    int until_clock_ = 0;
+    std::optional<StopReason> struck_;
     std::vector<int> position_;  ///< of a column in the open row, -1 where it has none
 };
 

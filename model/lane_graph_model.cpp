@@ -5,23 +5,33 @@
 namespace conelane {
 
 LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation)
-    : problem_(&problem), formulation_(formulation) {
-    build();
+    : formulation_(formulation) {
+    update(problem);
 }
 
 void LaneGraphModel::update(const LaneGraphProblem& problem) {
-    const bool same_size = problem.cone_count == problem_cones_;
-    problem_ = &problem;
-    if (!same_size || parts(formulation_).fixed_families.empty()) {
-        build();
-        return;
-    }
-    refresh_costs();
-    program_.truncate_rows(fixed_rows_);
-    write_rows(parts(formulation_).families);
+    (void)update(problem, nullptr);
 }
 
-void LaneGraphModel::build() {
+std::optional<StopReason> LaneGraphModel::update(const LaneGraphProblem& problem, const Deadline& deadline) {
+    const bool too_large =
+        is_too_large(problem) || problem.turns.size() + problem.edges.size() > kMostProgramEntries;
+    const std::optional<StopReason> struck =
+        too_large ? std::optional(StopReason::memory) : update(problem, &deadline);
+    if (struck) problem_cones_.reset();
+    return struck;
+}
+
+std::optional<StopReason> LaneGraphModel::update(const LaneGraphProblem& problem, const Deadline* deadline) {
+    const bool same_size = problem.cone_count == problem_cones_;
+    problem_ = &problem;
+    if (!same_size || parts(formulation_).fixed_families.empty()) return build(deadline);
+    refresh_costs();
+    program_.truncate_rows(fixed_rows_);
+    return write_rows(parts(formulation_).families, deadline);
+}
+
+std::optional<StopReason> LaneGraphModel::build(const Deadline* deadline) {
     problem_cones_ = problem_->cone_count;
     columns_.edge.clear();
     columns_.turn.clear();
@@ -31,9 +41,9 @@ void LaneGraphModel::build() {
     program_.columns.clear();
     program_.truncate_rows(0);
     add_columns();
-    write_rows(parts(formulation_).fixed_families);
+    if (const auto struck = write_rows(parts(formulation_).fixed_families, deadline)) return struck;
     fixed_rows_ = program_.rows.size();
-    write_rows(parts(formulation_).families);
+    return write_rows(parts(formulation_).families, deadline);
 }
 
 void LaneGraphModel::add_columns() {
@@ -95,9 +105,14 @@ void LaneGraphModel::refresh_costs() {
     }
 }
 
-void LaneGraphModel::write_rows(std::span<const ConstraintFamily> families) {
-    RowWriter rows(program_);
-    for (const ConstraintFamily family : families) family({*problem_, columns_, rows});
+std::optional<StopReason> LaneGraphModel::write_rows(std::span<const ConstraintFamily> families,
+                                                     const Deadline* deadline) {
+    RowWriter rows(program_, deadline);
+    for (const ConstraintFamily family : families) {
+        family({*problem_, columns_, rows});
+        if (rows.stop()) break;
+    }
+    return rows.struck();
 }
 
 std::vector<bool> LaneGraphModel::chosen_edges(std::span<const double> point) const {

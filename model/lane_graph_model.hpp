@@ -5,6 +5,8 @@
 #include "model/lane_graph.hpp"
 #include "model/lane_graph_problem.hpp"
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +16,8 @@ namespace conelane {
 /// the column map. Refers to the problem of its making or last update, which must outlive its use.
 class LaneGraphModel {
   public:
+    /// Of no problem yet.
+    explicit LaneGraphModel(Formulation formulation) : formulation_(formulation) {}
     /// Precondition: the problem was made with the extent that the formulation needs.
     LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation);
 
@@ -22,6 +26,10 @@ class LaneGraphModel {
     /// writes costs and the other rows; the columns of the tight formulation depend on the scene, so only its
     /// memory is kept. Precondition as for the constructor.
     void update(const LaneGraphProblem& problem);
+
+    /// As above, or the limit that the building ran into: where the deadline passes, or problem or program
+    /// are too large (see is_too_large and kMostProgramEntries), there is no program until the next update.
+    [[nodiscard]] std::optional<StopReason> update(const LaneGraphProblem& problem, const Deadline& deadline);
 
     [[nodiscard]] const BinaryProgram& program() const { return program_; }
 
@@ -35,13 +43,16 @@ class LaneGraphModel {
   private:
     [[nodiscard]] std::vector<bool> chosen_edges(std::span<const double> point) const;
 
-    void build();
+    std::optional<StopReason> update(const LaneGraphProblem& problem, const Deadline* deadline);
+    std::optional<StopReason> build(const Deadline* deadline);
     void add_columns();
     void refresh_costs();
-    void write_rows(std::span<const ConstraintFamily> families);
+    std::optional<StopReason> write_rows(std::span<const ConstraintFamily> families,
+                                         const Deadline* deadline);
 
-    const LaneGraphProblem* problem_;
-    std::size_t problem_cones_ = 0;  ///< of the problem that the columns were made for
+    const LaneGraphProblem* problem_ = nullptr;
+    /// Of the problem that the columns and the fixed rows were made for; absent where there is no program.
+    std::optional<std::size_t> problem_cones_;
     Formulation formulation_;
     ColumnMap columns_;
     BinaryProgram program_;

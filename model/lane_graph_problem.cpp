@@ -5,9 +5,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace conelane {
 namespace {
+
+/// What may end the making of a problem early.
+class Limits {
+  public:
+    Limits() = default;
+    explicit Limits(const Deadline& deadline) : deadline_(&deadline) {}
+
+    /// To be asked before a step of so much work, in operations of a few nanoseconds.
+    bool stop(const LaneGraphProblem& problem, std::size_t work) {
+        constexpr std::size_t kWorkPerClock = 20'000;
+        if (deadline_ == nullptr || struck_) return struck_.has_value();
+        work_ += work;
+        if (work_ < kWorkPerClock) return false;
+        work_ = 0;
+        if (is_too_large(problem)) {
+            struck_ = StopReason::memory;
+        } else if (deadline_->passed()) {
+            struck_ = StopReason::time;
+        }
+        return struck_.has_value();
+    }
+    /// As above, whatever the work since the last look.
+    bool stop(const LaneGraphProblem& problem) { return stop(problem, std::size_t{1} << 32); }
+
+    /// Where all pairs of so many cones are more edges than a problem may have.
+    bool stop_for_table(std::size_t cones) {
+        if (deadline_ != nullptr && cones > 1 && cones * (cones - 1) / 2 > kMostProblemEdges)
+            struck_ = StopReason::memory;
+        return struck_.has_value();
+    }
+
+    [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
+
+  private:
+    const Deadline* deadline_ = nullptr;
+    std::size_t work_ = 0;
+    std::optional<StopReason> struck_;
+};
 
 double fourth_power(double value) {
     const double square = value * value;
@@ -71,7 +110,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
 
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
 /// forbid_crossing those that cross too.
-void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
+void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     struct Disc {
         Point middle;
         double radius;
@@ -87,7 +126,9 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
     }
     const double d_min = problem.parameters.d_min;
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        if (limits.stop(problem, problem.edges.size() - e)) return;
         const ProblemEdge& a = problem.edges[e];
+        const std::size_t conflicts_before = problem.conflicts.size();
         for (std::size_t other = e + 1; other < problem.edges.size(); ++other) {
             const ProblemEdge& b = problem.edges[other];
             const double reach = discs[e].radius + discs[other].radius + d_min;
@@ -100,14 +141,17 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem) {
                 problem.conflicts.emplace_back(e, other);
             }
         }
+        if (limits.stop(problem, 10 * (problem.conflicts.size() - conflicts_before))) return;
     }
 }
 
 /// Precondition: all edges are listed.
-void add_shape_costs(const Scene& scene, LaneGraphProblem& problem) {
+void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const RldParameters& p = problem.parameters;
     if (p.w_v > 0.0) {
-        const std::vector<double> facing = facing_costs(scene, problem.edges, p);
+        const auto stop = [&](std::size_t pairs) { return limits.stop(problem, 4 * pairs); };
+        const std::vector<double> facing = facing_costs(scene, problem.edges, p, stop);
+        if (limits.struck()) return;
         for (std::size_t e = 0; e < facing.size(); ++e) problem.edges[e].facing_cost = facing[e];
     }
     problem.near_end_fit.assign(problem.cone_count, 0.0);
@@ -123,7 +167,7 @@ void add_shape_costs(const Scene& scene, LaneGraphProblem& problem) {
 }
 
 /// Precondition: edges and the fit of near ends are known.
-void find_turns(const Scene& scene, LaneGraphProblem& problem) {
+void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const RldParameters& p = problem.parameters;
     const auto other_end = [&](std::size_t edge, std::size_t cone) {
         const ProblemEdge& e = problem.edges[edge];
@@ -134,6 +178,7 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem) {
         const Point& at = scene.cones[middle].position;
         const double end_cost = 2.0 * p.w_n * problem.near_end_fit[middle];
         for (std::size_t first = 0; first < incident.size(); ++first) {
+            if (limits.stop(problem, 20 * (incident.size() - first))) return;
             for (std::size_t second = first + 1; second < incident.size(); ++second) {
                 // Ascending edges at a cone have ascending other ends.
                 const Point& before = scene.cones[other_end(incident[first], middle)].position;
@@ -159,24 +204,13 @@ std::vector<bool> chosen_edges(const LaneGraphProblem& problem, const LaneGraph&
     return chosen;
 }
 
-}  // namespace
-
-LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
-    validate(scene);
-    validate(parameters);
-    LaneGraphProblem problem;
-    const std::size_t n = scene.cones.size();
-    problem.cone_count = n;
-    problem.parameters = parameters;
+void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem, Limits& limits) {
+    const RldParameters& parameters = problem.parameters;
+    const std::size_t n = problem.cone_count;
     const Point heading = scene.pose.heading();
-
-    problem.near.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
-    }
-    problem.incident.resize(n);
     if (extent == EdgeExtent::all_pairs) problem.distance_m.assign(n, std::vector<double>(n, 0.0));
     for (std::size_t i = 0; i < n; ++i) {
+        if (limits.stop(problem, 2 * (n - i))) return;
         for (std::size_t j = i + 1; j < n; ++j) {
             const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
             if (!problem.near[i] && !problem.near[j] && !within(distance, parameters.d_max)) {
@@ -194,10 +228,50 @@ LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameter
             problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
         }
     }
-    add_shape_costs(scene, problem);
-    find_turns(scene, problem);
-    find_conflicts(scene, problem);
+}
+
+LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
+                              Limits& limits) {
+    validate(scene);
+    validate(parameters);
+    LaneGraphProblem problem;
+    const std::size_t n = scene.cones.size();
+    // The table of distances is the one part that is allocated at once.
+    if (limits.stop(problem) || (extent == EdgeExtent::all_pairs && limits.stop_for_table(n))) return problem;
+    problem.cone_count = n;
+    problem.parameters = parameters;
+    problem.near.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
+    }
+    problem.incident.resize(n);
+    find_edges(scene, extent, problem, limits);
+    if (limits.stop(problem)) return problem;
+    add_shape_costs(scene, problem, limits);
+    if (!limits.stop(problem)) find_turns(scene, problem, limits);
+    if (!limits.stop(problem)) find_conflicts(scene, problem, limits);
+    limits.stop(problem);
     return problem;
+}
+
+}  // namespace
+
+LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
+    Limits none;
+    return make_problem(scene, parameters, extent, none);
+}
+
+LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
+                            const Deadline& deadline) {
+    Limits limits(deadline);
+    LaneGraphProblem problem = make_problem(scene, parameters, extent, limits);
+    if (limits.struck()) return {std::nullopt, limits.struck()};
+    return {std::move(problem), std::nullopt};
+}
+
+bool is_too_large(const LaneGraphProblem& problem) {
+    return problem.edges.size() > kMostProblemEdges ||
+           problem.turns.size() + problem.conflicts.size() + problem.far_apart.size() > kMostProblemEntries;
 }
 
 double objective(const LaneGraphProblem& problem, const LaneGraph& graph) {

@@ -1,10 +1,14 @@
 #pragma once
 
+#include "model/deadline.hpp"
 #include "model/lane_graph.hpp"
 #include "model/rld_parameters.hpp"
 #include "model/scene.hpp"
+#include "model/stop_reason.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -68,9 +72,29 @@ struct LaneGraphProblem {
     std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending
 };
 
-/// Throws InvalidInput where the scene or the parameters are not valid.
+/// Throws InvalidInput where the scene or the parameters are not valid. Takes the time and the memory that it
+/// needs: both grow with the fourth power of the cones where many lie within reach of each other.
 [[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                             EdgeExtent extent = EdgeExtent::candidates);
+
+/// A larger problem is not solved: what solvers keep of it grows with the square of its edges. No scene of a
+/// car comes near: 234 cones within 50 m, half of them false, give a tenth of these edges.
+inline constexpr std::size_t kMostProblemEdges = 16'384;
+/// And this many turns, conflicts and pairs that are far apart together, below 256 MB.
+inline constexpr std::size_t kMostProblemEntries = 4'000'000;
+[[nodiscard]] bool is_too_large(const LaneGraphProblem& problem);
+
+/// A problem, or the limit that its making ran into.
+struct LimitedProblem {
+    std::optional<LaneGraphProblem> problem;  ///< complete; absent where a limit was struck
+    std::optional<StopReason> stopped_by;     ///< then: time or memory
+};
+
+/// The same problem as without a deadline, or none: where the deadline passes on the way (it is looked at
+/// about every 0.1 ms), or the problem turns out to be too large, the part that was made is dropped. Throws
+/// as above.
+[[nodiscard]] LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters,
+                                          EdgeExtent extent, const Deadline& deadline);
 
 /// Objective (29) of a lane graph: edge costs plus the costs of all turns it takes. Precondition: every edge
 /// is listed in the problem.

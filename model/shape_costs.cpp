@@ -32,13 +32,14 @@ double unevenness(double before_m, double after_m, const RldParameters& paramete
 }
 
 std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
-                                 const RldParameters& p) {
+                                 const RldParameters& p, const std::function<bool(std::size_t)>& stop) {
     std::vector<PlacedEdge> places;
     places.reserve(edges.size());
     for (const ProblemEdge& edge : edges) places.push_back(placed(scene, edge));
     std::vector<double> costs(edges.size(), 1.0);
     const double reach = p.d_w + p.d_v;  // beyond it the cost is above 1
     for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (stop && stop(edges.size() - e)) return costs;
         const ProblemEdge& edge = edges[e];
         for (std::size_t other = e + 1; other < edges.size(); ++other) {
             const Point way = places[other].middle - places[e].middle;

@@ -4,6 +4,8 @@
 #include "model/rld_parameters.hpp"
 #include "model/scene.hpp"
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,9 +21,11 @@ namespace conelane {
 /// allows and that share no cone with {i, j}, the least (l^2 + (b - d_w)^2) / d_v^2 + (sin(angle) /
 /// theta_v)^2 + ((D - D_ij) / d_l)^2, at most 1; l and b are the components, along {i, j} and across, of the
 /// way between both midpoints, the angle is that between the edges, and D the other's length. An edge of zero
-/// length has 1.
+/// length has 1. `stop` is asked before so many pairs of edges are looked at; the costs are of no use once it
+/// says so.
 [[nodiscard]] std::vector<double> facing_costs(const Scene& scene, std::span<const ProblemEdge> edges,
-                                               const RldParameters& parameters);
+                                               const RldParameters& parameters,
+                                               const std::function<bool(std::size_t)>& stop = {});
 
 /// z_i in [0, 1]: 1 - ((|y_i| - d_w / 2) / d_t)^2, at least 0, with the distance y_i of a cone to the car's
 /// axis: 1 half a lane beside it, where a boundary begins.

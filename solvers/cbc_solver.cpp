@@ -1,11 +1,12 @@
 #include "solvers/cbc_solver.hpp"
 
 #include "model/deadline.hpp"
-#include "solvers/detail/cbc_deadline.hpp"
+#include "solvers/detail/coin_deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <coin/CbcModel.hpp>
@@ -17,54 +18,58 @@ namespace {
 class CbcSession : public MilpSession {
   public:
     explicit CbcSession(const BinaryProgram& program) {
-        lp_.messageHandler()->setLogLevel(0);
-        lp_.getModelPtr()->setLogLevel(0);
-        integers_ = detail::load_into(lp_, program);
+        detail::with_std_errors([&] {
+            detail::prepare(lp_, watch_);
+            integers_ = detail::load_into(lp_, program);
+        });
         for (const int column : integers_) {
             priorities_.push_back(program.columns[static_cast<std::size_t>(column)].branch_first ? 1 : 2);
         }
     }
 
     MilpReport solve(const MilpLimits& limits) override {
-        const Deadline deadline(limits.time_limit_ms);
+        watch_ = {Deadline(limits.time_limit_ms)};
         MilpReport report;
-        if (std::isfinite(limits.time_limit_ms))
-            lp_.getModelPtr()->setMaximumWallSeconds(limits.time_limit_ms / 1e3);
+        detail::with_std_errors([&] { solve(limits, report); });
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        detail::with_std_errors([&] { detail::append_rows(lp_, rows); });
+    }
+
+  private:
+    void solve(const MilpLimits& limits, MilpReport& report) {
         if (solved_once_) {
             lp_.resolve();
         } else {
             lp_.initialSolve();
             solved_once_ = true;
         }
-        if (lp_.isProvenPrimalInfeasible()) {
+        if (watch_.struck) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+            return;
+        }
+        if (lp_.isProvenPrimalInfeasible() || (lp_.isProvenOptimal() && lp_.getObjValue() >= limits.cutoff)) {
             report.status = SolveStatus::infeasible;
-            return report;
+            return;
         }
         if (!lp_.isProvenOptimal()) {
-            report.status = deadline.passed() ? SolveStatus::stopped : SolveStatus::error;
-            if (deadline.passed()) report.stopped_by = StopReason::time;
-            if (report.status == SolveStatus::error) report.message = "Clp could not solve the relaxation";
-            return report;
-        }
-        if (lp_.getObjValue() >= limits.cutoff) {
-            report.status = SolveStatus::infeasible;
-            return report;
+            report.message = "Clp could not solve the relaxation";
+            return;
         }
         report.bound = lp_.getObjValue();
         const double* x = lp_.getColSolution();
         if (detail::is_integral(x, integers_)) {
             report.status = SolveStatus::optimal;
             report.point.assign(x, x + lp_.getNumCols());
-            return report;
+            return;
         }
-        branch(limits, deadline, report);
-        return report;
+        branch(limits, report);
     }
 
-    void add_rows(std::span<const ProgramRow> rows) override { detail::append_rows(lp_, rows); }
-
-  private:
-    void branch(const MilpLimits& limits, const Deadline& deadline, MilpReport& report) {
+    void branch(const MilpLimits& limits, MilpReport& report) {
         CbcModel model(lp_);
         model.setLogLevel(0);
         model.messageHandler()->setLogLevel(0);
@@ -77,33 +82,32 @@ class CbcSession : public MilpSession {
         model.setDblParam(CbcModel::CbcCutoffIncrement, 1e-7);
         model.passInPriorities(priorities_.data(), false);
         if (std::isfinite(limits.cutoff)) model.setCutoff(limits.cutoff);
-        const detail::CbcDeadline handler(&deadline);
-        if (std::isfinite(limits.time_limit_ms)) {
-            model.setUseElapsedTime(true);
-            model.setMaximumSeconds(std::max(deadline.remaining_ms(), 0.0) / 1e3);
-            model.passInEventHandler(&handler);
-        }
+        const detail::CbcDeadline handler(&watch_);
+        model.passInEventHandler(&handler);
         model.branchAndBound(0);
 
         report.nodes = model.getNodeCount();
-        report.bound = std::max(*report.bound, model.getBestPossibleObjValue());
         const bool has_point = model.bestSolution() != nullptr;
         if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
-        if (model.isProvenOptimal()) {
+        // CBC takes a relaxation that was cut short for an infeasible one: its claims and its bound are worth
+        // nothing then.
+        report.bound =
+            std::max(*report.bound, watch_.struck ? watch_.bound : model.getBestPossibleObjValue());
+        if (watch_.struck) {
+            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+        } else if (model.isProvenOptimal()) {
             report.status = SolveStatus::optimal;
         } else if (model.isProvenInfeasible()) {
             report.status = SolveStatus::infeasible;
             report.bound.reset();
-        } else if (deadline.passed() || model.isSecondsLimitReached()) {
-            report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
-            report.stopped_by = StopReason::time;
         } else {
             report.message = "CBC stopped without a result, status " + std::to_string(model.status());
-            report.status = SolveStatus::error;
             report.point.clear();
         }
     }
 
+    detail::DeadlineWatch watch_;
     OsiClpSolverInterface lp_;
     std::vector<int> integers_;
     std::vector<int> priorities_;  ///< of the integer columns, smaller ones are branched on first

@@ -1,6 +1,7 @@
 #include "solvers/clp_bb_solver.hpp"
 
 #include "model/deadline.hpp"
+#include "solvers/detail/coin_deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 
 #include <algorithm>
@@ -27,25 +28,37 @@ struct Branching {
 class ClpBranchAndBound : public MilpSession {
   public:
     explicit ClpBranchAndBound(const BinaryProgram& program) : lp_(*interface_.getModelPtr()) {
-        interface_.messageHandler()->setLogLevel(0);
-        lp_.setLogLevel(0);
-        for (const int column : detail::load_into(interface_, program)) {
-            (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_)
-                .push_back(column);
-        }
+        detail::with_std_errors([&] {
+            detail::prepare(interface_, watch_);
+            for (const int column : detail::load_into(interface_, program)) {
+                (program.columns[static_cast<std::size_t>(column)].branch_first ? first_ : others_)
+                    .push_back(column);
+            }
+        });
     }
 
     MilpReport solve(const MilpLimits& limits) override {
-        const Deadline deadline(limits.time_limit_ms);
+        watch_ = {Deadline(limits.time_limit_ms)};
         MilpReport report;
+        detail::with_std_errors([&] { search(limits, report); });
+        unwind();
+        return report;
+    }
+
+    void add_rows(std::span<const ProgramRow> rows) override {
+        detail::with_std_errors([&] { detail::append_rows(interface_, rows); });
+    }
+
+  private:
+    void search(const MilpLimits& limits, MilpReport& report) {
         double best = limits.cutoff;
         lp_.setDualObjectiveLimit(COIN_DBL_MAX);
         bool node_is_open = true;  // the relaxation of the current node is to be solved
         while (true) {
             if (node_is_open) {
-                if (deadline.passed() || !solve_relaxation(deadline)) {
-                    stop(deadline, report);
-                    break;
+                if (!solve_relaxation()) {
+                    stop(report);
+                    return;
                 }
                 const bool inside =
                     lp_.isProvenOptimal() && lp_.objectiveValue() < best - limits.absolute_gap;
@@ -68,7 +81,7 @@ class ClpBranchAndBound : public MilpSession {
             // out.
             if (path_.empty()) {
                 finish(best, report);
-                break;
+                return;
             }
             Branching& last = path_.back();
             node_is_open = last.other_side_open && last.bound < best - limits.absolute_gap;
@@ -81,13 +94,8 @@ class ClpBranchAndBound : public MilpSession {
                 path_.pop_back();
             }
         }
-        unwind();
-        return report;
     }
 
-    void add_rows(std::span<const ProgramRow> rows) override { detail::append_rows(interface_, rows); }
-
-  private:
     void fix(const Branching& branching) {
         lp_.setColumnBounds(branching.column, branching.value, branching.value);
     }
@@ -99,16 +107,14 @@ class ClpBranchAndBound : public MilpSession {
     }
 
     /// False where Clp came to no conclusion.
-    bool solve_relaxation(const Deadline& deadline) {
-        if (std::isfinite(deadline.remaining_ms())) {
-            lp_.setMaximumWallSeconds(std::max(deadline.remaining_ms(), 0.0) / 1e3);
-        }
+    bool solve_relaxation() {
+        if (watch_.strikes()) return false;
         lp_.dual();
+        if (watch_.struck) return false;
         if (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible()) return true;
-        if (deadline.passed()) return false;
         lp_.allSlackBasis(true);
         lp_.primal();
-        return lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible();
+        return !watch_.struck && (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible());
     }
 
     /// -1 where all are integral.
@@ -138,8 +144,8 @@ class ClpBranchAndBound : public MilpSession {
 
     /// Every open side is below a decision on the path, whose bound holds for it; the current node is below
     /// the last decision.
-    void stop(const Deadline& deadline, MilpReport& report) const {
-        if (!deadline.passed()) {
+    void stop(MilpReport& report) const {
+        if (!watch_.struck) {
             report.status = SolveStatus::error;
             report.message = "Clp could not solve a relaxation";
             report.point.clear();
@@ -155,6 +161,7 @@ class ClpBranchAndBound : public MilpSession {
         report.bound = bound;
     }
 
+    detail::DeadlineWatch watch_;
     OsiClpSolverInterface interface_;
     ClpSimplex& lp_;
     std::vector<int> first_;  ///< integer columns to branch on first

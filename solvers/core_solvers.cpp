@@ -10,7 +10,7 @@ constexpr RldSolverEntry kSolvers[]{
     {"path-pair", "exact branch and bound over pairs of paths", false, true,
      [](Formulation) { return make_path_pair_solver(); }},
     {"exhaustive", "every pair of paths, at most 9 cones", false, true,
-     [](Formulation) { return make_exhaustive_solver(); }},
+     [](Formulation) { return make_exhaustive_solver(); }, kExhaustiveMostCones},
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "solvers/exhaustive.hpp"
 
 #include "model/deadline.hpp"
+#include "solvers/detail/guarded_solve.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -21,8 +22,9 @@ struct Path {
 
 class Enumeration {
   public:
-    explicit Enumeration(const LaneGraphProblem& problem)
+    Enumeration(const LaneGraphProblem& problem, const Deadline& deadline)
         : problem_(problem),
+          deadline_(deadline),
           conflicts_(problem.edges.size(), 0),
           paths_(std::size_t{1} << problem.cone_count) {
         for (const auto& [first, second] : problem.conflicts) {
@@ -39,7 +41,7 @@ class Enumeration {
         for (const auto& [i, j] : problem.far_apart) far_apart_[i * problem.cone_count + j] = true;
     }
 
-    void run(const Deadline& deadline, RldReport& report) {
+    void run(RldReport& report) {
         for (std::size_t cone = 0; cone < problem_.cone_count; ++cone) {
             extend({0, 0.0, 0, cone, cone}, bit(cone), problem_.edges.size());
         }
@@ -48,10 +50,7 @@ class Enumeration {
         const Path* best_second = nullptr;
         double best = 0.0;
         for (std::uint64_t cones = 1; cones <= all; ++cones) {
-            if (deadline.passed()) {
-                stopped_ = true;
-                break;
-            }
+            if (out_of_time()) break;
             if (paths_[cones].empty()) continue;
             const std::uint64_t rest = all & ~cones;
             for (std::uint64_t other = rest; other > cones; other = (other - 1) & rest) {
@@ -85,10 +84,16 @@ class Enumeration {
     }
 
   private:
+    bool out_of_time() {
+        stopped_ = stopped_ || deadline_.passed();
+        return stopped_;
+    }
+
     static std::uint64_t bit(std::size_t index) { return std::uint64_t{1} << index; }
 
     /// Records every path that goes on from the last end; each path from both its ends, kept once.
     void extend(const Path& path, std::uint64_t cones, std::size_t arrived_by) {
+        if (out_of_time()) return;
         for (const std::size_t edge : problem_.incident[path.last_end]) {
             const ProblemEdge& e = problem_.edges[edge];
             const std::size_t next = e.i == path.last_end ? e.j : e.i;
@@ -131,6 +136,7 @@ class Enumeration {
     }
 
     const LaneGraphProblem& problem_;
+    const Deadline& deadline_;
     std::vector<std::uint64_t> conflicts_;
     std::vector<const ProblemTurn*> turn_;  ///< by pair of edges; nullptr where they share no allowed turn
     std::vector<bool> far_apart_;
@@ -141,19 +147,19 @@ class Enumeration {
 class ExhaustiveSolver : public RldSolver {
   public:
     RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* /*start*/) override {
+                    const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch watch;
-        RldReport report;
-        if (problem.cone_count > kExhaustiveMostCones) {
-            report.message = "exhaustive takes at most " + std::to_string(kExhaustiveMostCones) +
-                             " cones, not " + std::to_string(problem.cone_count);
-            return report;
-        }
-        Enumeration(problem).run(deadline, report);
-        report.rounds = 1;
-        report.solve_ms = watch.elapsed_ms();
-        return report;
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            if (problem.cone_count > kExhaustiveMostCones) {
+                report.message = "exhaustive takes at most " + std::to_string(kExhaustiveMostCones) +
+                                 " cones, not " + std::to_string(problem.cone_count);
+                return;
+            }
+            const Stopwatch watch;
+            Enumeration(problem, deadline).run(report);
+            report.rounds = 1;
+            report.solve_ms = watch.elapsed_ms();
+        });
     }
 };
 

@@ -19,7 +19,7 @@ struct Watch {
     double absolute_gap;
     double cutoff;
     double bound = -std::numeric_limits<double>::infinity();
-    bool stopped_at_deadline = false;
+    bool struck = false;  ///< the deadline has ended the search
 };
 
 void look(glp_tree* tree, void* data) {
@@ -32,7 +32,7 @@ void look(glp_tree* tree, void* data) {
     if (std::min(best_value, watch.cutoff) - watch.bound <= watch.absolute_gap) {
         glp_ios_terminate(tree);
     } else if (watch.deadline.passed()) {
-        watch.stopped_at_deadline = true;
+        watch.struck = true;
         glp_ios_terminate(tree);
     }
 }
@@ -108,9 +108,9 @@ class GlpkSession : public MilpSession {
         glp_set_mat_row(problem_, index, static_cast<int>(columns.size()) - 1, columns.data(), values.data());
     }
 
+    /// GLPK counts whole milliseconds and ends one before its limit.
     static int milliseconds(const Deadline& deadline) {
-        const double remaining_ms = std::clamp(deadline.remaining_ms(), 1.0, 2e9);
-        return static_cast<int>(remaining_ms);
+        return static_cast<int>(std::clamp(std::ceil(deadline.remaining_ms()) + 1.0, 1.0, 2e9));
     }
 
     /// True where the relaxation has an optimum.
@@ -129,7 +129,7 @@ class GlpkSession : public MilpSession {
         const int status = glp_get_status(problem_);
         if (failure == 0 && status == GLP_OPT) return true;
         if (failure == 0 && status == GLP_NOFEAS) {
-            report.status = SolveStatus::infeasible;
+            report.status = SolveStatus::infeasible;  // a simplex that was cut short is a failure
         } else if (failure == GLP_ETMLIM || deadline.passed()) {
             report.status = SolveStatus::stopped;
             report.stopped_by = StopReason::time;
@@ -148,7 +148,6 @@ class GlpkSession : public MilpSession {
         options.tol_obj = 1e-9;
         options.cb_func = look;
         options.cb_info = &watch;
-        if (std::isfinite(deadline.remaining_ms())) options.tm_lim = milliseconds(deadline);
         const int failure = glp_intopt(problem_, &options);
         const int status = glp_mip_status(problem_);
         // GLPK knows no cutoff: a point that is not below it is none.
@@ -162,12 +161,12 @@ class GlpkSession : public MilpSession {
         }
         report.bound = std::max(*report.bound, watch.bound);
         const double best_value = has_point ? glp_mip_obj_val(problem_) : limits.cutoff;
-        const bool finished = status == GLP_OPT || status == GLP_NOFEAS;
+        const bool finished = failure == 0 && (status == GLP_OPT || status == GLP_NOFEAS);
         if (finished || best_value - *report.bound <= limits.absolute_gap) {
             report.status = has_point ? SolveStatus::optimal : SolveStatus::infeasible;
             if (finished) report.bound = best_value;
             if (!has_point) report.bound.reset();
-        } else if (watch.stopped_at_deadline || failure == GLP_ETMLIM || deadline.passed()) {
+        } else if (watch.struck) {
             report.status = has_point ? SolveStatus::feasible : SolveStatus::stopped;
             report.stopped_by = StopReason::time;
         } else {

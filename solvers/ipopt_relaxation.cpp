@@ -1,11 +1,11 @@
 #include "solvers/ipopt_relaxation.hpp"
 
 #include "model/deadline.hpp"
+#include "solvers/detail/exclusive_section.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -135,23 +135,13 @@ class RelaxationProgram : public Ipopt::TNLP {
     const Deadline& deadline_;
 };
 
-std::timed_mutex& ipopt_turn() {
-    static std::timed_mutex turn;
-    return turn;
-}
-
-/// Whether a turn came before the deadline.
-bool wait_for_turn(std::unique_lock<std::timed_mutex>& lock, const Deadline& deadline) {
-    constexpr double kLongest_ms = 1e9;
-    return lock.try_lock_for(
-        std::chrono::duration<double, std::milli>(std::min(deadline.remaining_ms(), kLongest_ms)));
-}
+std::timed_mutex one_at_a_time;
 
 /// Edge values where Ipopt ended, be it without convergence: the rounding repairs them.
 std::optional<std::vector<double>> minimise(const LaneGraphProblem& problem, const std::vector<double>& start,
                                             const Deadline& deadline) {
-    std::unique_lock lock(ipopt_turn(), std::defer_lock);
-    if (!wait_for_turn(lock, deadline)) return std::nullopt;
+    const auto lock = detail::lock_until(one_at_a_time, deadline);
+    if (!lock.owns_lock()) return std::nullopt;
     const EdgeRelaxation relaxation(problem);
     const Ipopt::SmartPtr<RelaxationProgram> program =
         new RelaxationProgram(relaxation, relaxation.point(start), deadline);

@@ -1,7 +1,8 @@
 #include "solvers/milp_rld_solver.hpp"
 
-#include "model/lane_graph_model.hpp"
 #include "model/deadline.hpp"
+#include "model/lane_graph_model.hpp"
+#include "solvers/detail/guarded_solve.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -21,29 +22,36 @@ class MilpRldSolver : public RldSolver {
     RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
                     const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch build_watch;
-        RldReport report;
-        if (problem.edges.empty()) {
-            report.status = SolveStatus::infeasible;
-            return report;
-        }
-        if (model_) {
-            model_->update(problem);
-        } else {
-            model_.emplace(problem, formulation_);
-        }
-        const std::unique_ptr<MilpSession> session = solver_->load(model_->program());
-        report.build_ms = build_watch.elapsed_ms();
-
-        const Stopwatch solve_watch;
-        const bool has_start = start != nullptr && is_feasible(problem, *start);
-        if (has_start) take(problem, *start, report);
-        solve_and_separate(problem, *session, limits, deadline, report);
-        report.solve_ms = solve_watch.elapsed_ms();
-        return report;
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            if (problem.edges.empty()) {
+                report.status = SolveStatus::infeasible;
+                return;
+            }
+            const Stopwatch build_watch;
+            const std::unique_ptr<MilpSession> session = load(problem, deadline, report);
+            report.build_ms = build_watch.elapsed_ms();
+            if (!session) return;
+            const Stopwatch solve_watch;
+            const bool has_start = start != nullptr && is_feasible(problem, *start);
+            if (has_start) take(problem, *start, report);
+            solve_and_separate(problem, *session, limits, deadline, report);
+            report.solve_ms = solve_watch.elapsed_ms();
+        });
     }
 
   private:
+    /// Nothing where a limit was struck before the program was loaded, which is in the report then.
+    std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, const Deadline& deadline,
+                                      RldReport& report) {
+        if (!model_) model_.emplace(formulation_);
+        if (const auto struck = model_->update(problem, deadline)) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = struck;
+            return nullptr;
+        }
+        return solver_->load(model_->program());
+    }
+
     static void take(const LaneGraphProblem& problem, LaneGraph graph, RldReport& report) {
         report.objective = objective(problem, graph);
         report.lane_graph = std::move(graph);
@@ -58,8 +66,9 @@ class MilpRldSolver : public RldSolver {
         while (true) {
             round_limits.time_limit_ms = deadline.remaining_ms();
             if (round_limits.time_limit_ms <= 0.0) {
-                report.status = has_start ? SolveStatus::feasible : SolveStatus::stopped;
+                report.status = SolveStatus::stopped;
                 report.stopped_by = StopReason::time;
+                if (has_start) keep_start(round_limits.cutoff, report);
                 return;
             }
             const MilpReport round = session.solve(round_limits);
@@ -79,7 +88,9 @@ class MilpRldSolver : public RldSolver {
             if (violated.empty()) {
                 LaneGraph graph = model_->decode(round.point);
                 if (!is_feasible(problem, graph)) {
-                    report = {};
+                    report.status = SolveStatus::error;
+                    report.stopped_by.reset();
+                    report.bound.reset();
                     report.message = "the solver's point violates the program";
                     return;
                 }
@@ -95,6 +106,7 @@ class MilpRldSolver : public RldSolver {
         }
     }
 
+    /// After a round that ended without a point: that nothing below the cutoff is left proves the start.
     static void keep_start(double cutoff, RldReport& report) {
         if (report.status == SolveStatus::infeasible) {
             report.status = SolveStatus::optimal;
@@ -103,9 +115,6 @@ class MilpRldSolver : public RldSolver {
             report.status = SolveStatus::feasible;
             // With a cutoff, what a solver proved is that no point below its bound is left, up to the cutoff.
             if (report.bound) report.bound = std::min(*report.bound, cutoff);
-        } else {
-            report.lane_graph.reset();
-            report.objective.reset();
         }
     }
 

@@ -1,6 +1,7 @@
 #include "solvers/path_pair_solver.hpp"
 
 #include "model/deadline.hpp"
+#include "solvers/detail/guarded_solve.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/branch_and_bound.hpp"
 #include "solvers/path_pair/incumbent.hpp"
@@ -26,42 +27,27 @@ class PathPairSolver : public RldSolver {
     RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
                     const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch build_watch;
-        RldReport report;
-        graph_.build(problem);
-        report.build_ms = build_watch.elapsed_ms();
-        const Stopwatch solve_watch;
-        const double tolerance = std::max(limits.absolute_gap, kLeastGap);
-        search_.reset_nodes();
-
-        const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
-        // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
-        Outcome outcome{};
-        for (const double cutoff : {0.0, cost_limit(problem)}) {
-            incumbent_.reset(graph_, cutoff);
-            if (start_is_feasible) offer(problem, *start);
-            outcome = search(problem, tolerance, deadline);
-            ++report.rounds;
-            if (incumbent_.found() || !outcome.complete) break;
-        }
-        report.nodes = search_.nodes();
-        if (!outcome.complete) report.stopped_by = StopReason::time;
-        if (incumbent_.found()) {
-            report.status = outcome.complete ? SolveStatus::optimal : SolveStatus::feasible;
-            report.lane_graph = lane_graph(problem);
-            report.objective = objective(problem, *report.lane_graph);
-            report.bound = std::min(outcome.bound, *report.objective);
-        } else {
-            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::stopped;
-            if (!outcome.complete) report.bound = outcome.bound;
-        }
-        report.solve_ms = solve_watch.elapsed_ms();
-        return report;
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            const Stopwatch build_watch;
+            report.status = SolveStatus::stopped;
+            SearchClock clock([&deadline] { return deadline.passed(); });
+            if (is_too_large(problem)) {
+                report.stopped_by = StopReason::memory;
+            } else if (clock.out_of_time() || !graph_.build(problem, clock)) {
+                report.stopped_by = StopReason::time;
+            }
+            report.build_ms = build_watch.elapsed_ms();
+            if (report.stopped_by) return;
+            const Stopwatch solve_watch;
+            search(problem, limits, start, deadline, report);
+            report.solve_ms = solve_watch.elapsed_ms();
+        });
     }
 
     BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
         const Deadline deadline(time_limit_ms);
-        graph_.build(problem);
+        SearchClock no_limit;  // a certificate needs a graph
+        graph_.build(problem, no_limit);
         incumbent_.reset(graph_, 0.0);
         near_to_far(problem);
         BoundCertificate certificate;
@@ -83,6 +69,33 @@ class PathPairSolver : public RldSolver {
 
   private:
     using Outcome = BranchAndBound::Outcome;
+
+    void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
+                const Deadline& deadline, RldReport& report) {
+        const double tolerance = std::max(limits.absolute_gap, kLeastGap);
+        search_.reset_nodes();
+        const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
+        // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
+        Outcome outcome{};
+        for (const double cutoff : {0.0, cost_limit(problem)}) {
+            incumbent_.reset(graph_, cutoff);
+            if (start_is_feasible) offer(problem, *start);
+            outcome = search(problem, tolerance, deadline);
+            ++report.rounds;
+            if (incumbent_.found() || !outcome.complete) break;
+        }
+        report.nodes = search_.nodes();
+        if (!outcome.complete) report.stopped_by = StopReason::time;
+        if (incumbent_.found()) {
+            report.status = outcome.complete ? SolveStatus::optimal : SolveStatus::feasible;
+            report.lane_graph = lane_graph(problem);
+            report.objective = objective(problem, *report.lane_graph);
+            report.bound = std::min(outcome.bound, *report.objective);
+        } else {
+            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::stopped;
+            if (!outcome.complete) report.bound = outcome.bound;
+        }
+    }
 
     /// Precondition: the lane graph is feasible.
     void offer(const LaneGraphProblem& problem, const LaneGraph& start) {

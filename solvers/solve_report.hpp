@@ -24,12 +24,15 @@ enum class SolveStatus {
 
 /// The same for every solver, and each runs on one thread, without a relative gap. Wall clock: every backend
 /// keeps a deadline of its own and the incumbent with it. A MILP solver knows objectives to the tolerance of
-/// its LP, about 1e-7, whatever gap is asked for: CBC looks for points that are better by 1e-7 at
-/// least, GLPK by 1e-9 of the objective; clp-bb takes the gap as it is.
+/// its LP, about 1e-7, whatever gap is asked for: CBC looks for points that are better by 1e-7 at least, GLPK
+/// by 1e-9 of the objective; clp-bb takes the gap as it is.
 struct SolveLimits {
-    double time_limit_ms = std::numeric_limits<double>::infinity();  ///< wall clock, from the call
-    double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal
+    /// Wall clock, from the call; infinity for none. At 0 and below nothing is tried.
+    double time_limit_ms = std::numeric_limits<double>::infinity();
+    double absolute_gap = 1e-9;  ///< an incumbent this close to the bound is optimal; not negative
 };
+/// What is wrong with the limits, in words; empty where they are valid. A limit that is NaN is not.
+[[nodiscard]] std::string_view invalidity(const SolveLimits& limits);
 
 /// What a MILP solver answers. Absent values are unknown.
 struct MilpReport {

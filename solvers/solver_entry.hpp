@@ -3,7 +3,9 @@
 #include "model/formulation.hpp"
 #include "solvers/rld_solver.hpp"
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 namespace conelane {
@@ -15,6 +17,7 @@ struct RldSolverEntry {
     bool uses_formulation;  ///< else the formulation is ignored
     bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
     std::unique_ptr<RldSolver> (*make)(Formulation formulation);
+    std::optional<std::size_t> most_cones{};  ///< larger cone sets give status error; any where absent
 };
 
 }  // namespace conelane

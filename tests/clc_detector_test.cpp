@@ -27,7 +27,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-LaneAnswer detect(const Scene& scene, const ClcOptions& options = {}, const DetectionLimits& limits = tests::kNoTimeLimit) {
+LaneAnswer detect(const Scene& scene, const ClcOptions& options = {},
+                  const DetectionLimits& limits = tests::kNoTimeLimit) {
     return make_clc_detector(options)->detect(scene, limits);
 }
 
@@ -254,7 +255,7 @@ TEST(ClcDetector, TriesOtherStartsWhereFalsePositivesStandAtTheCar) {
     scene.cones.push_back({1001, {-2.7, -1.4}});
     ClcOptions one;
     one.starting_pairs = 1;
-    EXPECT_EQ(detect(scene, one).status, LaneStatus::none);
+    EXPECT_EQ(detect(scene, one).status, LaneStatus::stopped);
     EXPECT_THAT(detect(scene).lane.left, ElementsAre(30, 70, 110, 150));
 }
 
@@ -406,7 +407,7 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.beam_width = 0; }), "beam_width");
-    EXPECT_EQ(key_of([](ClcOptions& o) { o.agreeing_candidates = 33; }), "agreeing_candidates");
+    EXPECT_EQ(key_of([](ClcOptions& o) { o.consensus_candidates = 33; }), "consensus_candidates");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.step_scores = std::make_shared<StepScores>(); }), "scores");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");

@@ -1,9 +1,13 @@
+#include "graph_search/clc_detector.hpp"
 #include "graph_search/lane_beam.hpp"
 #include "graph_search/path_pair_enumeration.hpp"
+#include "graph_search/shipped_weights.hpp"
 #include "graph_search/start_vertices.hpp"
-#include "graph_search/step_score_file.hpp"
+#include "tests/no_time_limit.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -87,11 +91,40 @@ TEST(BeamAllocations, NoneOnceTheMemoryIsThere) {
     const auto search = [&] {
         const std::size_t before = allocations;
         beam.start(graph, scene, starts, *scores, {}, 8);
-        EXPECT_NE(beam.run(), LaneBeam::kNone);
+        SearchBudget budget;
+        EXPECT_NE(beam.run(budget), LaneBeam::kNone);
         return allocations - before;
     };
     EXPECT_GT(search(), 0u) << "allocations are counted";
     EXPECT_EQ(search(), 0u);
+}
+
+TEST(DetectionAllocations, NoneButTheTwoBoundariesOnceTheMemoryIsThere) {
+    Scene scene;
+    for (const Point& point : points()) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), point});
+    }
+    ClcOptions warm_start = extended_clc_options();
+    warm_start.warm_start = true;
+    for (const ClcOptions& options :
+         {extended_clc_options(), paper_clc_options(), ClcOptions{}, warm_start}) {
+        const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
+        const auto detect = [&] {
+            const std::size_t before = allocations;
+            const LaneAnswer answer = detector->detect(scene, tests::kNoTimeLimit);
+            EXPECT_EQ(answer.status, LaneStatus::found);
+            return allocations - before;
+        };
+        EXPECT_GT(detect(), 2u) << "allocations are counted";
+        (void)detect();  // a warm start's first
+        EXPECT_EQ(detect(), 2u);
+        std::ranges::reverse(scene.cones);
+        (void)detect();
+        EXPECT_EQ(detect(), 2u);
+        scene.pose.position.x() = -1.0;
+        EXPECT_LE(detect(), 2u) << "another scene";
+        scene.pose.position.x() = 0.0;
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutFeatures, EnumerationAllocations, ::testing::Bool());

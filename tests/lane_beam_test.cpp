@@ -81,6 +81,7 @@ struct Search {
     StepScores scores;
     SearchGraph graph;
     LaneBeam beam;
+    SearchBudget budget;  ///< without limits of time
 
     Search(Scene of, StepScores by) : scene(std::move(of)), scores(std::move(by)) {
         std::vector<Point> points;
@@ -93,7 +94,7 @@ struct Search {
     }
     std::optional<std::size_t> best(std::size_t width) {
         start(width);
-        const std::size_t number = beam.run();
+        const std::size_t number = beam.run(budget);
         return number == LaneBeam::kNone ? std::nullopt : std::optional(number);
     }
 };
@@ -257,7 +258,7 @@ TEST(LaneBeam, LevelsAreAsWideAsAskedBestFirstAndOneStepDeeperEach) {
                 EXPECT_EQ(std::ranges::adjacent_find(all), all.end()) << "a vertex twice";
             }
             ++vertices;
-        } while (search.beam.advance());
+        } while (search.beam.advance(search.budget));
     }
 }
 

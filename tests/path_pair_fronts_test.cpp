@@ -32,7 +32,7 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 /// The fronts of a problem at prices drawn at random.
 struct Fronts {
     Fronts(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
-        graph.build(problem);
+        graph.build(problem, clock);
         LegSystem::Kind& kind = system.kinds[0];
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
             kind.start.push_back(graph.near(cone) ? 1 : 0);
@@ -40,14 +40,14 @@ struct Fronts {
         }
         residual.assign(graph, kind.start);
         decisions.reset(graph);
-        relaxation.bind(graph, system, cliques, decisions, stopped);
+        relaxation.bind(graph, system, cliques, decisions, clock);
         boost::random::mt19937_64 random(seed);
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
             prices.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
         }
         leg_bound = relaxation.evaluate(residual, prices);
-        edges.assign(graph, residual);
-        losses.find(residual, relaxation, edges, true);
+        edges.assign(graph, residual, clock);
+        losses.find(residual, relaxation, edges, true, clock);
         fronts.bind(relaxation, stopped);
         search.bind(graph, relaxation, incumbent);
         incumbent.reset(graph, 1e6);
@@ -103,6 +103,7 @@ struct Fronts {
     LaneGraphProblem problem;
     std::function<bool()> stopped = [this] { return is_stopped; };
     bool is_stopped = false;
+    SearchClock clock;
     ArcGraph graph;
     ResidualGraph residual;
     LegSystem system;
@@ -144,7 +145,7 @@ TEST(PathPairSureLosses, FollowedByHandOnAStraightLane) {
     const int opposite = s.arc(1, 3);
     EXPECT_FALSE(s.losses.may_pair(0, late, 0, early, true));
     EXPECT_TRUE(s.losses.may_pair(0, late, 0, opposite, true));
-    s.losses.find(s.residual, s.relaxation, s.edges, false);
+    s.losses.find(s.residual, s.relaxation, s.edges, false, s.clock);
     EXPECT_TRUE(s.losses.may_pair(0, late, 0, early, true));
 }
 
@@ -168,7 +169,8 @@ TEST(PathPairSureLosses, LetEveryPairOfLegsPass) {
             }
         }
         SureLosses alone;
-        alone.find(s.residual, s.relaxation, s.edges, false);
+        SearchClock clock;
+        alone.find(s.residual, s.relaxation, s.edges, false, clock);
         for (int a = 0; a < s.residual.size(); ++a) {
             for (int b = 0; b < s.residual.size(); ++b) {
                 const bool passes = s.losses.may_pair(0, a, 0, b, false);

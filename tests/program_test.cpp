@@ -3,7 +3,7 @@
 #include "experiments/files/folder_lock.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/files/parameter_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "tests/file_test.hpp"
 
 #include <algorithm>
@@ -75,7 +75,8 @@ TEST_F(Program, HelpIsEverywhere) {
     EXPECT_EQ(run("--help").exit_code, 0);
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
-          "formulations", "optimality", "backends", "report", "tune", "extras"}) {
+          "study", "study formulations", "study optimality", "study backends", "study relaxations",
+          "study confidence-and-colour", "report", "tune"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -112,7 +113,7 @@ TEST_F(Program, BadOptionsAreNamed) {
     // As a script leaves them whose variable is not set.
     expect_refused("scenes --tracks generated:circle --out ''", {"--out", "empty"});
     expect_refused("compare --tracks generated:circle --fp '' --out results", {"--fp", "empty"});
-    expect_refused("formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
+    expect_refused("study formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
     expect_refused("certify --scenes a.scenes.jsonl --verify ''", {"--verify", "empty"});
     expect_refused("solve --scenes a.scenes.jsonl --params '' --out l.solutions.jsonl",
                    {"--params", "empty"});
@@ -223,8 +224,8 @@ TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     file_with("{", "bad.scenes.jsonl");
     std::filesystem::create_directory(path("folder"));
     for (const char* command :
-         {"detect --method clc", "solve", "certify", "formulations", "backends", "optimality", "relaxations",
-          "export --id a", "import-solution --id a --sol a.sol"}) {
+         {"detect --method clc", "solve", "certify", "study formulations", "study backends",
+          "study optimality", "study relaxations", "export --id a", "import-solution --id a --sol a.sol"}) {
         const std::string begun = std::string(command) + " --scenes bad.scenes.jsonl --out ";
         expect_refused(begun + "nowhere/x.lp", {"--out", "nowhere/x.lp"});
         expect_refused(begun + "folder", {"--out", "folder"});
@@ -591,7 +592,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
-TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
+TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColourStudyUses) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
         "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
@@ -610,19 +611,20 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatExtrasGoesBy) {
     EXPECT_TRUE(record.contains("wrong_cones"));
     EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
 
-    const Outcome extras = run("extras --record p.record.json --out extras.jsonl");
-    ASSERT_EQ(extras.exit_code, 0) << extras.errors;
-    EXPECT_THAT(extras.output, HasSubstr("colours, 20 % wrong"));
+    const Outcome study = run("study confidence-and-colour --record p.record.json --out study.jsonl");
+    ASSERT_EQ(study.exit_code, 0) << study.errors;
+    EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
     // Geometry alone, on the held-out tracks: what the tuning says.
-    std::ifstream lines(path("extras.jsonl"));
+    std::ifstream lines(path("study.jsonl"));
     std::string first;
     std::getline(lines, first);
     const nlohmann::json geometry = nlohmann::json::parse(first);
     EXPECT_EQ(geometry["known"], "geometry alone");
     EXPECT_EQ(geometry["context"], 16);
     EXPECT_NEAR(geometry["accurate"].get<double>(), record["held_out_figures"]["mean"].get<double>(), 1e-12);
-    expect_refused("extras --record p.json", {"p.json"});
-    expect_refused("extras --record p.record.json --tracks generated:circle", {"--tracks", "straight"});
+    expect_refused("study confidence-and-colour --record p.json", {"p.json"});
+    expect_refused("study confidence-and-colour --record p.record.json --tracks generated:circle",
+                   {"--tracks", "straight"});
 }
 
 /// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a
@@ -735,7 +737,7 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
 
 TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     make_scenes("--fp 0.2");
-    const Outcome optimality = run("optimality --scenes s.scenes.jsonl --out optimality.jsonl");
+    const Outcome optimality = run("study optimality --scenes s.scenes.jsonl --out optimality.jsonl");
     ASSERT_EQ(optimality.exit_code, 0) << optimality.errors;
     EXPECT_THAT(optimality.output, HasSubstr("equal %"));
     std::ifstream lines(path("optimality.jsonl"));
@@ -749,13 +751,25 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
                          std::max(0.0, candidate - optimum) / std::max(1.0, std::abs(optimum)));
     }
     EXPECT_EQ(rows, read_scenes(path("s.scenes.jsonl")).size());
-    const Outcome backends = run("backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
+    const Outcome backends = run("study backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
     ASSERT_EQ(backends.exit_code, 0) << backends.errors;
-    EXPECT_THAT(backends.output, HasSubstr("cbc-main/paper"));
-    expect_refused("optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
+    EXPECT_THAT(backends.output, HasSubstr("cbc-main/tight"));
+    EXPECT_THAT(backends.output, HasSubstr("exhaustive"));
+    const Outcome printed =
+        run("study backends --scenes s.scenes.jsonl --sizes 6,10 --solvers all,cbc-main/paper");
+    ASSERT_EQ(printed.exit_code, 0) << printed.errors;
+    EXPECT_THAT(printed.output, HasSubstr("cbc-main/paper"));
+    EXPECT_THAT(printed.output, HasSubstr("exhaustive takes at most 9 cones: left out at n = 10"));
+    expect_refused("study optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
                    {"method", "enumerate"});
-    expect_refused("optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
-    expect_refused("backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    expect_refused("study optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
+    expect_refused("study backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
+                   {"--solvers", "magic"});
+    const Outcome list = run("study");
+    EXPECT_EQ(list.exit_code, 0);
+    EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    expect_refused("study magic", {"magic"});
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {

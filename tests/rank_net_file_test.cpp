@@ -1,15 +1,21 @@
-#include "graph_search/rank_net_file.hpp"
+#include "experiments/files/rank_net_file.hpp"
 
+#include "graph_search/shipped_weights.hpp"
 #include "model/invalid_input.hpp"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace conelane {
+namespace conelane::experiments {
 namespace {
 
 RankNetWeights small_network() {
@@ -69,12 +75,45 @@ TEST(RankNetFile, ErrorsNameTheirKey) {
     EXPECT_THROW((void)rank_net_json(small_network(), "[]"), InvalidInput);
 }
 
+std::string shipped_file(const std::string& name) {
+    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name, std::ios::binary);
+    EXPECT_TRUE(stream) << name;
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+/// As bits, so that zeros of either sign differ.
+template <typename Values>
+auto bits(const Values& values) {
+    using Scalar = typename Values::Scalar;
+    using Bits = std::conditional_t<sizeof(Scalar) == 8, std::uint64_t, std::uint32_t>;
+    std::vector<Bits> result;
+    for (const Scalar value : values.reshaped()) result.push_back(std::bit_cast<Bits>(value));
+    return result;
+}
+
+TEST(RankNetFile, TheNetworksInTheLibraryAreThoseOfTheirFilesToTheLastBit) {
+    const auto expect_equal = [](const RankNetWeights& built_in, const RankNetWeights& read) {
+        EXPECT_EQ(bits(built_in.mean), bits(read.mean));
+        EXPECT_EQ(bits(built_in.deviation), bits(read.deviation));
+        EXPECT_EQ(built_in.hidden.cols(), read.hidden.cols());
+        EXPECT_EQ(bits(built_in.hidden), bits(read.hidden));
+        EXPECT_EQ(bits(built_in.hidden_bias), bits(read.hidden_bias));
+        EXPECT_EQ(bits(built_in.output), bits(read.output));
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(built_in.output_bias),
+                  std::bit_cast<std::uint32_t>(read.output_bias));
+    };
+    expect_equal(paper_rank_net_weights(), parse_rank_net(shipped_file("rank_net_paper.json")));
+    expect_equal(extended_rank_net_weights(), parse_rank_net(shipped_file("rank_net_extended.json")));
+}
+
 TEST(RankNetFile, TheShippedNetworksTellLanesApart) {
     // Two lanes that differ in the variance of the left turns.
     LaneFeatures smooth{};
     smooth.fill(1.0);
     LaneFeatures bent = smooth;
-    bent[6] = 2.0;
+    bent[kTurnVarianceLeft] = 2.0;
     const std::vector<LaneFeatures> lanes{smooth, bent, smooth};
     for (const auto& ranking : {paper_rank_net(), extended_rank_net()}) {
         std::vector<double> scores(lanes.size());
@@ -86,4 +125,4 @@ TEST(RankNetFile, TheShippedNetworksTellLanesApart) {
 }
 
 }  // namespace
-}  // namespace conelane
+}  // namespace conelane::experiments

@@ -1,10 +1,11 @@
 #include "experiments/training/rank_net_training.hpp"
 
+#include "experiments/files/rank_net_file.hpp"
 #include "experiments/tracks/track_spec.hpp"
+#include "experiments/training/adam.hpp"
 #include "experiments/training/track_variant.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "graph_search/rank_net_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
@@ -45,6 +46,22 @@ RankNetTrainingOptions quick() {
     options.pairs_a_step = 64;
     options.show_progress = false;
     return options;
+}
+
+TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
+    Adam adam(3, 1e-8);
+    adam.add(Eigen::Array3d(4.0, -0.01, 0.0));
+    // After one step both means are unbiased: the derivative over its own size.
+    EXPECT_NEAR((adam.mean() / adam.deviation())(0), 1.0, 1e-6);
+    EXPECT_NEAR((adam.mean() / adam.deviation())(1), -1.0, 1e-5);
+    EXPECT_EQ((adam.mean() / adam.deviation())(2), 0.0);
+    adam.add(Eigen::Array3d(-4.0, 0.01, 1.0));
+    // 0.9 and 0.999 of the first with 0.1 and 0.001 of the second, over 1 - 0.9^2 and 1 - 0.999^2.
+    EXPECT_NEAR((adam.mean() / adam.deviation())(0), (0.9 * 0.4 - 0.4) / 0.19 / 4.0, 1e-6);
+    EXPECT_NEAR((adam.mean() / adam.deviation())(2), 0.1 / 0.19 / std::sqrt(0.001 / 0.001999), 1e-6);
+    EXPECT_EQ(cosine_rate(0.5, 0.0), 0.5);
+    EXPECT_NEAR(cosine_rate(0.5, 0.5), 0.25, 1e-12);
+    EXPECT_NEAR(cosine_rate(0.5, 1.0), 0.0, 1e-12);
 }
 
 TEST(PairLoss, OfOnePairByHand) {

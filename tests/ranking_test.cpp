@@ -37,16 +37,16 @@ TEST(PaperFeatures, OfALaneToFollowByHand) {
     const std::vector<Point> left{{0, 4}, {3, 4}, {8, 4}};
     const std::vector<Point> right{{0, 0}, {4, 0}, {4, -3}};
     const PaperFeatures features = paper_features(left, right);
-    EXPECT_DOUBLE_EQ(features[0], 7.5);
-    EXPECT_EQ(features[1], 3);
-    EXPECT_EQ(features[2], 3);
+    EXPECT_DOUBLE_EQ(features[kLength], 7.5);
+    EXPECT_EQ(features[kConesLeft], 3);
+    EXPECT_EQ(features[kConesRight], 3);
     // Widths: left vertices 4, 4, sqrt(32); left segments 4, 4; right vertices 4, 4, 7; right segments 4, 4.
     const double mean = (8 * 4 + std::sqrt(32.0) + 7) / 10;
-    EXPECT_NEAR(features[3], (8 * 16 + 32 + 49) / 10.0 - mean * mean, 1e-12);
-    EXPECT_DOUBLE_EQ(features[4], 1.0);
-    EXPECT_DOUBLE_EQ(features[5], 0.25);
-    EXPECT_DOUBLE_EQ(features[6], 0.0);
-    EXPECT_DOUBLE_EQ(features[7], 0.0) << "a single angle does not vary";
+    EXPECT_NEAR(features[kWidthVariance], (8 * 16 + 32 + 49) / 10.0 - mean * mean, 1e-12);
+    EXPECT_DOUBLE_EQ(features[kSegmentLengthVarianceLeft], 1.0);
+    EXPECT_DOUBLE_EQ(features[kSegmentLengthVarianceRight], 0.25);
+    EXPECT_DOUBLE_EQ(features[kTurnVarianceLeft], 0.0);
+    EXPECT_DOUBLE_EQ(features[kTurnVarianceRight], 0.0) << "a single angle does not vary";
 }
 
 TEST(PaperFeatures, TurnsToEitherSideDiffer) {
@@ -61,9 +61,9 @@ TEST(PaperFeatures, OfAClosedLaneIncludeTheClosing) {
     const std::vector<Point> inner{{2, 2}, {-2, 2}, {-2, -2}, {2, -2}};
     const std::vector<Point> outer{{5, 5}, {-5, 5}, {-5, -5}, {5, -5}};
     const PaperFeatures features = paper_features(inner, outer, true);
-    EXPECT_DOUBLE_EQ(features[0], 28.0);
-    EXPECT_NEAR(features[4], 0.0, 1e-12);
-    EXPECT_NEAR(features[6], 0.0, 1e-12);
+    EXPECT_DOUBLE_EQ(features[kLength], 28.0);
+    EXPECT_NEAR(features[kSegmentLengthVarianceLeft], 0.0, 1e-12);
+    EXPECT_NEAR(features[kTurnVarianceLeft], 0.0, 1e-12);
 }
 
 TEST(PaperFeatures, OfTheEnumerationEqualTheirDefinition) {

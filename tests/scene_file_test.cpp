@@ -1,4 +1,4 @@
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include "model/invalid_input.hpp"
 #include "tests/file_test.hpp"

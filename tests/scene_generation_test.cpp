@@ -1,6 +1,6 @@
 #include "experiments/scenes/scene_generation.hpp"
 
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>

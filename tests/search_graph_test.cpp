@@ -4,6 +4,8 @@
 #include "graph_search/next_vertex.hpp"
 
 #include <numbers>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -117,28 +119,20 @@ TEST(LeftRightDecider, AdvancesTheBoundaryThatIsBehind) {
     EXPECT_EQ(left_right_decision({left, right_level}, kRight), kRight);
 }
 
-TEST(DelaunayGraph, JoinsWhatTheTriangulationJoins) {
-    // A rhombus: the short diagonal is in it, the long one is not.
-    const std::vector<Point> points{{0, 0}, {2, 1}, {4, 0}, {2, -1}};
+TEST(SearchGraph, WithARuleJoinsThePairsOfTheRuleThatAreNear) {
+    const std::vector<Point> points{{0, 0}, {4, 0}, {8, 0}, {4, 3}};
+    const EdgeRule rule = [](std::span<const Point> all) {
+        EXPECT_EQ(all.size(), 4u);
+        return std::vector<std::pair<Vertex, Vertex>>{{1, 0}, {0, 2}, {1, 3}, {3, 1}};
+    };
     SearchGraph graph;
-    graph.build(points, 5.0, SearchGraphKind::delaunay);
-    EXPECT_TRUE(graph.adjacent(1, 3));
-    EXPECT_FALSE(graph.adjacent(0, 2));
-    EXPECT_EQ(graph.directed_edge_count(), 10u);
-    graph.build(points, 2.2, SearchGraphKind::delaunay);
-    EXPECT_EQ(graph.directed_edge_count(), 2u) << "nothing beyond d_max: the sides are 2.24 m long";
-    graph.build(points, 5.0);
-    EXPECT_TRUE(graph.adjacent(0, 2));
-}
-
-TEST(DelaunayGraph, OfPointsOnALineOrAtOnePlaceOrNone) {
-    SearchGraph graph;
-    graph.build(std::vector<Point>{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, 5.0, SearchGraphKind::delaunay);
-    EXPECT_EQ(graph.directed_edge_count(), 6u);
-    graph.build(std::vector<Point>{{1, 1}, {1, 1}, {1, 1}}, 5.0, SearchGraphKind::delaunay);
-    EXPECT_EQ(graph.directed_edge_count(), 0u);
-    graph.build(std::vector<Point>{}, 5.0, SearchGraphKind::delaunay);
-    EXPECT_EQ(graph.vertex_count(), 0u);
+    graph.build(points, 5.5, rule);
+    EXPECT_THAT(graph.neighbours(0), ElementsAre(1));
+    EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 3));
+    EXPECT_THAT(graph.neighbours(2), IsEmpty()) << "0 is 8 m off";
+    EXPECT_THAT(graph.neighbours(3), ElementsAre(1));
+    graph.build(points, 5.5);
+    EXPECT_THAT(graph.neighbours(2), ElementsAre(1, 3));
 }
 
 }  // namespace

@@ -1,12 +1,19 @@
-#include "graph_search/step_score_file.hpp"
+#include "experiments/files/step_score_file.hpp"
 
+#include "graph_search/shipped_weights.hpp"
 #include "model/invalid_input.hpp"
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-namespace conelane {
+namespace conelane::experiments {
 namespace {
 
 StepScores uneven_scores() {
@@ -60,6 +67,25 @@ TEST(StepScoreFile, ErrorsNameTheirKey) {
     EXPECT_THROW((void)step_scores_json(uneven_scores(), "[]"), InvalidInput);
 }
 
+std::string shipped_file(const std::string& name) {
+    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name, std::ios::binary);
+    EXPECT_TRUE(stream) << name;
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+TEST(StepScoreFile, TheScoresInTheLibraryAreThoseOfTheirFileToTheLastBit) {
+    const std::string file = shipped_file("step_scores.json");
+    EXPECT_EQ(shipped_step_score_file(), file);
+    const std::vector<double> read = parse_step_scores(file).values;
+    const std::vector<double> built_in = shipped_step_scores()->values;
+    ASSERT_EQ(built_in.size(), read.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(built_in[i]), std::bit_cast<std::uint64_t>(read[i])) << i;
+    }
+}
+
 TEST(StepScoreFile, TheShippedScoresPreferStraightOn) {
     const auto scores = shipped_step_scores();
     const std::size_t turn = step_score_count(kTurnMeasure);
@@ -70,4 +96,4 @@ TEST(StepScoreFile, TheShippedScoresPreferStraightOn) {
 }
 
 }  // namespace
-}  // namespace conelane
+}  // namespace conelane::experiments

@@ -1,12 +1,12 @@
-// What tuning promises: a box around sensible parameters, fits that forget no better point, folds that see
+// What tuning promises: ranges around sensible parameters, fits that forget no better point, folds that see
 // nothing of their held-out tracks, and a log from which a stopped run goes on.
 
 #include "detectors/rld_parameter_sets.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/losses.hpp"
-#include "experiments/tuning/parameter_box.hpp"
+#include "experiments/tuning/failure_causes.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "tests/file_test.hpp"
 
@@ -24,8 +24,8 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Stands for scenes: each track is best at a d_e of its own, and worth less the farther d_e is from it.
-std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::vector<double>& best_d_e) {
+/// Stands for scenes: each track is best at a d_e of its own, and of less value the farther d_e is from it.
+std::vector<LapFigure> value_by_d_e(const RldParameters& parameters, const std::vector<double>& best_d_e) {
     std::vector<LapFigure> laps;
     for (std::size_t i = 0; i < best_d_e.size(); ++i) {
         const double off = std::abs(parameters.d_e - best_d_e[i]);
@@ -34,7 +34,7 @@ std::vector<LapFigure> worth_by_d_e(const RldParameters& parameters, const std::
     return laps;
 }
 
-TEST(ParameterBox, LeadsToThePointAndBack) {
+TEST(ParameterRanges, LeadsToThePointAndBack) {
     RldParameters start;
     start.s_crit = 8.0;
     for (const RldParameters& from : {start, with_shape_costs(start)}) {
@@ -46,7 +46,7 @@ TEST(ParameterBox, LeadsToThePointAndBack) {
     }
 }
 
-TEST(ParameterBox, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
+TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
     const auto highest = [](const RldParameters& start) {
         return from_unit_cube(std::vector<double>(tuned_parameters(start).size(), 1.0), start);
     };
@@ -57,10 +57,10 @@ TEST(ParameterBox, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
     EXPECT_EQ(shaped.w_u, 3.0);
     EXPECT_EQ(shaped.w_s, plain.w_s);
     EXPECT_EQ(shaped.d_near, RldParameters{}.d_near);
-    EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below the box";
+    EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below its range";
 }
 
-TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {
+TEST(ParameterRanges, MovesWhatLiesOutsideToItsBorder) {
     RldParameters start;
     start.s_crit = 1.0;
     start.d_min = 3.5;
@@ -69,7 +69,7 @@ TEST(ParameterBox, MovesWhatLiesOutsideToItsBorder) {
     EXPECT_EQ(back.d_min, 2.8);
 }
 
-TEST(ParameterBox, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
+TEST(ParameterRanges, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
     RldParameters rest;
     rest.d_t = 1.25;
     rest.pairing = Pairing::paper;
@@ -83,7 +83,7 @@ TEST(ParameterBox, HoldsValidParametersAtItsCornersAndKeepsTheRest) {
 }
 
 TEST(Tune, FindsTheBestOfATrackAndSaysWhatItWasBefore) {
-    const auto evaluate = [](const RldParameters& parameters) { return worth_by_d_e(parameters, {2.3}); };
+    const auto evaluate = [](const RldParameters& parameters) { return value_by_d_e(parameters, {2.3}); };
     const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 1, .evaluations = 300, .seed = 7});
     EXPECT_NEAR(tuned.parameters.d_e, 2.3, 0.05);
     EXPECT_NEAR(mean_over_scenes(tuned.laps_of_start), 1.0 / 1.9, 1e-12);  // 3.2 is 0.9 off
@@ -100,7 +100,7 @@ TEST(Tune, KeepsTheStartWhereNothingIsBetter) {
 
 TEST(Tune, FitsAFoldToTheOtherTracksAlone) {
     // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to what it does not hold out.
-    const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.0, 4.0, 2.0, 4.0}); };
+    const auto evaluate = [](const RldParameters& p) { return value_by_d_e(p, {2.0, 4.0, 2.0, 4.0}); };
     const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 2, .evaluations = 300, .seed = 3});
     ASSERT_EQ(tuned.folds.size(), 2U);
     EXPECT_THAT(tuned.folds[0].held_out, ElementsAre("track0", "track2"));
@@ -111,7 +111,7 @@ TEST(Tune, FitsAFoldToTheOtherTracksAlone) {
 
 TEST(Tune, GivesTheSameForTheSameSeed) {
     const auto tuned_with = [](std::uint64_t seed) {
-        const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.3, 3.9}); };
+        const auto evaluate = [](const RldParameters& p) { return value_by_d_e(p, {2.3, 3.9}); };
         return tune(evaluate, RldParameters{}, {.folds = 1, .evaluations = 60, .seed = seed}).parameters;
     };
     EXPECT_EQ(to_unit_cube(tuned_with(5)), to_unit_cube(tuned_with(5)));
@@ -122,10 +122,10 @@ TEST(Tune, PassesOnWhatAnEvaluationThrowsAndRefusesMoreFoldsThanTracks) {
     int calls = 0;
     const auto fails_later = [&](const RldParameters& p) {
         if (++calls > 5) throw InputError("", 0, "disk", "full");
-        return worth_by_d_e(p, {2.0});
+        return value_by_d_e(p, {2.0});
     };
     EXPECT_THROW(static_cast<void>(tune(fails_later, {}, {.folds = 1, .evaluations = 30})), InputError);
-    const auto evaluate = [](const RldParameters& p) { return worth_by_d_e(p, {2.0}); };
+    const auto evaluate = [](const RldParameters& p) { return value_by_d_e(p, {2.0}); };
     EXPECT_ANY_THROW(static_cast<void>(tune(evaluate, {}, {.folds = 2, .evaluations = 1})));
 }
 
@@ -135,7 +135,7 @@ TEST_F(TuningLog, RemembersAcrossRunsAndDropsALineCutShort) {
     int calls = 0;
     const auto evaluate = [&](const RldParameters& p) {
         ++calls;
-        return worth_by_d_e(p, {1.0 / 3.0});
+        return value_by_d_e(p, {1.0 / 3.0});
     };
     RldParameters other;
     other.d_e = 2.0 / 3.0;
@@ -195,26 +195,26 @@ TEST(Evaluation, CountsSlowScenesAsWorthless) {
     EXPECT_EQ(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.0);
 }
 
-TEST(Losses, NameTheConstraintThatTheGroundTruthBreaks) {
+TEST(FailureCauses, NameTheConstraintThatTheGroundTruthBreaks) {
     const SceneSet set = straight_track(0.0);
     const AnnotatedScene& scene = set.scenes.front();
-    const auto loss = [&](auto change) {
+    const auto cause = [&](auto change) {
         RldParameters parameters;
         change(parameters);
-        return loss_on(scene, parameters, {.nearest = 12, .time_limit_ms = 1e5}).cause;
+        return diagnose(scene, parameters, {.nearest = 12, .time_limit_ms = 1e5}).cause;
     };
-    EXPECT_EQ(loss([](RldParameters&) {}), Loss::accurate);
-    EXPECT_EQ(loss([](RldParameters& p) { p.s_crit = 0.0; }), Loss::breaks_spacing);
-    EXPECT_EQ(loss([](RldParameters& p) { p.t_crit = 0.0; }), Loss::breaks_angle);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_min = 30.0; }), Loss::breaks_width);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_h = 0.0; }), Loss::breaks_heading);
-    EXPECT_EQ(loss([](RldParameters& p) { p.d_max = 0.0; }), Loss::breaks_endpoints);
+    EXPECT_EQ(cause([](RldParameters&) {}), FailureCause::accurate);
+    EXPECT_EQ(cause([](RldParameters& p) { p.s_crit = 0.0; }), FailureCause::breaks_spacing);
+    EXPECT_EQ(cause([](RldParameters& p) { p.t_crit = 0.0; }), FailureCause::breaks_angle);
+    EXPECT_EQ(cause([](RldParameters& p) { p.d_min = 30.0; }), FailureCause::breaks_width);
+    EXPECT_EQ(cause([](RldParameters& p) { p.d_h = 0.0; }), FailureCause::breaks_heading);
+    EXPECT_EQ(cause([](RldParameters& p) { p.d_max = 0.0; }), FailureCause::breaks_endpoints);
 }
 
 /// Cones every 4 m on both sides, and on the left a false positive in the middle of each gap. At an expected
 /// spacing of 2 m they all belong to the lane of least cost: it has two edges more than the ground truth, and
 /// w_s (2 / 1.7)^4 = 1.92 w_s less of spacing cost for each gap.
-TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
+TEST(FailureCauses, NameTheTermInWhichTheGroundTruthIsDearest) {
     AnnotatedScene scene;
     scene.scene.id = "every_gap_halved";
     for (const ConeId i : {0, 1, 2}) {
@@ -226,14 +226,14 @@ TEST(Losses, NameTheTermInWhichTheGroundTruthIsDearest) {
     scene.ground_truth = Lane{{0, 1, 2}, {10, 11, 12}};
     RldParameters parameters;
     parameters.d_e = 2.0;
-    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_benefit);
+    EXPECT_EQ(diagnose(scene, parameters, {.time_limit_ms = 1e5}).cause, FailureCause::cheaper_benefit);
     parameters.w_s = 0.6;
-    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::cheaper_spacing);
+    EXPECT_EQ(diagnose(scene, parameters, {.time_limit_ms = 1e5}).cause, FailureCause::cheaper_spacing);
     parameters.d_e = 4.0;
-    EXPECT_EQ(loss_on(scene, parameters, {.time_limit_ms = 1e5}).cause, Loss::accurate);
+    EXPECT_EQ(diagnose(scene, parameters, {.time_limit_ms = 1e5}).cause, FailureCause::accurate);
 }
 
-TEST(Losses, SayWhereWrongConesAre) {
+TEST(FailureCauses, SayWhereWrongConesAre) {
     const Lane truth{{1, 2, 3, 4}, {11, 12, 13}};
     EXPECT_EQ(wrong_cones(truth, truth), WrongCones{});
     // Left: 9 before 2 instead of 1, 8 instead of 3 inside; right: ends one too early.
@@ -260,12 +260,12 @@ TEST(Evaluation, WithContextSeesBeyondTheConeSet) {
     options.nearest = 8;
     options.time_limit_ms = 1e5;
     const RldParameters parameters;
-    const SceneLoss without = loss_on(scene, parameters, options);
-    EXPECT_NE(without.cause, Loss::accurate);
+    const Diagnosis without = diagnose(scene, parameters, options);
+    EXPECT_NE(without.cause, FailureCause::accurate);
     ASSERT_TRUE(without.wrong);
     EXPECT_EQ(without.wrong->far_end, 2U);
     options.context = 18;
-    EXPECT_EQ(loss_on(scene, parameters, options).cause, Loss::accurate);
+    EXPECT_EQ(diagnose(scene, parameters, options).cause, FailureCause::accurate);
     SceneSet set;
     set.scenes = {scene};
     set.tracks[""] = {{{-20, 1.6}, {80, 1.6}}, {{-20, -1.6}, {80, -1.6}}, false};

@@ -1,5 +1,5 @@
-// The fit of weights: the objective is linear in them, the worth of the cheapest lane graph made smooth has a
-// gradient, and rounds learn from the tracks they are given and from no other.
+// The fit of weights: the objective is linear in them, the value of the lane graph of least cost made smooth
+// has a gradient, and rounds learn from the tracks they are given and from no other.
 
 #include "experiments/tuning/weight_fit.hpp"
 
@@ -51,16 +51,16 @@ TEST(ObjectiveSums, TimesTheWeightsAreTheObjective) {
     const auto solver = make_path_pair_solver();
     std::size_t solved = 0;
     for (const AnnotatedScene& annotated : scenes_of({"generated:curvy"}, 0.5).scenes) {
-        const Trial trial = try_on(*solver, annotated.scene, parameters, {.nearest = 14});
-        if (!trial.report.lane_graph) continue;
+        const EvaluatedScene evaluated = evaluate(*solver, annotated.scene, parameters, {.nearest = 14});
+        if (!evaluated.report.lane_graph) continue;
         ++solved;
-        const LaneGraph& graph = *trial.report.lane_graph;
-        ObjectiveSums sums = objective_sums(trial.problem, graph);
-        EXPECT_NEAR(weighted(sums, parameters), objective(trial.problem, graph), 1e-9);
+        const LaneGraph& graph = *evaluated.report.lane_graph;
+        ObjectiveSums sums = objective_sums(evaluated.problem, graph);
+        EXPECT_NEAR(weighted(sums, parameters), objective(evaluated.problem, graph), 1e-9);
         // The sums do not depend on the weights.
         RldParameters other = parameters;
         for (double RldParameters::*weight : kObjectiveWeights) other.*weight *= 1.7;
-        const ObjectiveSums again = objective_sums(make_problem(trial.seen, other), graph);
+        const ObjectiveSums again = objective_sums(make_problem(evaluated.seen, other), graph);
         for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
             EXPECT_NEAR(sums[term], again[term], 1e-9);
         }
@@ -68,42 +68,42 @@ TEST(ObjectiveSums, TimesTheWeightsAreTheObjective) {
     EXPECT_GT(solved, 5U);
 }
 
-RatedGraph rated(double spacing, double facing, double worth) {
+RatedGraph rated(double spacing, double facing, double value) {
     RatedGraph result;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::benefit)] = -0.1 * spacing;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::spacing)] = spacing;
     result.sums[static_cast<std::size_t>(ObjectiveTerm::facing)] = facing;
-    result.worth = worth;
+    result.value = value;
     return result;
 }
 
-TEST(ExpectedWorth, IsHalfOfTwoThatCostTheSameAndAllOfOneThatIsFarCheaper) {
+TEST(ExpectedValue, IsHalfOfTwoThatCostTheSameAndAllOfOneThatIsFarCheaper) {
     RldParameters parameters = with_shape_costs({});
     parameters.w_s = parameters.w_v = 1.0;
     const std::vector<RatedGraphs> same{{rated(1.0, 0.0, 1.0), rated(1.0, 0.0, 0.0)}};
-    EXPECT_DOUBLE_EQ(expected_worth(same, parameters, nullptr), 0.5);
+    EXPECT_DOUBLE_EQ(expected_value(same, parameters, nullptr), 0.5);
     const std::vector<RatedGraphs> cheaper{{rated(1.0, 0.0, 1.0), rated(9.0, 1.0, 0.0)}};
-    EXPECT_NEAR(expected_worth(cheaper, parameters, nullptr), 1.0, 1e-9);
-    EXPECT_EQ(expected_worth({}, parameters, nullptr), 0.0);
+    EXPECT_NEAR(expected_value(cheaper, parameters, nullptr), 1.0, 1e-9);
+    EXPECT_EQ(expected_value({}, parameters, nullptr), 0.0);
 }
 
-TEST(ExpectedWorth, HasTheGradientOfItsDifferences) {
+TEST(ExpectedValue, HasTheGradientOfItsDifferences) {
     const std::vector<RatedGraphs> scenes{{rated(0.3, 0.2, 1.0), rated(0.1, 0.4, 0.2), rated(0.2, 0.1, 0.0)},
                                           {rated(0.9, 0.1, 0.0), rated(0.7, 0.6, 0.7)},
                                           {rated(5.0, 5.0, 0.4)}};
     RldParameters parameters = with_shape_costs({});
     parameters.w_b = 1.5;
     ObjectiveSums gradient;
-    static_cast<void>(expected_worth(scenes, parameters, &gradient));
+    static_cast<void>(expected_value(scenes, parameters, &gradient));
     EXPECT_EQ(gradient[0], 0.0) << "w_b is the unit";
     for (std::size_t term = 1; term < kObjectiveTermCount; ++term) {
-        const auto worth_at = [&](double step) {
+        const auto value_at = [&](double step) {
             RldParameters moved = parameters;
             moved.*kObjectiveWeights[term] *= std::exp(step);
-            return expected_worth(scenes, moved, nullptr);
+            return expected_value(scenes, moved, nullptr);
         };
         const double h = 1e-5;
-        EXPECT_NEAR(gradient[term], (worth_at(h) - worth_at(-h)) / (2.0 * h), 1e-8) << term;
+        EXPECT_NEAR(gradient[term], (value_at(h) - value_at(-h)) / (2.0 * h), 1e-8) << term;
     }
 }
 
@@ -117,7 +117,7 @@ TEST(FitWeights, MakesTheRightOnesCheapest) {
     start.w_v = 0.5;
     const RldParameters fitted = fit_weights(scenes, start);
     EXPECT_GT(fitted.w_v, 2.0 * fitted.w_s - 0.2);
-    EXPECT_GT(expected_worth(scenes, fitted, nullptr), 0.99);
+    EXPECT_GT(expected_value(scenes, fitted, nullptr), 0.99);
     EXPECT_EQ(fitted.w_b, start.w_b);
     EXPECT_EQ(fitted.d_e, start.d_e);
 }
@@ -159,7 +159,7 @@ TEST(WeightRounds, GiveAWeightToATermThatHadNone) {
     RldParameters start = with_shape_costs({});
     start.w_u = 0.0;
     const auto rounds = fit_weights_in_rounds(evaluation, start, {"curvy"}, {2, 3});
-    EXPECT_GE(rounds.back().w_u, 0.01) << "the lowest of the box";
+    EXPECT_GE(rounds.back().w_u, 0.01) << "the lowest of its range";
 }
 
 TEST(WeightRounds, RefuseABenefitOfZero) {

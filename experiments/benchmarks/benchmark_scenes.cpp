@@ -1,6 +1,6 @@
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 

@@ -2,6 +2,7 @@
 // (as time for each of its iterations), the ranking (for each candidate), and a whole detection. Scenes are
 // of generated tracks, three false positives among ten points, 30 m; the scenes take turns.
 
+#include "experiments/delaunay.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 #include "graph_search/candidate_search.hpp"
@@ -42,7 +43,7 @@ benchmark::Counter time_of_each(double count) {
     return {count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
 }
 
-void build_search_graph(benchmark::State& state) {
+void build_search_graph(benchmark::State& state, const EdgeRule& rule) {
     std::vector<std::vector<Point>> points;
     for (const Scene& scene : scenes()) {
         points.emplace_back();
@@ -52,14 +53,12 @@ void build_search_graph(benchmark::State& state) {
     std::size_t turn = 0;
     for ([[maybe_unused]] auto iteration : state) {
         graph.build(points[turn++ % points.size()], CandidateSearchOptions{}.d_max_m,
-                    static_cast<SearchGraphKind>(state.range(0)));
+                    rule);
         benchmark::DoNotOptimize(graph.directed_edge_count());
     }
 }
-BENCHMARK(build_search_graph)
-    ->ArgName("delaunay")
-    ->Arg(static_cast<std::int64_t>(SearchGraphKind::all_pairs))
-    ->Arg(static_cast<std::int64_t>(SearchGraphKind::delaunay));
+BENCHMARK_CAPTURE(build_search_graph, all_pairs, EdgeRule{});
+BENCHMARK_CAPTURE(build_search_graph, delaunay, delaunay_edges);
 
 void enumerate(benchmark::State& state, const CandidateSearchOptions& options, bool with_features) {
     CandidateSearch search(options);

@@ -1,9 +1,10 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/files/certificate_file.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/cone_index.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/bound_certificate.hpp"
 #include "model/invalid_input.hpp"
 #include "model/lane_graph_problem.hpp"
@@ -13,7 +14,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -54,8 +54,7 @@ CertificateRecord to_record(const Scene& scene, const BoundCertificate& certific
 /// Nothing where the record names a cone that the scene has not; `missing` is its id then.
 std::optional<BoundCertificate> from_record(const Scene& scene, const CertificateRecord& record,
                                             ConeId& missing) {
-    std::unordered_map<ConeId, std::size_t> index_of;
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    const auto index_of = index_by_id(scene);
     const auto known = [&](ConeId id) {
         missing = id;
         return index_of.contains(id);

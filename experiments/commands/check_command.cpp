@@ -1,11 +1,11 @@
 #include "experiments/checking/infeasibility.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/check.hpp"
 
 #include <algorithm>

@@ -14,10 +14,8 @@ void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_certify_command(CLI::App& program);
 void add_exchange_commands(CLI::App& program);  ///< export, import-solution
-void add_formulations_command(CLI::App& program);
-void add_backends_command(CLI::App& program);
-void add_optimality_command(CLI::App& program);
-void add_relaxations_command(CLI::App& program);
+void add_drive_command(CLI::App& program);
+void add_study_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_report_command(CLI::App& program);
@@ -25,6 +23,5 @@ void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
-void add_extras_command(CLI::App& program);
 
 }  // namespace conelane::experiments

@@ -1,6 +1,6 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/report/report.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 

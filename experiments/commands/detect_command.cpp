@@ -1,11 +1,11 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
 #include "experiments/methods.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/report/report.hpp"
 
 #include <memory>

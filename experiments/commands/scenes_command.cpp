@@ -1,6 +1,6 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scenes/scene_set.hpp"
 
 #include <memory>

@@ -1,9 +1,9 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/score_table.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "detectors/solve_scene.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
-#include "experiments/files/scene_file.hpp"
 #include "experiments/files/solution_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "model/invalid_input.hpp"
 #include "solvers/registry.hpp"
 

@@ -1,11 +1,11 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/rank_net_file.hpp"
+#include "experiments/files/step_score_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
-#include "graph_search/rank_net_file.hpp"
-#include "graph_search/step_score_file.hpp"
 #include "model/invalid_input.hpp"
 
 #include <cstdint>
@@ -95,7 +95,7 @@ void train(Options& options) {
     run.training.inputs = options.extended ? kLaneFeatureCount : kPaperFeatureCount;
     if (options.extended) {
         run.candidates.search = extended_search_options();
-        run.steps_record = step_scores_training(shipped_step_scores_json());
+        run.steps_record = step_scores_training(shipped_step_score_file());
         run.training.loss = RankLoss::choice;
     }
     if (!options.step_scores.empty()) {
@@ -117,92 +117,94 @@ void train(Options& options) {
     print("hold-out", result.held_out);
 }
 
-}  // namespace
+constexpr int kMost = 1'000'000;
 
-void add_train_command(CLI::App& program) {
-    constexpr int kMost = 1'000'000;
-    CLI::App& command = *program.add_subcommand("train", "the ranking network of clc, or its step scores");
-    auto options = std::make_shared<Options>();
-    TrainingRunOptions& run = options->run;
+CLI::Option& add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
+                              const std::string& meaning, int least = 1) {
+    return *command.add_option(name, count, meaning)->check(CLI::Range(least, kMost))->capture_default_str();
+}
+
+void add_number_option(CLI::App& command, const std::string& name, double& number,
+                       const std::string& meaning) {
+    command.add_option(name, number, meaning)->capture_default_str();
+}
+
+/// What is trained on, and what only measured on.
+CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
-    command.add_option("--hold-out", run.hold_out, "tracks to measure on and not to train on");
-    CLI::Option& variants =
-        *command
-             .add_option("--variants", run.variants,
-                         "of each track, trained on too: stretched, every second one driven the other way")
-             ->check(CLI::Range(0, kMost))
-             ->capture_default_str();
+    command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
+    CLI::Option& variants = add_count_option(
+        command, "--variants", run.variants,
+        "of each track to train on too: stretched, every second one driven the other way", 0);
     add_scene_options(command, run.scenes);
-    command.add_option("--hold-out-every", run.hold_out_every_m, "travel between poses on those [m]")
-        ->capture_default_str();
-    command
-        .add_option("--candidates", run.candidates.most_per_scene, "of a scene, drawn at random; 0 for all")
-        ->check(CLI::Range(0, kMost))
-        ->capture_default_str();
-    command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
-        ->check(CLI::Range(1, kMost))
-        ->capture_default_str();
+    add_number_option(command, "--hold-out-every", run.hold_out_every_m,
+                      "travel between poses on the tracks held out [m]");
+    return variants;
+}
+
+/// Which of the two networks or the step scores; `variants`: the option that step scores have no use for.
+void add_kind_options(CLI::App& command, Options& options, CLI::Option& variants) {
     CLI::Option& extended =
-        *command.add_flag("--extended", options->extended,
+        *command.add_flag("--extended", options.extended,
                           "the network of clc, on its search, by all features and the quality of its "
                           "choice; without it that of clc-paper");
-    CLI::Option& steps =
-        *command
-             .add_flag("--steps", options->steps,
-                       "not a network, but the step scores that the beam search of clc goes by")
-             ->excludes(&extended)
-             ->excludes(&variants);
+    CLI::Option& steps = *command
+                              .add_flag("--steps", options.steps,
+                                        "train the step scores of clc's beam search instead of a network")
+                              ->excludes(&extended)
+                              ->excludes(&variants);
     command
-        .add_option("--step-scores", options->step_scores,
+        .add_option("--step-scores", options.step_scores,
                     "step scores (JSON) of the beam search that finds candidates, with --extended; "
                     "without it those of clc")
         ->needs(&extended)
         ->excludes(&steps);
-    command
-        .add_option("--step-epochs", options->step_training.epochs, "rounds over the scenes, with --steps")
+}
+
+void add_step_options(CLI::App& command, StepScoreTrainingOptions& training) {
+    add_count_option(command, "--step-epochs", training.epochs, "rounds over the scenes, with --steps");
+    add_number_option(command, "--step-rate", training.learning_rate, "learning rate of Adam, with --steps");
+    add_number_option(command, "--step-decay", training.weight_decay,
+                      "decay of a score by each step, times the rate, with --steps");
+}
+
+void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
+    add_count_option(command, "--units", training.units, "of the hidden layer");
+    add_count_option(command, "--epochs", training.epochs, "rounds over the candidates");
+    add_count_option(command, "--scenes-a-step", training.scenes_a_step,
+                     "scenes to a step of Adam, with --extended");
+    add_number_option(command, "--rate", training.learning_rate, "learning rate of Adam");
+    add_number_option(command, "--decay", training.weight_decay,
+                      "decay of the network's weights by each step, times the rate");
+    add_number_option(command, "--iou-factor", training.iou_factor, "lambda_iou of equation (14)");
+    add_number_option(
+        command, "--divergence-penalty", training.divergence_penalty,
+        "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper");
+    add_number_option(command, "--late-divergence-penalty", training.late_divergence_penalty,
+                      "the same for a lane that leaves it later");
+    add_number_option(command, "--leader-share", training.leader_share,
+                      "share of the pairs that hold the candidate ranked first so far");
+}
+
+}  // namespace
+
+void add_train_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "train", "trains the ranking network of clc, or the step scores of its beam search");
+    auto options = std::make_shared<Options>();
+    TrainingRunOptions& run = options->run;
+    CLI::Option& variants = add_track_options(command, run);
+    add_count_option(command, "--candidates", run.candidates.most_per_scene,
+                     "of a scene at most, drawn at random; 0 for all", 0);
+    command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
         ->check(CLI::Range(1, kMost))
         ->capture_default_str();
-    command
-        .add_option("--step-rate", options->step_training.learning_rate,
-                    "learning rate of Adam, with --steps")
-        ->capture_default_str();
-    command
-        .add_option("--step-decay", options->step_training.weight_decay,
-                    "decay of a score by each step, times the rate, with --steps")
-        ->capture_default_str();
-    command.add_option("--units", run.training.units, "of the hidden layer")
-        ->check(CLI::Range(1, kMost))
-        ->capture_default_str();
-    command.add_option("--epochs", run.training.epochs, "rounds over the candidates")
-        ->check(CLI::Range(1, kMost))
-        ->capture_default_str();
-    command
-        .add_option("--scenes-a-step", run.training.scenes_a_step,
-                    "scenes to a step of Adam, with --extended")
-        ->check(CLI::Range(1, kMost))
-        ->capture_default_str();
-    command.add_option("--rate", run.training.learning_rate, "learning rate of Adam")->capture_default_str();
-    command
-        .add_option("--decay", run.training.weight_decay,
-                    "decay of the network's weights by each step, times the rate")
-        ->capture_default_str();
-    command.add_option("--iou-factor", run.training.iou_factor, "lambda_iou of equation (14)")
-        ->capture_default_str();
-    command
-        .add_option("--divergence-penalty", run.training.divergence_penalty,
-                    "off the IoU of a lane that diverges below 20 m; 0, as in the paper, without it")
-        ->capture_default_str();
-    command
-        .add_option("--late-divergence-penalty", run.training.late_divergence_penalty,
-                    "the same for one that diverges later")
-        ->capture_default_str();
-    command
-        .add_option("--leader-share", run.training.leader_share,
-                    "share of the pairs with the candidate that the network ranks first")
-        ->capture_default_str();
-    add_threads_option(command, options->threads, "same weights with any number");
+    add_kind_options(command, *options, variants);
+    add_step_options(command, options->step_training);
+    add_network_options(command, run.training);
+    add_threads_option(command, options->threads, "the weights are the same with any number");
     add_output_option(command, "--out", options->out, "weights (JSON)")->required();
     command.callback([options] { train(*options); });
 }

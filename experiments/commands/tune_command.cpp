@@ -1,14 +1,14 @@
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/shared_options.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/losses.hpp"
+#include "experiments/tuning/failure_causes.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "experiments/tuning/weight_rounds.hpp"
 #include "model/invalid_input.hpp"
@@ -104,7 +104,7 @@ ordered_json to_json(const std::vector<LapFigure>& laps) {
 }
 
 /// Of each rate: scenes by why they are inaccurate, and how many inaccurate ones have wrong cones where.
-struct Losses {
+struct FailureCounts {
     ordered_json causes = ordered_json::object();
     ordered_json places = ordered_json::object();
 };
@@ -114,28 +114,28 @@ void count_one(ordered_json& counts, std::string_view name) {
     count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
 }
 
-Losses losses(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
-              const EvaluationOptions& options) {
-    Losses losses;
+FailureCounts count_failures(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
+                             const EvaluationOptions& options) {
+    FailureCounts counts;
     for (const AnnotatedScene& scene : scenes) {
         const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
-        const SceneLoss loss = loss_on(scene, parameters, options);
-        count_one(losses.causes[rate], to_string(loss.cause));
-        if (!loss.wrong) continue;
-        ordered_json& places = losses.places[rate];
-        if (loss.wrong->near_end > 0) count_one(places, "near_end");
-        if (loss.wrong->inside > 0) count_one(places, "inside");
-        if (loss.wrong->far_end > 0) count_one(places, "far_end");
-        if (loss.wrong->on_lost_boundary > 0) count_one(places, "lost_boundary");
-        if (*loss.wrong == WrongCones{}) count_one(places, "none");
+        const Diagnosis found = diagnose(scene, parameters, options);
+        count_one(counts.causes[rate], to_string(found.cause));
+        if (!found.wrong) continue;
+        ordered_json& places = counts.places[rate];
+        if (found.wrong->near_end > 0) count_one(places, "near_end");
+        if (found.wrong->inside > 0) count_one(places, "inside");
+        if (found.wrong->far_end > 0) count_one(places, "far_end");
+        if (found.wrong->on_lost_boundary > 0) count_one(places, "lost_boundary");
+        if (*found.wrong == WrongCones{}) count_one(places, "none");
     }
-    return losses;
+    return counts;
 }
 
 /// Two lines for each rate: shares of the scenes that count.
-void print_losses(const Losses& losses) {
-    const std::string not_counted(to_string(Loss::no_ground_truth));
-    for (const auto& [rate, causes] : losses.causes.items()) {
+void print_failures(const FailureCounts& failures) {
+    const std::string not_counted(to_string(FailureCause::no_ground_truth));
+    for (const auto& [rate, causes] : failures.causes.items()) {
         double scenes = 0.0;
         for (const auto& [cause, count] : causes.items()) {
             if (cause != not_counted) scenes += count.get<double>();
@@ -149,7 +149,8 @@ void print_losses(const Losses& losses) {
             return fmt::format("{}", fmt::join(parts, ", "));
         };
         fmt::print("false positives {}: {}\n", rate, shares(causes));
-        if (losses.places.contains(rate)) fmt::print("    wrong cones at: {}\n", shares(losses.places[rate]));
+        if (failures.places.contains(rate))
+            fmt::print("    wrong cones at: {}\n", shares(failures.places[rate]));
     }
 }
 
@@ -211,9 +212,9 @@ void run(Options& options) {
     }
     write_rld_parameters(options.out, tuned.parameters);
     ordered_json record = record_of(options, start, tuned);
-    const Losses lost = losses(evaluation.scenes(), tuned.parameters, options.evaluation);
-    record["losses"] = lost.causes;
-    record["wrong_cones"] = lost.places;
+    const FailureCounts failures = count_failures(evaluation.scenes(), tuned.parameters, options.evaluation);
+    record["losses"] = failures.causes;  // the name in all records so far
+    record["wrong_cones"] = failures.places;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
     file.commit();
@@ -226,13 +227,14 @@ void run(Options& options) {
                    100.0 * mean_over_scenes(fold.held_out_laps_of_start),
                    100.0 * mean_over_scenes(fold.held_out_laps));
     }
-    print_losses(lost);
+    print_failures(failures);
 }
 
 }  // namespace
 
 void add_tune_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("tune", "RLD parameters that are best on given tracks");
+    CLI::App& command =
+        *program.add_subcommand("tune", "finds the RLD parameters that answer best on given tracks");
     auto options = std::make_shared<Options>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
@@ -249,7 +251,7 @@ void add_tune_command(CLI::App& program) {
                     if (to_string(objective) == name) options->evaluation.objective = objective;
                 }
             },
-            "mean over scenes that is made as large as possible [accuracy]")
+            "what to maximise, as a mean over scenes [accuracy]")
         ->check(CLI::IsMember({"accuracy", "iou", "success"}));
     add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
     command
@@ -261,26 +263,35 @@ void add_tune_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
-        .add_option("--most-nodes", options->evaluation.most_nodes, "a scene that takes more counts as wrong")
+        .add_option("--most-nodes", options->evaluation.most_nodes,
+                    "of a scene's search; one that takes more counts as wrong")
         ->check(CLI::Range(1, 1'000'000'000))
         ->capture_default_str();
-    command.add_option("--folds", options->tuner.folds, "of tracks; 1 holds none out")
+    command
+        .add_option("--folds", options->tuner.folds,
+                    "groups of tracks, each of which is held out once; 1 holds none out")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     command
         .add_option("--rounds", options->rounds,
-                    "of a fit of the weights to lane graphs found, in each fit before the search; not in "
-                    "the log")
+                    "of fitting the weights to the lane graphs found so far, before the search of each fit; "
+                    "not in the log")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
-    command.add_option("--evaluations", options->tuner.evaluations, "in each fit")
+    command
+        .add_option("--evaluations", options->tuner.evaluations,
+                    "parameters that the search evaluates in each fit, at most")
         ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
-    command.add_option("--start", options->start, "parameters to start from");
-    command.add_flag("--shape", options->shape, "with the costs of the lane's shape, tuned too");
-    add_threads_option(command, options->evaluation.threads, "scenes at a time");
+    command.add_option(
+        "--start", options->start,
+        "parameters to start from: a name or a file, as for --params elsewhere; without it the defaults");
+    command.add_flag("--shape", options->shape, "start with the costs of a lane's shape and tune them too");
+    add_threads_option(command, options->evaluation.threads, "scenes solved at a time");
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
-    command.add_option("--log", options->log, "*.jsonl of all evaluations; a tuning stopped there goes on");
+    command.add_option(
+        "--log", options->log,
+        "*.jsonl, a line for each evaluation; with the same log a tuning that was stopped goes on");
     command.callback([options] { run(*options); });
 }
 

@@ -1,12 +1,12 @@
 #include "experiments/comparison/answer_check.hpp"
 
+#include "experiments/scenes/cone_index.hpp"
 #include "model/check.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -36,8 +36,7 @@ std::string objection(const LaneRecord& record, const Scene& seen, const RldPara
 }  // namespace
 
 std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene) {
-    std::unordered_map<ConeId, std::size_t> index_of;
-    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    const auto index_of = index_by_id(scene);
     LaneGraph graph;
     for (const std::vector<ConeId>* boundary : {&lane.left, &lane.right}) {
         std::vector<std::size_t> path;

@@ -1,7 +1,7 @@
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-"""backends.jsonl: every solve of `conelane backends`."""
+"""backends.jsonl: every solve of `conelane study backends`."""
 
 import os
 

@@ -1,6 +1,7 @@
 #include "experiments/scenes/scene_generation.hpp"
 
 #include "experiments/scenes/ground_truth.hpp"
+#include "experiments/seeded_random.hpp"
 #include "experiments/tracks/centre_line.hpp"
 #include "model/geometry.hpp"
 #include "model/invalid_input.hpp"
@@ -182,7 +183,8 @@ class SceneMaker {
         result.ground_truth = std::move(lane);
         add_false_positives(scene.cones, view);
         draw_confidences(scene.cones);
-        shuffle(scene.cones);
+        Generator order = generator("order");
+        shuffle(scene.cones, order);
         if (options_.nearest) {
             result.ground_truth = ground_truth_of_nearest(result, *options_.nearest);
             if (!result.ground_truth) return std::nullopt;
@@ -308,15 +310,6 @@ class SceneMaker {
             const ConeColor color = kColors[any_color(random)];
             if (options_.with_color) cone.color = color;
             cones.push_back(cone);
-        }
-    }
-
-    /// Fisher and Yates; std::shuffle differs between standard libraries.
-    void shuffle(std::vector<Cone>& cones) const {
-        Generator random = generator("order");
-        for (std::size_t remaining = cones.size(); remaining > 1; --remaining) {
-            boost::random::uniform_int_distribution<std::size_t> any(0, remaining - 1);
-            std::swap(cones[remaining - 1], cones[any(random)]);
         }
     }
 

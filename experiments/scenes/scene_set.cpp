@@ -1,7 +1,7 @@
 #include "experiments/scenes/scene_set.hpp"
 
 #include "experiments/files/input_error.hpp"
-#include "experiments/files/scene_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
 #include "experiments/tracks/centre_line.hpp"
 #include "experiments/tracks/track_spec.hpp"
 

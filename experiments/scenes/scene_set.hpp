@@ -2,6 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scenes/scene_generation.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 
 #include <cstddef>
 #include <filesystem>

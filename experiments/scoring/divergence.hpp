@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 #include "model/scene.hpp"
 
 #include <optional>

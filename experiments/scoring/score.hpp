@@ -2,6 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 #include "model/lane_detector.hpp"
 
 #include <array>

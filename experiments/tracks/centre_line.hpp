@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
 #include "model/scene.hpp"
 
 #include <vector>

@@ -1,10 +1,11 @@
 #include "experiments/training/candidate_lists.hpp"
 
 #include "experiments/progress.hpp"
+#include "experiments/scenes/cone_index.hpp"
 #include "experiments/scoring/divergence.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/scoring/score.hpp"
-#include "experiments/training/random_order.hpp"
+#include "experiments/seeded_random.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -39,12 +40,12 @@ std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::st
     return numbers;
 }
 
-using Positions = std::unordered_map<ConeId, Point>;  // for look-up only
+using IndexById = std::unordered_map<ConeId, std::size_t>;
 
-LaneOutline outline(const Lane& lane, const Positions& position_of) {
+LaneOutline outline(const Lane& lane, const Scene& scene, const IndexById& index_of) {
     LaneOutline result;
-    for (const ConeId id : lane.left) result.left.push_back(position_of.at(id));
-    for (const ConeId id : lane.right) result.right.push_back(position_of.at(id));
+    for (const ConeId id : lane.left) result.left.push_back(scene.cones[index_of.at(id)].position);
+    for (const ConeId id : lane.right) result.right.push_back(scene.cones[index_of.at(id)].position);
     result.closed = lane.closed;
     return result;
 }
@@ -73,9 +74,8 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             request.with_features = true;
             (void)search.run(scene.scene, request);
             const PathPairs& pairs = search.pairs();
-            Positions position_of;
-            for (const Cone& cone : scene.scene.cones) position_of.emplace(cone.id, cone.position);
-            const LaneOutline ground_truth = outline(*scene.ground_truth, position_of);
+            const IndexById index_of = index_by_id(scene.scene);
+            const LaneOutline ground_truth = outline(*scene.ground_truth, scene.scene, index_of);
             const TrackBoundaries& annotated = set.tracks.at(scene.track);
             CandidateList& list = lists[i];
             list.track = scene.track;
@@ -84,7 +84,8 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             for (const std::size_t k :
                  draw(options.most_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
                 list.lanes.push_back(pairs.features()[k]);
-                const LaneOutline lane = outline(search.lane(pairs.found()[k], scene.scene), position_of);
+                const LaneOutline lane =
+                    outline(search.lane(pairs.found()[k], scene.scene), scene.scene, index_of);
                 // Candidates satisfy the constraints.
                 list.iou.push_back(intersection_over_union_of_simple(lane, ground_truth));
                 list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));

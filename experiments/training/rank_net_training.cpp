@@ -2,12 +2,12 @@
 
 #include "experiments/progress.hpp"
 #include "experiments/scoring/score.hpp"
-#include "experiments/training/random_order.hpp"
+#include "experiments/seeded_random.hpp"
+#include "experiments/training/adam.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -22,10 +22,8 @@ namespace {
 
 using Generator = boost::random::mt19937_64;
 
-/// Adam's constants as its authors propose them.
-constexpr double kFirstDecay = 0.9;
-constexpr double kSecondDecay = 0.999;
-constexpr double kSmallest = 1e-8;
+/// As Adam's authors propose.
+constexpr double kSmallestDeviation = 1e-8;
 
 /// All candidates, a column each, and where each list of them begins.
 struct Candidates {
@@ -129,39 +127,35 @@ double sigmoid(double value) {
     return 1.0 / (1.0 + std::exp(-value));
 }
 
-class Adam {
+/// A step of Adam with decoupled weight decay.
+class Optimiser {
   public:
-    Adam(const RankNetParameters& parameters, double weight_decay)
+    Optimiser(const RankNetParameters& parameters, double weight_decay)
         : weight_decay_(weight_decay),
-          first_{parameters.hidden * 0.0, parameters.hidden_bias * 0.0, parameters.output * 0.0},
-          second_(first_) {}
+          hidden_(parameters.hidden.size(), kSmallestDeviation),
+          hidden_bias_(parameters.hidden_bias.size(), kSmallestDeviation),
+          output_(parameters.output.size(), kSmallestDeviation) {}
 
     void step(const RankNetParameters& gradient, double learning_rate, RankNetParameters& parameters) {
-        first_power_ *= kFirstDecay;
-        second_power_ *= kSecondDecay;
         parameters.hidden *= 1.0 - learning_rate * weight_decay_;
         parameters.output *= 1.0 - learning_rate * weight_decay_;
-        move(gradient.hidden, learning_rate, first_.hidden, second_.hidden, parameters.hidden);
-        move(gradient.hidden_bias, learning_rate, first_.hidden_bias, second_.hidden_bias,
-             parameters.hidden_bias);
-        move(gradient.output, learning_rate, first_.output, second_.output, parameters.output);
+        move(hidden_, gradient.hidden, learning_rate, parameters.hidden);
+        move(hidden_bias_, gradient.hidden_bias, learning_rate, parameters.hidden_bias);
+        move(output_, gradient.output, learning_rate, parameters.output);
     }
 
   private:
     template <typename Values>
-    void move(const Values& gradient, double learning_rate, Values& first, Values& second,
-              Values& parameters) const {
-        first = kFirstDecay * first + (1.0 - kFirstDecay) * gradient;
-        second = kSecondDecay * second + (1.0 - kSecondDecay) * gradient.cwiseAbs2();
-        parameters.array() -= learning_rate * (first.array() / (1.0 - first_power_)) /
-                              ((second.array() / (1.0 - second_power_)).sqrt() + kSmallest);
+    static void move(Adam& adam, const Values& gradient, double learning_rate, Values& parameters) {
+        adam.add(Eigen::Map<const Eigen::ArrayXd>(gradient.data(), gradient.size()));
+        Eigen::Map<Eigen::ArrayXd>(parameters.data(), parameters.size()) -=
+            learning_rate * adam.mean() / adam.deviation();
     }
 
     double weight_decay_;
-    RankNetParameters first_;
-    RankNetParameters second_;
-    double first_power_ = 1.0;
-    double second_power_ = 1.0;
+    Adam hidden_;
+    Adam hidden_bias_;
+    Adam output_;
 };
 
 using Pair = std::pair<Eigen::Index, Eigen::Index>;
@@ -191,7 +185,7 @@ std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& par
 /// One epoch. `rate`: the learning rate by the share of the epoch that is done.
 template <typename Rate>
 void train_on_pairs(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
-                    Generator& random, Adam& adam, RankNetParameters& parameters) {
+                    Generator& random, Optimiser& optimiser, RankNetParameters& parameters) {
     const std::vector<Pair> pairs = draw_pairs(all, parameters, options, random);
     CandidatePairs batch;
     RankNetParameters gradient;
@@ -210,14 +204,15 @@ void train_on_pairs(const Candidates& all, const RankNetTrainingOptions& options
                                               all.quality[static_cast<std::size_t>(second)]));
         }
         (void)pair_loss(parameters, batch, &gradient);
-        adam.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(pairs.size())), parameters);
+        optimiser.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(pairs.size())),
+                       parameters);
     }
 }
 
 /// One epoch: every scene once, in random order.
 template <typename Rate>
 void train_on_scenes(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
-                     Generator& random, Adam& adam, RankNetParameters& parameters) {
+                     Generator& random, Optimiser& optimiser, RankNetParameters& parameters) {
     std::vector<std::size_t> order(all.begins.size() - 1);
     std::iota(order.begin(), order.end(), std::size_t{0});
     shuffle(order, random);
@@ -241,7 +236,8 @@ void train_on_scenes(const Candidates& all, const RankNetTrainingOptions& option
                 Eigen::Map<const Eigen::RowVectorXd>(all.quality.data() + from, size);
         }
         (void)choice_loss(parameters, batch, &gradient);
-        adam.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(order.size())), parameters);
+        optimiser.step(gradient, rate(static_cast<double>(begin) / static_cast<double>(order.size())),
+                       parameters);
     }
 }
 
@@ -321,19 +317,19 @@ RankNetWeights train_rank_net(std::span<const CandidateList> lists, const RankNe
     const auto [mean, deviation] = standardise(all.inputs);
     Generator random(options.seed);
     RankNetParameters parameters = initial(options, random);
-    Adam adam(parameters, options.weight_decay);
+    Optimiser optimiser(parameters, options.weight_decay);
     Progress progress("training", options.show_progress ? options.epochs : 0);
     for (std::size_t epoch = 0; epoch < options.epochs; ++epoch) {
         // The rate falls along a cosine from the first step to the last.
         const auto rate = [&](double share_of_epoch) {
             const double done =
                 (static_cast<double>(epoch) + share_of_epoch) / static_cast<double>(options.epochs);
-            return options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done));
+            return cosine_rate(options.learning_rate, done);
         };
         if (options.loss == RankLoss::pairs) {
-            train_on_pairs(all, options, rate, random, adam, parameters);
+            train_on_pairs(all, options, rate, random, optimiser, parameters);
         } else {
-            train_on_scenes(all, options, rate, random, adam, parameters);
+            train_on_scenes(all, options, rate, random, optimiser, parameters);
         }
         progress.advance();
     }

@@ -2,7 +2,8 @@
 
 #include "experiments/progress.hpp"
 #include "experiments/scoring/score.hpp"
-#include "experiments/training/random_order.hpp"
+#include "experiments/seeded_random.hpp"
+#include "experiments/training/adam.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/start_vertices.hpp"
 #include "model/invalid_input.hpp"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <unordered_map>
 #include <vector>
@@ -20,11 +20,8 @@
 namespace conelane::experiments {
 namespace {
 
-/// Adam's constants as its authors propose them, but for the last: where a score hardly ever counts, its
-/// derivative is mostly rounding.
-constexpr double kFirstDecay = 0.9;
-constexpr double kSecondDecay = 0.999;
-constexpr double kSmallest = 1e-6;
+/// Where a score hardly ever counts, its derivative is mostly rounding.
+constexpr double kSmallestDeviation = 1e-6;
 
 /// A lane less likely than this adds nothing to a derivative.
 constexpr double kLeastProbability = 1e-3;
@@ -32,10 +29,7 @@ constexpr double kLeastProbability = 1e-3;
 /// A scene in the search graph with its ground truth, and the beam that is to keep it.
 class RightLane {
   public:
-    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {
-        search_.start.w_min_m = search.bounds.w_min_m;
-        search_.start.w_max_m = search.bounds.w_max_m;
-    }
+    explicit RightLane(const CandidateSearchOptions& search) : search_(search) {}
 
     /// What became of the right lane.
     struct Course {
@@ -71,7 +65,8 @@ class RightLane {
             if (place >= near_vertices_[side]) course.near_kept = true;
             if (place == truth_[side].size()) break;
             const Vertex vertex = truth_[side][place];
-            (void)beam_.advance();
+            SearchBudget unlimited;
+            (void)beam_.advance(unlimited);
             const auto follows = [&](std::size_t number) {
                 const LaneBeam::State& next = beam_.state(number);
                 return next.parent == right && next.last[side] == vertex;
@@ -82,7 +77,8 @@ class RightLane {
             right = next;
         }
         course.near_kept = course.kept = true;
-        if (derivatives != nullptr && beam_.advance()) add_loss(right, course, *derivatives);
+        SearchBudget unlimited;
+        if (derivatives != nullptr && beam_.advance(unlimited)) add_loss(right, course, *derivatives);
         return course;
     }
 
@@ -94,8 +90,9 @@ class RightLane {
             vertex_of.emplace(cone.id, static_cast<Vertex>(points.size()));
             points.push_back(cone.position);
         }
-        graph_.build(points, search_.d_max_m, search_.graph);
-        starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start);
+        graph_.build(points, search_.d_max_m, search_.edge_rule);
+        starts_ = start_pairs(annotated.scene, std::numeric_limits<std::size_t>::max(), search_.start,
+                              search_.bounds);
         for (const Side side : {kLeft, kRight}) {
             truth_[side].clear();
             near_vertices_[side] = 0;
@@ -162,11 +159,9 @@ StepScores train_step_scores(const SceneSet& set, const StepScoreTrainingOptions
     }
     const std::size_t count = step_score_count();
     StepScores scores{std::vector<double>(count, 0.0)};
-    std::vector<double> first(count, 0.0);
-    std::vector<double> second(count, 0.0);
     std::vector<double> derivatives(count);
-    double first_power = 1.0;
-    double second_power = 1.0;
+    const auto size = static_cast<Eigen::Index>(count);
+    Adam adam(size, kSmallestDeviation);
     boost::random::mt19937_64 random(options.seed);
     RightLane lane(options.search);
     Progress progress("training", options.show_progress ? options.epochs : 0);
@@ -177,21 +172,15 @@ StepScores train_step_scores(const SceneSet& set, const StepScoreTrainingOptions
         for (const AnnotatedScene* scene : scenes) {
             const double done =
                 static_cast<double>(met++) / static_cast<double>(options.epochs * scenes.size());
-            const double rate = options.learning_rate * 0.5 * (1.0 + std::cos(std::numbers::pi * done));
+            const double rate = cosine_rate(options.learning_rate, done);
             std::ranges::fill(derivatives, 0.0);
             const RightLane::Course course = lane.follow(*scene, scores, &derivatives);
             if (course.levels == 0) continue;
             ++learned_from;
-            first_power *= kFirstDecay;
-            second_power *= kSecondDecay;
-            for (std::size_t i = 0; i < count; ++i) {
-                const double derivative = derivatives[i] / static_cast<double>(course.levels);
-                first[i] = kFirstDecay * first[i] + (1.0 - kFirstDecay) * derivative;
-                second[i] = kSecondDecay * second[i] + (1.0 - kSecondDecay) * derivative * derivative;
-                const double step = first[i] / (1.0 - first_power) /
-                                    (std::sqrt(second[i] / (1.0 - second_power)) + kSmallest);
-                scores.values[i] -= rate * (step + options.weight_decay * scores.values[i]);
-            }
+            adam.add(Eigen::Map<const Eigen::ArrayXd>(derivatives.data(), size) /
+                     static_cast<double>(course.levels));
+            Eigen::Map<Eigen::ArrayXd> values(scores.values.data(), size);
+            values -= rate * (adam.mean() / adam.deviation() + options.weight_decay * values);
         }
         progress.advance();
     }

@@ -4,7 +4,6 @@
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scoring/score.hpp"
 #include "model/invalid_input.hpp"
-#include "model/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <algorithm>
@@ -20,18 +19,18 @@
 namespace conelane::experiments {
 namespace {
 
-struct SceneWorth {
+struct SceneValue {
     double value = 0.0;
     bool timed_out = false;
 };
 
-SceneWorth worth(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
-                 const RldParameters& parameters, const EvaluationOptions& options) {
-    const Trial trial = try_on(solver, annotated.scene, parameters, options);
-    if (trial.report.status == SolveStatus::feasible || trial.report.status == SolveStatus::stopped)
+SceneValue value_on(RldSolver& solver, const AnnotatedScene& annotated, const TrackBoundaries& boundaries,
+                    const RldParameters& parameters, const EvaluationOptions& options) {
+    const EvaluatedScene evaluated = evaluate(solver, annotated.scene, parameters, options);
+    if (evaluated.report.status == SolveStatus::feasible || evaluated.report.status == SolveStatus::stopped)
         return {0.0, true};
-    if (trial.report.nodes > options.most_nodes) return {};
-    return {worth_of(trial.answer, annotated, boundaries, options)};
+    if (evaluated.report.nodes > options.most_nodes) return {};
+    return {value_of(evaluated.answer, annotated, boundaries, options)};
 }
 
 }  // namespace
@@ -41,16 +40,17 @@ std::optional<std::size_t> seen_count(const EvaluationOptions& options) {
     return std::max(*options.nearest, options.context.value_or(0));
 }
 
-Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-             const EvaluationOptions& options) {
-    const Deadline deadline(options.time_limit_ms);
+EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                        const EvaluationOptions& options) {
     const std::optional<std::size_t> count = seen_count(options);
-    Trial trial{count ? nearest_ahead(scene, *count) : scene, {}, {}, {}};
-    trial.problem = make_problem(trial.seen, parameters, solver.extent());
-    trial.report = solver.solve(trial.problem, {deadline.remaining_ms()});
-    if (!trial.report.lane_graph) return trial;
-    trial.answer = answer_of(*trial.report.lane_graph, trial.seen, options);
-    return trial;
+    EvaluatedScene evaluated;
+    evaluated.seen = count ? nearest_ahead(scene, *count) : scene;
+    static_cast<SolvedScene&>(evaluated) =
+        solve_scene(solver, evaluated.seen, parameters, {options.time_limit_ms});
+    if (evaluated.report.status == SolveStatus::error) throw InvalidInput(scene.id, evaluated.report.message);
+    if (!evaluated.report.lane_graph) return evaluated;
+    evaluated.answer = answer_of(*evaluated.report.lane_graph, evaluated.seen, options);
+    return evaluated;
 }
 
 LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen, const EvaluationOptions& options) {
@@ -66,7 +66,7 @@ LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen, const Evaluation
     return answer;
 }
 
-double worth_of(const LaneAnswer& answer, const AnnotatedScene& scene, const TrackBoundaries& boundaries,
+double value_of(const LaneAnswer& answer, const AnnotatedScene& scene, const TrackBoundaries& boundaries,
                 const EvaluationOptions& options) {
     if (answer.status != LaneStatus::found) return 0.0;
     const SceneScore result = score(scene, answer, 0.0, options.nearest, &boundaries);
@@ -115,8 +115,8 @@ std::vector<LapFigure> Evaluation::operator()(const RldParameters& parameters) c
     arena.execute([&] {
         oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
             if (abandoned()) return;
-            const SceneWorth result =
-                worth(*solvers.local(), scenes[i], set_.tracks.at(scenes[i].track), parameters, options_);
+            const SceneValue result =
+                value_on(*solvers.local(), scenes[i], set_.tracks.at(scenes[i].track), parameters, options_);
             values[i] = result.value;
             if (result.timed_out) ++timed_out;
         });

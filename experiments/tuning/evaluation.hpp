@@ -1,8 +1,8 @@
 #pragma once
 
+#include "detectors/solve_scene.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "model/lane_detector.hpp"
-#include "model/lane_graph_problem.hpp"
 #include "model/rld_parameters.hpp"
 #include "solvers/rld_solver.hpp"
 
@@ -26,36 +26,34 @@ enum class TuningObjective {
 struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;
     std::optional<std::size_t> nearest{};  ///< cone-set size; all cones where absent
-    std::optional<std::size_t> context{};  ///< as RldDetectorOptions::context
-    /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, is worth nothing.
+    std::optional<std::size_t> context{};  ///< as ConeSet::context
+    /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, has value 0.
     double time_limit_ms = 20.0;
     std::int64_t most_nodes = 1000;
-    /// Once more of the scenes than this have run into the time limit, all scenes are worth nothing.
+    /// Once more of the scenes than this have run into the time limit, all scenes have value 0.
     double most_timed_out = 0.02;
     unsigned threads = 1;
 };
 
-/// What parameters answer on a scene, and how.
-struct Trial {
+/// A scene solved under some parameters, and what is answered.
+struct EvaluatedScene : SolvedScene {
     Scene seen;  ///< the cone set, or the context where that is larger
-    LaneGraphProblem problem;
-    RldReport report;
     LaneAnswer answer;
 };
-[[nodiscard]] Trial try_on(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                           const EvaluationOptions& options);
+[[nodiscard]] EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                                      const EvaluationOptions& options);
 
 /// The lane of a lane graph over the cones seen, cut to the cone set; not found where nothing is left of it.
 [[nodiscard]] LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen,
                                    const EvaluationOptions& options);
-/// What the answer on a scene is worth by the objective, in [0, 1]; 0 where no lane was found.
-[[nodiscard]] double worth_of(const LaneAnswer& answer, const AnnotatedScene& scene,
+/// The value of an answer under the objective, in [0, 1]; 0 where no lane was found.
+[[nodiscard]] double value_of(const LaneAnswer& answer, const AnnotatedScene& scene,
                               const TrackBoundaries& boundaries, const EvaluationOptions& options);
 
 /// The number of nearest cones that a lane is found among; all cones where absent.
 [[nodiscard]] std::optional<std::size_t> seen_count(const EvaluationOptions& options);
 
-/// What parameters are worth on the scenes of one track, rate and range.
+/// The values that parameters reach on the scenes of one track, rate and range.
 struct LapFigure {
     std::string track;
     double rate = 0.0;
@@ -66,7 +64,7 @@ struct LapFigure {
     bool operator==(const LapFigure&) const = default;
 };
 
-/// Scenes that parameters are tried on. Each is solved to optimality by path-pair.
+/// Scenes that parameters are evaluated on. Each is solved to optimality by path-pair.
 class Evaluation {
   public:
     /// Keeps the scenes that the objective is defined on. Throws InvalidInput where there is none.

@@ -1,6 +1,6 @@
 #include "experiments/tuning/tuner.hpp"
 
-#include "experiments/tuning/parameter_box.hpp"
+#include "experiments/tuning/parameter_ranges.hpp"
 #include "model/invalid_input.hpp"
 
 #include <algorithm>

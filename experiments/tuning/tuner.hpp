@@ -45,12 +45,12 @@ using Propose = std::function<std::vector<RldParameters>(const RldParameters& st
 /// Mean over the scenes of the laps; 0 without laps.
 [[nodiscard]] double mean_over_scenes(std::span<const LapFigure> laps);
 
-/// Parameters that make the mean over scenes as large as the search finds, in the box of
+/// Parameters that make the mean over scenes as large as the search finds, in the ranges of
 /// tuned_parameters(start). Each fit tries what is proposed, then from the best of these and the start
 /// NLopt's controlled random search (GN_CRS2_LM) around it on 30 % of the evaluations, then Subplex
-/// (LN_SBPLX) from the best point in the whole box; what counts is the best point evaluated. Track i, in the
-/// order of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that memory
-/// in `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
+/// (LN_SBPLX) from the best point in the whole ranges; what counts is the best point evaluated. Track i, in
+/// the order of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that
+/// memory in `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
 /// InvalidInput where there are fewer tracks than folds, and what `evaluate` throws.
 [[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options,
                          const Propose& propose = {});

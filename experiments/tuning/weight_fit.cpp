@@ -63,13 +63,13 @@ class Fit {
     double value(const std::vector<double>& point, std::vector<double>& gradient) {
         move_to(point);
         ObjectiveSums by_term{};
-        const double worth = expected_worth(scenes_, parameters_, &by_term);
+        const double expected = expected_value(scenes_, parameters_, &by_term);
         for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] = by_term[weights_[i].term];
-        if (worth > best_) {
-            best_ = worth;
+        if (expected > best_) {
+            best_ = expected;
             best_point_ = point;
         }
-        return worth;
+        return expected;
     }
     void move_to(const std::vector<double>& point) {
         for (std::size_t i = 0; i < weights_.size(); ++i) {
@@ -98,7 +98,7 @@ std::vector<TunedWeight> tuned_weights(const RldParameters& start) {
     return weights;
 }
 
-double expected_worth(std::span<const RatedGraphs> scenes, const RldParameters& parameters,
+double expected_value(std::span<const RatedGraphs> scenes, const RldParameters& parameters,
                       ObjectiveSums* gradient) {
     if (gradient != nullptr) gradient->fill(0.0);
     if (scenes.empty()) return 0.0;
@@ -114,14 +114,14 @@ double expected_worth(std::span<const RatedGraphs> scenes, const RldParameters& 
         double expected = 0.0;
         for (std::size_t i = 0; i < graphs.size(); ++i) {
             shares[i] /= sum;
-            expected += shares[i] * graphs[i].worth;
+            expected += shares[i] * graphs[i].value;
         }
         total += expected;
         if (gradient == nullptr) continue;
         for (std::size_t i = 0; i < graphs.size(); ++i) {
-            const double pull = sharpness * shares[i] * (expected - graphs[i].worth);
+            const double by_objective = sharpness * shares[i] * (expected - graphs[i].value);
             for (std::size_t term = 0; term < kObjectiveTermCount; ++term) {
-                (*gradient)[term] += pull * graphs[i].sums[term];
+                (*gradient)[term] += by_objective * graphs[i].sums[term];
             }
         }
     }

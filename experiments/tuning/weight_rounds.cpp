@@ -41,22 +41,22 @@ void add(KnownScene& known, const Scene& seen, const LaneGraphProblem& problem, 
     const LaneAnswer answer = answer_of(graph, seen, evaluation.options());
     known.graphs.push_back(graph);
     known.rated.push_back({objective_sums(problem, graph),
-                           worth_of(answer, *known.annotated, evaluation.boundaries_of(*known.annotated),
+                           value_of(answer, *known.annotated, evaluation.boundaries_of(*known.annotated),
                                     evaluation.options())});
 }
 
-void add_ground_truth(KnownScene& known, const Trial& trial, const Evaluation& evaluation) {
+void add_ground_truth(KnownScene& known, const EvaluatedScene& evaluated, const Evaluation& evaluation) {
     const std::optional<std::size_t> count = seen_count(evaluation.options());
     const std::optional<Lane> lane =
         count ? ground_truth_of_nearest(*known.annotated, *count) : known.annotated->ground_truth;
     if (!lane) return;
-    const std::optional<LaneGraph> graph = lane_graph_of(*lane, trial.seen);
-    if (graph && is_feasible(trial.problem, *graph))
-        add(known, trial.seen, trial.problem, *graph, evaluation);
+    const std::optional<LaneGraph> graph = lane_graph_of(*lane, evaluated.seen);
+    if (graph && is_feasible(evaluated.problem, *graph))
+        add(known, evaluated.seen, evaluated.problem, *graph, evaluation);
 }
 
 /// A problem has no number of a term whose weight is zero: one that is fitted is not.
-RldParameters moved_into_the_box(RldParameters parameters) {
+RldParameters moved_into_ranges(RldParameters parameters) {
     for (const auto& [tuned, term] : tuned_weights(parameters)) {
         parameters.*tuned.value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
     }
@@ -96,11 +96,11 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
         arena.execute([&] {
             oneapi::tbb::parallel_for(std::size_t{0}, known.size(), [&](std::size_t i) {
                 KnownScene& scene = known[i];
-                const Trial trial =
-                    try_on(*solvers.local(), scene.annotated->scene, parameters, evaluation.options());
-                if (scene.graphs.empty()) add_ground_truth(scene, trial, evaluation);
-                if (!trial.report.lane_graph) return;
-                add(scene, trial.seen, trial.problem, *trial.report.lane_graph, evaluation);
+                const EvaluatedScene evaluated =
+                    evaluate(*solvers.local(), scene.annotated->scene, parameters, evaluation.options());
+                if (scene.graphs.empty()) add_ground_truth(scene, evaluated, evaluation);
+                if (!evaluated.report.lane_graph) return;
+                add(scene, evaluated.seen, evaluated.problem, *evaluated.report.lane_graph, evaluation);
             });
         });
         options.on_solved();
@@ -108,20 +108,20 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
 
     boost::random::mt19937_64 random(options.seed);
     std::vector<RldParameters> after_each;
-    RldParameters parameters = moved_into_the_box(start);
+    RldParameters parameters = moved_into_ranges(start);
     for (std::size_t round = 0; round < options.rounds; ++round) {
         solve_all(parameters);
         for (std::size_t i = 0; i < (round == 0 ? kDrawnFirst : kDrawnLater); ++i) {
             solve_all(drawn_around(parameters, round == 0 ? kSpreadFirst : kSpreadLater, random));
         }
-        // A scene whose lane graphs are all worth the same has nothing to say on weights.
-        std::vector<RatedGraphs> telling;
+        // A scene whose lane graphs all have the same value does not depend on the weights.
+        std::vector<RatedGraphs> informative;
         for (const KnownScene& scene : known) {
             if (scene.rated.empty()) continue;
-            const auto [least, most] = std::ranges::minmax(scene.rated, {}, &RatedGraph::worth);
-            if (least.worth < most.worth) telling.push_back(scene.rated);
+            const auto [least, most] = std::ranges::minmax(scene.rated, {}, &RatedGraph::value);
+            if (least.value < most.value) informative.push_back(scene.rated);
         }
-        parameters = fit_weights(telling, parameters);
+        parameters = fit_weights(informative, parameters);
         after_each.push_back(parameters);
     }
     return after_each;

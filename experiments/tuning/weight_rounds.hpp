@@ -22,9 +22,9 @@ struct WeightRoundsOptions {
 
 /// Fits the weights to the scenes of the tracks named. Each round solves the scenes with the weights so far
 /// and with some drawn around them, and fits the weights (fit_weights) to all lane graphs that any round has
-/// found and to the ground truth where it is feasible. Weights outside the box of tuned_parameters(start) are
-/// moved to its border first. Gives the parameters after each round. Rounds see only these tracks; the same
-/// seed gives the same for any number of threads as long as no scene runs into the time limit. Throws
+/// found and to the ground truth where it is feasible. Weights outside the ranges of tuned_parameters(start)
+/// are moved to their ends first. Gives the parameters after each round. Rounds see only these tracks; the
+/// same seed gives the same for any number of threads as long as no scene runs into the time limit. Throws
 /// InvalidInput where w_b is 0.
 [[nodiscard]] std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation,
                                                                const RldParameters& start,

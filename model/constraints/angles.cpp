@@ -5,6 +5,7 @@ namespace conelane::constraints {
 void turn_products(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     for (std::size_t t = 0; t < problem.turns.size(); ++t) {
+        if (rows.stop()) return;
         const ProblemTurn& turn = problem.turns[t];
         const auto index = static_cast<std::int32_t>(t);
         const int edge_i = columns.edge[turn.edge_i];
@@ -37,6 +38,7 @@ void turn_flow(const FamilyContext& context) {
     std::vector<std::vector<int>> turns_of_edge(problem.edges.size());
     for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
         if (problem.incident[cone].empty()) continue;
+        if (rows.stop()) return;
         for (const std::size_t t : turns_at_cone[cone]) {
             turns_of_edge[problem.turns[t].edge_i].push_back(columns.turn[t]);
             turns_of_edge[problem.turns[t].edge_k].push_back(columns.turn[t]);

@@ -7,7 +7,7 @@ int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone)
 }
 
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient) {
-    if (!context.columns.end.empty()) {
+    if (context.columns.inlier.empty()) {
         for (const std::size_t edge : context.problem.incident[cone]) {
             context.rows.add(end_column(context, edge, cone), coefficient);
         }

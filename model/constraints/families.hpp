@@ -5,7 +5,7 @@
 #include <vector>
 
 /// The constraint families of the RLD model, one file each; `formulation.cpp` says which of them make a
-/// formulation.
+/// formulation. Those that may write many rows, or long ones, ask RowWriter::stop between them.
 namespace conelane::constraints {
 
 /// The e column of the paths that end at one of the edge's cones by it.

@@ -18,6 +18,7 @@ void far_distance(const FamilyContext& context) {
     for (std::size_t i = 0; i < problem.cone_count; ++i) {
         for (std::size_t j = 0; j < problem.cone_count; ++j) {
             if (i == j) continue;
+            if (rows.stop()) return;
             const double distance = problem.distance_m[i][j];
             rows.begin({"far_distance", {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)}},
                        -kInfinity, problem.parameters.d_max);
@@ -51,6 +52,7 @@ void far_partners(const FamilyContext& context) {
     for (std::size_t i = 0; i < n; ++i) {
         if (problem.near[i]) continue;
         for (const std::size_t edge : problem.incident[i]) {
+            if (rows.stop()) return;
             rows.begin({"far_partner", {static_cast<std::int32_t>(edge), static_cast<std::int32_t>(i)}},
                        -kInfinity, 0.0);
             rows.add(end_column(context, edge, i), 1.0);

@@ -19,6 +19,7 @@ void turn_limits(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     for (std::size_t turn = 0; turn < problem.turns.size(); ++turn) {
         if (!problem.turns[turn].high_cost) continue;
+        if (rows.stop()) return;
         rows.begin({"angle_limit", {static_cast<std::int32_t>(turn)}}, 0.0, 0.0);
         rows.add(columns.turn[turn], 1.0);
         rows.end();

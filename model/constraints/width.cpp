@@ -4,6 +4,7 @@
 namespace conelane::constraints {
 void width_pairs(const FamilyContext& context) {
     for (const auto& [first, second] : context.problem.conflicts) {
+        if (context.rows.stop()) return;
         context.rows.begin({"width", {static_cast<std::int32_t>(first), static_cast<std::int32_t>(second)}},
                            -kInfinity, 1.0);
         context.rows.add(context.columns.edge[first], 1.0);
@@ -25,6 +26,7 @@ void width_cliques(const FamilyContext& context) {
     std::int32_t count = 0;
     for (const auto& [first, second] : problem.conflicts) {
         if (!uncovered.joined(first, second)) continue;
+        if (rows.stop()) return;
         clique.assign({first, second});
         for (std::size_t word = 0; word < common.size(); ++word) {
             common[word] = graph.row(first)[word] & graph.row(second)[word];

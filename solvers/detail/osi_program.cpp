@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <coin/ClpSimplex.hpp>
+#include <coin/ClpSolve.hpp>
 #include <coin/CoinPackedMatrix.hpp>
 #include <coin/CoinPackedVector.hpp>
 
@@ -17,6 +19,18 @@ double coin_upper(double bound) {
 }
 
 }  // namespace
+
+void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch) {
+    solver.messageHandler()->setLogLevel(0);
+    ClpSimplex& lp = *solver.getModelPtr();
+    lp.setLogLevel(0);
+    const ClpDeadline handler(&watch);
+    lp.passInEventHandler(&handler);
+    constexpr int kInterrupt = 2;  // 1: initialSolve installs no handler of SIGINT
+    ClpSolve options;
+    options.setSpecialOption(kInterrupt, 1);
+    (void)options;
+}
 
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program) {
     const std::size_t columns = program.columns.size();

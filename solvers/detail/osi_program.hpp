@@ -1,13 +1,30 @@
 #pragma once
 
 #include "model/binary_program.hpp"
+#include "solvers/detail/coin_deadline.hpp"
 
 #include <span>
+#include <stdexcept>
 #include <vector>
 
-#include <coin/OsiSolverInterface.hpp>
+#include <coin/CoinError.hpp>
+#include <coin/OsiClpSolverInterface.hpp>
 
 namespace conelane::detail {
+
+/// Runs `work`; an error of COIN, whose type is no std::exception, comes out as one.
+template <typename Work>
+void with_std_errors(Work&& work) {
+    try {
+        work();
+    } catch (const CoinError& error) {
+        throw std::runtime_error(error.className() + "::" + error.methodName() + ": " + error.message());
+    }
+}
+
+/// Makes an empty solver silent and stops it by the watch, which must outlive it; and keeps Clp from taking
+/// SIGINT from the program.
+void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
 /// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);

@@ -4,8 +4,19 @@
 
 namespace conelane::path_pair {
 
-void ArcGraph::build(const LaneGraphProblem& problem) {
+bool ArcGraph::build(const LaneGraphProblem& problem, SearchClock& clock) {
     cone_count_ = static_cast<int>(problem.cone_count);
+    add_edges(problem);
+    if (clock.out_of_time()) return false;
+    incompatible_.reset(edge_count(), edge_count());
+    for (const auto& [first, second] : problem.conflicts) exclude(first, second);
+    if (clock.out_of_time()) return false;
+    add_successions(problem);
+    if (clock.out_of_time()) return false;
+    return add_partners(problem, clock);
+}
+
+void ArcGraph::add_edges(const LaneGraphProblem& problem) {
     cone_.clear();
     cost_.clear();
     along_heading_.clear();
@@ -21,17 +32,18 @@ void ArcGraph::build(const LaneGraphProblem& problem) {
         along_heading_.push_back(edge.along_heading ? 1 : 0);
         problem_edge_.push_back(e);
     }
+}
 
-    incompatible_.reset(edge_count(), edge_count());
-    const auto exclude = [&](std::size_t first, std::size_t second) {
-        const int a = edge_of_problem_[first];
-        const int b = edge_of_problem_[second];
-        if (a < 0 || b < 0) return;
-        incompatible_.set(a, b);
-        incompatible_.set(b, a);
-    };
-    for (const auto& [first, second] : problem.conflicts) exclude(first, second);
+/// Problem edges that no lane graph holds both of.
+void ArcGraph::exclude(std::size_t first, std::size_t second) {
+    const int a = edge_of_problem_[first];
+    const int b = edge_of_problem_[second];
+    if (a < 0 || b < 0) return;
+    incompatible_.set(a, b);
+    incompatible_.set(b, a);
+}
 
+void ArcGraph::add_successions(const LaneGraphProblem& problem) {
     // Through the middle cone of a turn: arc_k leaves it, the reverse of arc_i arrives, and the other way
     // round.
     const auto for_each_succession = [&](auto&& visit) {
@@ -57,7 +69,9 @@ void ArcGraph::build(const LaneGraphProblem& problem) {
     for (const ProblemTurn& turn : problem.turns) {
         if (turn.high_cost) exclude(turn.edge_i, turn.edge_k);
     }
+}
 
+bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock) {
     near_.assign(problem.cone_count, 0);
     apart_.reset(cone_count_, cone_count_);
     for (int cone = 0; cone < cone_count_; ++cone) {
@@ -71,11 +85,13 @@ void ArcGraph::build(const LaneGraphProblem& problem) {
     partner_start_.assign(1, 0);
     partners_.clear();
     for (int cone = 0; cone < cone_count_; ++cone) {
+        if (clock.out_of_time(2 * problem.cone_count)) return false;
         for (int other = 0; other < cone_count_; ++other) {
             if (!near(cone) && !near(other) && !apart_.test(cone, other)) partners_.push_back(other);
         }
         partner_start_.push_back(partners_.size());
     }
+    return true;
 }
 
 int ArcGraph::arc(int from, int to) const {

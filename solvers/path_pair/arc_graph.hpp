@@ -2,6 +2,7 @@
 
 #include "model/lane_graph_problem.hpp"
 #include "solvers/path_pair/bit_matrix.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <span>
 #include <vector>
@@ -20,7 +21,8 @@ class ArcGraph {
         double cost;  ///< of the turn
     };
 
-    void build(const LaneGraphProblem& problem);
+    /// False where the clock struck on the way; there is no graph then.
+    bool build(const LaneGraphProblem& problem, SearchClock& clock);
 
     [[nodiscard]] int cone_count() const { return cone_count_; }
     [[nodiscard]] int edge_count() const { return static_cast<int>(problem_edge_.size()); }
@@ -60,6 +62,11 @@ class ArcGraph {
     [[nodiscard]] double share_bound() const;
 
   private:
+    void add_edges(const LaneGraphProblem& problem);
+    void exclude(std::size_t first, std::size_t second);
+    void add_successions(const LaneGraphProblem& problem);
+    bool add_partners(const LaneGraphProblem& problem, SearchClock& clock);
+
     int cone_count_ = 0;
     std::vector<int> cone_;  ///< by arc: its tail
     std::vector<double> cost_;

@@ -24,6 +24,7 @@ constexpr std::int64_t kWorkPerFront =
 constexpr std::size_t kMostFronts = 100000;         ///< before a node branches
 constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
 constexpr std::size_t kMostLabels = 500000;
+constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
 constexpr int kWideFronts = 500;    ///< from here on first a narrow search, for the incumbent
 constexpr std::size_t kNarrow = 2;  ///< labels a front
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
@@ -65,11 +66,12 @@ double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::
 
 void BranchAndBound::begin(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     tolerance_ = tolerance;
-    stopped_ = std::move(stopped);
+    clock_ = SearchClock(std::move(stopped));
+    stopped_ = [this] { return clock_.out_of_time(); };
     cliques_.clear();
     decisions_.reset(graph_);
-    relaxation_.bind(graph_, system, cliques_, decisions_, stopped_);
-    completion_.bind(graph_, relaxation_, incumbent_);
+    relaxation_.bind(graph_, system, cliques_, decisions_, clock_);
+    completion_.bind(graph_, relaxation_, incumbent_, clock_);
     fronts_.bind(relaxation_, stopped_);
     front_search_.bind(graph_, relaxation_, incumbent_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
@@ -165,6 +167,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
         bound = std::max(bound, value);
         if (value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
+        if (clock_.struck()) return Verdict::stopped;
         count_usage(here.graph);
         if (options_.complete_walks) {
             if (step == next_try) {
@@ -217,8 +220,10 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
 BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
                                                       std::size_t most_labels) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
-    edge_sets_.assign(graph_, graph);
-    sure_losses_.find(graph, relaxation_, edge_sets_, options_.drop_sure_losses);
+    edge_sets_.assign(graph_, graph, clock_);
+    if (clock_.struck()) return Verdict::stopped;
+    sure_losses_.find(graph, relaxation_, edge_sets_, options_.drop_sure_losses, clock_);
+    if (clock_.struck()) return Verdict::stopped;
     if (most_fronts != kAny) {
         most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
     }
@@ -235,12 +240,16 @@ BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph
     if (stopped_()) return Verdict::stopped;
     if (!(bound < limit())) return Verdict::closed;
     fronts_.drop(limit());
+    const std::size_t label_limit =
+        most_labels == kAny
+            ? kAny
+            : std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
     for (const std::size_t width : {kNarrow, FrontSearch::kAnyWidth}) {
         if (stopped_()) return Verdict::stopped;
         if (width == kNarrow && fronts_.size() < kWideFronts) continue;
         const double before = incumbent_.cutoff();
         const FrontSearch::Outcome outcome =
-            front_search_.run(fronts_, edge_sets_, {tolerance_, width, most_labels}, stopped_);
+            front_search_.run(fronts_, edge_sets_, {tolerance_, width, label_limit}, stopped_);
         if (outcome == FrontSearch::Outcome::exhausted) return Verdict::closed;
         if (outcome == FrontSearch::Outcome::stopped) break;
         if (incumbent_.cutoff() < before) fronts_.drop(limit());
@@ -277,7 +286,7 @@ void BranchAndBound::separate(const ResidualGraph& graph, Prices& prices) {
     if (cliques_.size() >= kMostCliques) return;
     edge_alive_.assign(at(graph_.edge_count()), 0);
     for (int a = 0; a < graph.size(); ++a) edge_alive_[at(graph.edge(a))] = 1;
-    separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_);
+    separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_, clock_);
     prices.clique.resize(at(cliques_.size()), 0.0);
 }
 

@@ -9,6 +9,7 @@
 #include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 #include "solvers/path_pair/sure_losses.hpp"
 #include "solvers/path_pair_solver.hpp"
 
@@ -80,7 +81,8 @@ class BranchAndBound {
     Incumbent& incumbent_;
     const PathPairOptions& options_;
     double tolerance_ = 0.0;
-    std::function<bool()> stopped_;
+    std::function<bool()> stopped_;  ///< looks at the clock
+    SearchClock clock_;
     CliquePool cliques_;
     CliqueSeparation separation_;
     Decisions decisions_;

@@ -12,7 +12,8 @@ constexpr double kLeastViolation = 0.05;
 }  // namespace
 
 int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> edge_use,
-                               std::span<const char> edge_alive, int most, CliquePool& pool) {
+                               std::span<const char> edge_alive, int most, CliquePool& pool,
+                               SearchClock& clock) {
     used_.clear();
     for (int e = 0; e < graph.edge_count(); ++e) {
         if (edge_use[static_cast<std::size_t>(e)] > kLeastUse) used_.push_back(e);
@@ -26,6 +27,7 @@ int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> ed
     int added = 0;
     for (std::size_t seed = 0; seed < used_.size() && added < most; ++seed) {
         if (covered_[seed] != 0) continue;
+        if (clock.out_of_time(used_.size() + 20 * graph.incompatible_row(used_[seed]).size())) break;
         clique_.assign(1, used_[seed]);
         double sum = edge_use[static_cast<std::size_t>(used_[seed])];
         const std::span<const std::uint64_t> row = graph.incompatible_row(used_[seed]);

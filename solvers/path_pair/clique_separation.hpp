@@ -2,6 +2,7 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <cstdint>
 #include <span>
@@ -13,9 +14,9 @@ namespace conelane::path_pair {
 /// from each edge in use, largest x first, then extended to a maximal clique by edges of the residual graph.
 class CliqueSeparation {
   public:
-    /// Number of cliques added to the pool, at most `most`.
+    /// Number of cliques added to the pool, at most `most`; fewer once the clock has struck.
     int separate(const ArcGraph& graph, std::span<const double> edge_use, std::span<const char> edge_alive,
-                 int most, CliquePool& pool);
+                 int most, CliquePool& pool, SearchClock& clock);
 
   private:
     std::vector<int> used_;

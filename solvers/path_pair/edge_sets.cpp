@@ -13,7 +13,7 @@ std::size_t at(int index) {
 
 }  // namespace
 
-void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual) {
+void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, SearchClock& clock) {
     number_of_edge_.assign(at(graph.edge_count()), -1);
     number_.clear();
     edges_.clear();
@@ -37,6 +37,7 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual) {
     after_.assign(residual.arc.size() * words_, 0);
     before_.assign(residual.arc.size() * words_, 0);
     for (int a = 0; a < residual.size(); ++a) {
+        if (clock.out_of_time(10 * words_)) return;
         const std::span<const std::uint64_t> row = graph.incompatible_row(residual.edge(a));
         for (std::size_t w = 0; w < row.size(); ++w) {
             for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {

@@ -2,6 +2,7 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +15,8 @@ namespace conelane::path_pair {
 /// leaves, and, for whatever was taken before, those at the cone that it enters.
 class EdgeSets {
   public:
-    void assign(const ArcGraph& graph, const ResidualGraph& residual);
+    /// The sets are of no use once the clock has struck.
+    void assign(const ArcGraph& graph, const ResidualGraph& residual, SearchClock& clock);
 
     [[nodiscard]] std::size_t words() const { return words_; }
     /// Number of the edge of an arc.

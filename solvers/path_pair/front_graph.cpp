@@ -10,7 +10,8 @@ namespace {
 // Smaller gains are rounding.
 constexpr double kGain = 1e-12;
 constexpr std::size_t kFewSlots = 1024;
-constexpr int kFrontsPerClock = 1024;
+constexpr int kFrontsPerClock = 256;
+constexpr std::size_t kMostFirstFronts = 1'000'000;
 
 }  // namespace
 
@@ -86,6 +87,7 @@ void FrontGraph::begin(double limit) {
     }
     for (int a = 0; a < r.size(); ++a) {
         if (cost(0, a) == kUnreachable) continue;
+        if (now_.fronts.size() > kMostFirstFronts || out_of_time()) break;
         for (const int b : stack_) {
             const double start = cost(0, a) + cost(second, b);
             if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
@@ -149,9 +151,13 @@ bool FrontGraph::build(const ResidualGraph& residual, const SureLosses& losses, 
     starts_.clear();
     open_.clear();
     std::ranges::fill(table_, -1);
-    begin(limit);
     until_clock_ = 0;
     is_stopped_ = false;
+    begin(limit);
+    if (is_stopped_ || now_.fronts.size() > kMostFirstFronts) {
+        stack_.clear();
+        return false;
+    }
     for (bool again = true; again;) {
         again = false;
         for (std::size_t word = 0; word < open_.size(); ++word) {

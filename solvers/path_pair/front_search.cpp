@@ -42,7 +42,7 @@ void FrontSearch::find_reach() {
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = fronts_->size(); f-- > 0;) {
-            if (out_of_time(1)) return;
+            if (out_of_time(1 + fronts_->steps(f).size())) return;
             std::uint64_t* const mine = reach_.data() + at(f) * words_;
             std::uint64_t change = 0;
             for (const FrontGraph::Step& step : fronts_->steps(f)) {
@@ -109,6 +109,7 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
     is_stopped_ = false;
     is_narrow_ = false;
     find_reach();
+    if (is_stopped_) return Outcome::stopped;
     begin();
     again_ = true;
     while (again_) {

@@ -10,6 +10,8 @@ namespace {
 constexpr double kGain = 1e-12;
 // How far above neutral a cycle is raised, so that rounding does not make it pay again.
 constexpr double kAboveNeutral = 1e-7;
+constexpr std::size_t kArcsPerClock = 512;
+constexpr std::size_t kWorkPerArc = 50;
 
 }  // namespace
 
@@ -25,6 +27,7 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
         if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
     }
     std::size_t until_check = 3 * size + 64;
+    std::size_t until_clock = kArcsPerClock;
     for (bool again = true; again;) {
         again = false;
         for (std::size_t word = 0; word < open_.size(); ++word) {
@@ -34,6 +37,10 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
                 if (--until_check == 0) {
                     if (find_cycle(before, cycle)) return false;
                     until_check = size;
+                }
+                if (--until_clock == 0) {
+                    if (clock_ != nullptr && clock_->out_of_time(kArcsPerClock * kWorkPerArc)) return true;
+                    until_clock = kArcsPerClock;
                 }
                 const double value = label[a];
                 for (int position = graph.out_start[a]; position < graph.out_start[a + 1]; ++position) {
@@ -63,6 +70,7 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
         label[a] = usable[a] != 0 ? end[a] : kUnreachable;
         if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
     }
+    std::size_t until_clock = kArcsPerClock;
     for (bool again = true; again;) {
         again = false;
         for (std::size_t word = open_.size(); word-- > 0;) {
@@ -70,6 +78,10 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
                 const std::size_t bit = 63 - static_cast<std::size_t>(std::countl_zero(open_[word]));
                 const std::size_t b = word * 64 + bit;
                 open_[word] &= ~(std::uint64_t{1} << bit);
+                if (--until_clock == 0) {
+                    if (clock_ != nullptr && clock_->out_of_time(kArcsPerClock * kWorkPerArc)) return;
+                    until_clock = kArcsPerClock;
+                }
                 const double value = label[b] + reduced[b];
                 for (int position = graph.in_start[b]; position < graph.in_start[b + 1]; ++position) {
                     const auto p = static_cast<std::size_t>(position);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,6 +16,9 @@ namespace conelane::path_pair {
 /// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
 class LegBounds {
   public:
+    /// With a clock, both end early once it has struck: the labels are of no use then.
+    void bind(SearchClock& clock) { clock_ = &clock; }
+
     /// `start` by arc: what a leg pays to start with it, kUnreachable where it must not. False where a walk
     /// gains from a cycle without end; `cycle` then holds the arcs of one.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
@@ -29,6 +33,7 @@ class LegBounds {
   private:
     bool find_cycle(std::span<const int> before, std::vector<int>& cycle);
 
+    SearchClock* clock_ = nullptr;
     std::vector<std::uint64_t> open_;  ///< arcs whose label changed
     std::vector<int> colour_;
 };

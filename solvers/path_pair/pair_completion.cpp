@@ -13,8 +13,11 @@ std::size_t at(int index) {
 
 }  // namespace
 
-void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                          SearchClock& clock) {
     graph_ = &graph;
+    clock_ = &clock;
+    bounds_.bind(clock);
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
     second_price_.assign(at(graph.cone_count()), 0.0);
@@ -92,8 +95,10 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
     for (int round = 0; round < kSecondRounds;) {
         offset = price_second(residual, second_kind);
         budget -= residual.size();
-        if (!bounds_.forward(residual, second_reduced_, second_start_, second_forward_, second_before_,
-                             cycle_)) {
+        const bool bounded = bounds_.forward(residual, second_reduced_, second_start_, second_forward_,
+                                             second_before_, cycle_);
+        if (clock_->out_of_time(residual.out_arc.size())) return false;
+        if (!bounded) {
             raise_cycle(residual, cycle_, second_reduced_, second_price_);
             continue;
         }
@@ -133,6 +138,7 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
         if (second_forward_[at(a)] == kUnreachable) usable_[at(a)] = 0;
     }
     bounds_.backward(residual, second_reduced_, second_end_, usable_, second_backward_);
+    if (clock_->out_of_time(residual.out_arc.size())) return false;
     const LegSearch::Query query{*graph_,       residual,    second_reduced_,
                                  second_start_, second_end_, second_backward_};
     return second_search_.run(query, limit() + offset, budget, [&](std::span<const int> leg, double) {
@@ -173,6 +179,7 @@ void PairCompletion::complete(const ResidualGraph& residual, int kind, std::span
         if (leg_.empty()) return;
     }
     for (int side = 0; side < 3; ++side) {
+        if (clock_->out_of_time()) return;
         std::int64_t tries = budget;
         second_legs(residual, kind, leg_, tolerance, tries);
         if (best_second_.empty()) return;

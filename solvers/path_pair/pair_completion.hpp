@@ -16,7 +16,7 @@ namespace conelane::path_pair {
 /// costs, with prices on cones against cycles alone.
 class PairCompletion {
   public:
-    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
+    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);
 
     /// Looks for an incumbent around a walk of the relaxation: the walk, or the best leg near by where it is
     /// no path, completed by the best second leg, which is then completed in turn.
@@ -35,6 +35,7 @@ class PairCompletion {
     const ArcGraph* graph_ = nullptr;
     PairRelaxation* relaxation_ = nullptr;
     Incumbent* incumbent_ = nullptr;
+    SearchClock* clock_ = nullptr;
     LegBounds bounds_;
     LegSearch first_search_;
     LegSearch second_search_;

@@ -1,7 +1,6 @@
 #include "solvers/path_pair/pair_relaxation.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace conelane::path_pair {
 
@@ -30,12 +29,13 @@ void Decisions::decide_end(int cone, End decision) {
 }
 
 void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
-                          const Decisions& decisions, std::function<bool()> stopped) {
+                          const Decisions& decisions, SearchClock& clock) {
     graph_ = &graph;
     system_ = &system;
     cliques_ = &cliques;
     decisions_ = &decisions;
-    stopped_ = std::move(stopped);
+    clock_ = &clock;
+    bounds_.bind(clock);
 }
 
 bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
@@ -63,11 +63,13 @@ double PairRelaxation::evaluate(const ResidualGraph& residual, Prices& prices) {
     price_arcs(residual, prices);
     for (int kind = 0; kind < system_->kind_count; ++kind) {
         Legs& legs = legs_[at(kind)];
-        if (bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycle_)) {
+        const bool bounded =
+            bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycle_);
+        if (clock_->out_of_time(residual.out_arc.size())) return -kUnreachable;
+        if (bounded) {
             pick_ends(residual, kind);
             continue;
         }
-        if (stopped_()) return -kUnreachable;
         raise_cycle(residual, cycle_, reduced_, prices.cone);
         price_arcs(residual, prices);
         kind = -1;  // prices only ever rise: from the first kind again

@@ -6,7 +6,6 @@
 #include "solvers/path_pair/residual_graph.hpp"
 
 #include <array>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -65,13 +64,13 @@ class Decisions {
 class PairRelaxation {
   public:
     void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
-              const Decisions& decisions, std::function<bool()> stopped);
+              const Decisions& decisions, SearchClock& clock);
 
     /// The bound. Where walks gain from a cycle, first raises the prices of the cycle's cones until it is
     /// neutral. Minus infinity if stopped.
     double evaluate(const ResidualGraph& residual, Prices& prices);
 
-    /// Backward labels for the prices last evaluated.
+    /// Backward labels for the prices last evaluated; of no use once the clock has struck, as below.
     void evaluate_backward(const ResidualGraph& residual);
 
     /// By arc: the cheapest way on from it to an end, whatever the other leg does. Precondition: evaluated.
@@ -122,7 +121,7 @@ class PairRelaxation {
     const LegSystem* system_ = nullptr;
     const CliquePool* cliques_ = nullptr;
     const Decisions* decisions_ = nullptr;
-    std::function<bool()> stopped_;
+    SearchClock* clock_ = nullptr;
     LegBounds bounds_;
     std::array<Legs, 2> legs_;
     std::vector<double> reduced_;

@@ -23,9 +23,13 @@ bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, con
 }
 
 void SureLosses::find(const ResidualGraph& residual, const PairRelaxation& relaxation, const EdgeSets& edges,
-                      bool propagate) {
+                      bool propagate, SearchClock& clock) {
     edges_ = &edges;
     const std::size_t words = edges.words();
+    const auto work = [&](int a) {
+        return static_cast<std::size_t>(residual.out_start[at(a) + 1] - residual.out_start[at(a)]) *
+               (2 + words);
+    };
     for (int kind = 0; kind < relaxation.system().kind_count; ++kind) {
         std::vector<std::uint64_t>& before = before_[at(kind)];
         std::vector<std::uint64_t>& after = after_[at(kind)];
@@ -44,6 +48,7 @@ void SureLosses::find(const ResidualGraph& residual, const PairRelaxation& relax
         for (bool again = true; again;) {
             again = false;
             for (int a = 0; a < residual.size(); ++a) {
+                if (clock.out_of_time(work(a))) return;
                 for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
                     const int b = residual.out_arc[at(p)];
                     if (EdgeSets::contains(row(before_, kind, a), edges.number(b))) continue;
@@ -57,6 +62,7 @@ void SureLosses::find(const ResidualGraph& residual, const PairRelaxation& relax
         for (bool again = true; again;) {
             again = false;
             for (int a = residual.size(); a-- > 0;) {
+                if (clock.out_of_time(work(a))) return;
                 for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
                     const int b = residual.out_arc[at(p)];
                     if (!may_follow(kind, a, b)) continue;

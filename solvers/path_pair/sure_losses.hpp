@@ -3,6 +3,7 @@
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <array>
 #include <cstdint>
@@ -17,9 +18,9 @@ namespace conelane::path_pair {
 /// adds the empty set to the intersection. Both are the largest sets that fulfil this.
 class SureLosses {
   public:
-    /// `propagate` false: an arc alone, lost_after and nothing.
+    /// `propagate` false: an arc alone, lost_after and nothing. Of no use once the clock has struck.
     void find(const ResidualGraph& residual, const PairRelaxation& relaxation, const EdgeSets& edges,
-              bool propagate);
+              bool propagate, SearchClock& clock);
 
     /// Whether b may follow a on a leg of the kind. Precondition: a succession.
     [[nodiscard]] bool may_follow(int kind, int a, int b) const {

@@ -1,10 +1,12 @@
 #include "solvers/relaxation/lp_relaxation.hpp"
 
 #include "model/lane_graph_model.hpp"
+#include "solvers/detail/coin_deadline.hpp"
 #include "solvers/detail/osi_program.hpp"
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include <coin/ClpSimplex.hpp>
@@ -13,23 +15,30 @@
 namespace conelane {
 
 LpRelaxation solve_lp_relaxation(const LaneGraphProblem& problem, const Deadline& deadline) {
-    const LaneGraphModel model(problem, Formulation::tight);
-    const BinaryProgram& program = model.program();
     LpRelaxation relaxation;
-    if (deadline.passed()) return relaxation;
-    if (program.columns.empty()) {
+    LaneGraphModel model(Formulation::tight);
+    relaxation.stopped_by = model.update(problem, deadline);
+    if (relaxation.stopped_by) return relaxation;
+    const BinaryProgram& program = model.program();
+    if (problem.edges.empty()) {
         relaxation.infeasible = true;
         return relaxation;
     }
+    detail::DeadlineWatch watch{deadline};
     OsiClpSolverInterface interface;
-    interface.messageHandler()->setLogLevel(0);
     ClpSimplex& lp = *interface.getModelPtr();
-    lp.setLogLevel(0);
-    (void)detail::load_into(interface, program);
-    lp.setMaximumWallSeconds(std::max(0.0, deadline.remaining_ms()) / 1000.0);
-    lp.dual();
+    detail::with_std_errors([&] {
+        detail::prepare(interface, watch);
+        (void)detail::load_into(interface, program);
+        if (!watch.strikes()) lp.dual();
+    });
+    if (watch.struck) {
+        relaxation.stopped_by = StopReason::time;
+        return relaxation;
+    }
     relaxation.infeasible = lp.isProvenPrimalInfeasible();
-    if (!lp.isProvenOptimal()) return relaxation;
+    if (relaxation.infeasible) return relaxation;
+    if (!lp.isProvenOptimal()) throw std::runtime_error("Clp could not solve the relaxation");
     relaxation.bound = lp.objectiveValue();
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> edge_of;
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {

@@ -1,5 +1,6 @@
 #include "solvers/relaxation/relaxation_solver.hpp"
 
+#include "solvers/detail/guarded_solve.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/relaxation/lp_relaxation.hpp"
 #include "solvers/relaxation/rounding.hpp"
@@ -14,26 +15,37 @@ class RelaxationSolver : public RldSolver {
     explicit RelaxationSolver(Relax relax) : relax_(std::move(relax)) {}
 
     RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* /*start*/) override {
+                    const LaneGraph* start) override {
         const Deadline deadline(limits.time_limit_ms);
-        const Stopwatch watch;
-        const LpRelaxation linear = solve_lp_relaxation(problem, deadline);
-        RldReport report;
-        report.status = linear.infeasible ? SolveStatus::infeasible : SolveStatus::stopped;
-        if (!linear.infeasible) report.stopped_by = StopReason::time;
-        if (linear.bound) {
-            if (const auto values = relax_(problem, linear.edge_values, deadline)) {
-                report = round_by_search(problem, *values, *path_pair_,
-                                         {deadline.remaining_ms(), limits.absolute_gap});
-            }
-        }
-        report.bound = linear.bound;
-        report.rounds = 1;
-        report.solve_ms = watch.elapsed_ms();
-        return report;
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            const Stopwatch watch;
+            solve(problem, limits, deadline, report);
+            report.rounds = 1;
+            report.solve_ms = watch.elapsed_ms();
+        });
     }
 
   private:
+    void solve(const LaneGraphProblem& problem, const SolveLimits& limits, const Deadline& deadline,
+               RldReport& report) {
+        const LpRelaxation linear = solve_lp_relaxation(problem, deadline);
+        report.bound = linear.bound;
+        if (!linear.bound) {
+            report.status = linear.infeasible ? SolveStatus::infeasible : SolveStatus::stopped;
+            report.stopped_by = linear.stopped_by;
+            return;
+        }
+        const auto values = relax_(problem, linear.edge_values, deadline);
+        if (!values) {
+            report.status = SolveStatus::stopped;
+            report.stopped_by = StopReason::time;
+            return;
+        }
+        report =
+            round_by_search(problem, *values, *path_pair_, {deadline.remaining_ms(), limits.absolute_gap});
+        report.bound = linear.bound;
+    }
+
     Relax relax_;
     std::unique_ptr<RldSolver> path_pair_ = make_path_pair_solver();
 };

@@ -11,13 +11,14 @@ conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,
 conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
-conelane(optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
-conelane(backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
-conelane(formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
-conelane(relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
+conelane(study optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
+conelane(study backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
+conelane(study formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
+conelane(study relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
 conelane(tune --tracks generated:straight generated:circle --nearest 8 --fp 0.3 --every 40 --folds 2 --evaluations 1
          --out ${RESULTS}/tuned.json)
-conelane(extras --record ${RESULTS}/tuned.record.json --out ${RESULTS}/extras.jsonl)
+conelane(study confidence-and-colour --record ${RESULTS}/tuned.record.json
+         --out ${RESULTS}/confidence-and-colour.jsonl)
 if(BENCHMARKS)
     execute_process(COMMAND ${BENCHMARKS} "--benchmark_filter=^(problem|build|update)/(tight|paper)/6$"
                             --benchmark_min_time=0.01 --benchmark_out_format=json

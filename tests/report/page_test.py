@@ -102,7 +102,7 @@ class ReportPage(unittest.TestCase):
         for name in ("winners", "by-size", "growth", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
-                     "rld-fig-7-circle", "extras", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
+                     "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
                      "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
             self.assertIn(name, self.page.ids)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
@@ -225,7 +225,7 @@ class ReportPage(unittest.TestCase):
                                           ("backends.jsonl", "[]\n", "backends.jsonl:1: "),
                                           ("formulations.jsonl", '{"cones": 6}\n', "formulations.jsonl:1: formulation"),
                                           ("relaxations.jsonl", '{"cones": 6}\n', "relaxations.jsonl:1: solver"),
-                                          ("extras.jsonl", '{"known": "a"}\n', "extras.jsonl:1: false_positive_rate"),
+                                          ("confidence-and-colour.jsonl", '{"known": "a"}\n', "confidence-and-colour.jsonl:1: false_positive_rate"),
                                           ("benchmarks.json", '{"benchmarks": [{}]}', "benchmarks.json")):
                 with open(os.path.join(copy, name), "w", encoding="utf-8") as stream:
                     stream.write(text)
@@ -259,7 +259,7 @@ class ReportPage(unittest.TestCase):
             os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
             shutil.rmtree(os.path.join(copy, "sweep"))
             for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
-                         "extras.jsonl", "benchmarks.json"):
+                         "confidence-and-colour.jsonl", "benchmarks.json"):
                 if name != "benchmarks.json" or BENCHMARKED:
                     os.unlink(os.path.join(copy, name))
             page = os.path.join(folder, "page.html")
@@ -269,7 +269,7 @@ class ReportPage(unittest.TestCase):
             self.assertIn("the results hold no scenes.scenes.jsonl", text)
             for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
                               "there is no backends.jsonl.", "there is no formulations.jsonl.",
-                              "there is no relaxations.jsonl.", "there is no extras.jsonl.",
+                              "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
                               "there is no benchmarks.json."):
                 self.assertIn(complaint, text)
             self.assertIn("<code>conelane sweep --out RESULTS/sweep</code>", text)

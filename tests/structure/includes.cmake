@@ -1,5 +1,6 @@
 # cmake -D ROOT=DIR -P includes.cmake: checks the #include lines of the sources below ROOT.
 # - Quoted includes name folder and file, and the folder is one that the including folder may depend on.
+# - Inside experiments/ a folder includes only itself and those before it in experiments_layers.
 # - Headers of the installed libraries include no solver, Boost, parser or thread library: those stay in .cpp files,
 #   or in a header below a folder `detail`, which is private to its library.
 # - x.cpp includes x.hpp first, so compiling it shows that the header includes what it needs.
@@ -12,8 +13,19 @@ set(graph_search_depends_on model graph_search)
 set(detectors_depends_on model solvers graph_search detectors)
 set(experiments_depends_on model solvers graph_search detectors experiments)
 set(tests_depends_on model solvers graph_search detectors experiments tests)
+# From tracks to tables, each folder and each file of experiments/ itself, without its ending: what stands later may
+# include what stands before.
+set(experiments_layers provenance progress seeded_random files tracks scenes scoring delaunay methods options comparison checking training
+                       tuning studies report commands conelane benchmarks)
 set(private_libraries
     "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+
+# The place of a file in experiments_layers, counted from 0; -1 where it has none.
+function(find_layer result file)
+    string(REGEX REPLACE "^experiments/([^/.]+).*$" "\\1" name ${file})
+    list(FIND experiments_layers "${name}" place)
+    set(${result} ${place} PARENT_SCOPE)
+endfunction()
 
 foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
     file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
@@ -30,6 +42,12 @@ foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
         elseif(EXISTS ${ROOT}/${own_header} AND NOT lines MATCHES "^#include \"${own_header}\"")
             message(SEND_ERROR "${file} does not include ${own_header} first")
         endif()
+        if(folder STREQUAL "experiments")
+            find_layer(layer ${file})
+            if(layer EQUAL -1)
+                message(SEND_ERROR "${file} has no place in experiments_layers")
+            endif()
+        endif()
         foreach(line IN LISTS lines)
             if(line MATCHES "\"([^\"]*)\"")
                 set(included ${CMAKE_MATCH_1})
@@ -38,6 +56,11 @@ foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
                     message(SEND_ERROR "${file} may not include ${included}")
                 elseif(NOT EXISTS ${ROOT}/${included} OR included MATCHES "[.][.]/")
                     message(SEND_ERROR "${file} includes ${included}, which is no FOLDER/FILE")
+                elseif(folder STREQUAL "experiments" AND included_folder STREQUAL "experiments")
+                    find_layer(included_layer ${included})
+                    if(included_layer GREATER layer)
+                        message(SEND_ERROR "${file} may not include ${included}, which is of a later layer")
+                    endif()
                 endif()
             elseif(file MATCHES "^(model|solvers|graph_search|detectors)/.*[.]hpp$" AND NOT file MATCHES "/detail/"
                    AND line MATCHES "<(${private_libraries})")

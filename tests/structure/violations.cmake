@@ -1,11 +1,15 @@
 # cmake -D SCRATCH=DIR -P violations.cmake: the other checks let pass what is right and find what is not.
 cmake_minimum_required(VERSION 3.25)
 
-# Runs a check on a tree of two files: model/scene.hpp and FILE with the line CONTENT. It must fail with a message
+# Runs a check on a tree of two files, model/scene.hpp and FILE with the line CONTENT, and a third, the header `also`,
+# where that is set. It must fail with a message
 # that matches COMPLAINT, or pass where that is empty.
 function(expect complaint check file content)
     file(REMOVE_RECURSE ${SCRATCH})
     file(WRITE ${SCRATCH}/model/scene.hpp "#pragma once\n#include <vector>\n")
+    if(also)
+        file(WRITE ${SCRATCH}/${also} "#pragma once\n")
+    endif()
     file(WRITE ${SCRATCH}/${file} "${content}\n")
     execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${SCRATCH} -P ${CMAKE_CURRENT_LIST_DIR}/${check}.cmake
                     RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_QUIET)
@@ -29,6 +33,23 @@ foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experimen
     expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#pragma once\n#include \"${to}/b.hpp\"")
 endforeach()
 
+# Inside experiments/: a second file to include, since one that is missing is a fault of its own.
+file(REMOVE_RECURSE ${SCRATCH})
+foreach(direction IN ITEMS "tracks/track;scenes/scene" "files/text;scenes/scene" "scenes/scene;studies/study"
+                           "studies/study;commands/command" "progress;files/text" "tuning/tuner;conelane")
+    list(GET direction 0 lower)
+    list(GET direction 1 upper)
+    set(also experiments/${upper}.hpp)
+    expect("${lower}.cpp may not include experiments/${upper}.hpp, which is of a later" includes
+           experiments/${lower}.cpp "#include \"experiments/${upper}.hpp\"")
+    set(also experiments/${lower}.hpp)
+    expect("" includes experiments/${upper}.cpp "#include \"experiments/${lower}.hpp\"")
+endforeach()
+set(also experiments/files/text.hpp)
+expect("" includes experiments/files/more.cpp "#include \"experiments/files/text.hpp\"")
+set(also)
+expect("experiments/new/a.cpp has no place in experiments_layers" includes experiments/new/a.cpp "")
+
 expect("solvers/a.cpp may not include scene.hpp" includes solvers/a.cpp "#include \"scene.hpp\"")
 expect("may not include ../model/scene.hpp" includes solvers/a.cpp "#include \"../model/scene.hpp\"")
 expect("no FOLDER/FILE" includes solvers/a.cpp "#include \"solvers/../model/scene.hpp\"")
@@ -39,7 +60,7 @@ expect("" includes solvers/detail/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#pragma once\n#include <IpTNLP.hpp>")
 expect("includes <boost/...>, which" includes graph_search/a.hpp "#pragma once\n#  include <boost/geometry.hpp>")
-expect("" includes experiments/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
+expect("" includes experiments/files/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
 
 expect("" includes model/scene.cpp "#include \"model/scene.hpp\"\n#include <cmath>")
 expect("model/scene.cpp does not include model/scene.hpp first" includes model/scene.cpp

@@ -6,7 +6,7 @@ memory to the lane graph in memory, the program's building included. Every lane 
 or counts as an error. Time-outs stay in every figure with the time they took.
 Source: this project; the RLD paper runs Mosek on the printed formulation.
 Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
-Command: conelane backends --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
+Command: conelane study backends --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
 """
 
 import numpy as np

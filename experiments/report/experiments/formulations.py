@@ -5,7 +5,7 @@ Protocol: the n nearest cones of each scene that has as many; the tight formulat
 `cbc-main`, each the faster of the two on it; one thread, building included. LP gap: (optimum - relaxation) divided \
 by the larger of 1 and the optimum's size. A difference in optima above 1e-6 would have stopped the run.
 Source: this project; the printed rows are those of the RLD paper, III.
-Command: conelane formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl
+Command: conelane study formulations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/formulations.jsonl
 """
 
 import os

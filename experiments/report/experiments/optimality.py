@@ -7,7 +7,7 @@ that RLD's constraints forbid are counted apart. The cheapest is held against th
 the same cones. Gap: difference divided by the larger of 1 and the optimum's size. Equal: within 1e-6. Optimum and \
 cheapest candidate pass the independent checker; a candidate below a proven optimum would have stopped the run.
 Source: this project; neither paper compares them.
-Command: conelane optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl
+Command: conelane study optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl
 """
 
 import os

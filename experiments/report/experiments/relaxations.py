@@ -5,7 +5,7 @@ Protocol: every solver that proves nothing, and `path-pair`, which gives the opt
 thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's \
 size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer being inaccurate.
 Source: this project; the question is the RLD paper's own, V.
-Command: conelane relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl
+Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl
 """
 
 import os

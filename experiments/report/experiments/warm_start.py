@@ -5,7 +5,7 @@ Protocol: each backend twice on the same scenes in travel order, without and wit
 the time with it divided by the time without, scene by scene; below 1 it pays. False positives are drawn anew at \
 every pose.
 Source: this project; the RLD paper builds its model once and updates it.
-Command: conelane backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
+Command: conelane study backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
 """
 
 from .. import measures, solves

@@ -1,0 +1,229 @@
+#include "experiments/options/shared_options.hpp"
+
+#include "detectors/rld_parameter_sets.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/files/parameter_file.hpp"
+#include "experiments/scenes/scene_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Marks the options of add_output_option.
+constexpr const char* kOutput = "output";
+constexpr unsigned kMostThreads = 1024;
+
+/// What is wrong with the text of a seed, nothing where it is right. Negative and larger ones would wrap.
+std::string seed_fault(const std::string& text) {
+    std::uint64_t seed = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, seed);
+    if (error == std::errc{} && rest == end) return {};
+    return fmt::format("'{}' is no non-negative integer of 64 bits", text);
+}
+
+/// Why a file cannot be written, nothing where it can.
+std::string output_fault(const std::string& file) {
+    try {
+        require_writable(file);
+        return {};
+    } catch (const InputError& error) {
+        return error.what();
+    }
+}
+
+bool is_output(CLI::Option& option) {
+    try {
+        return option.get_validator(kOutput) != nullptr;
+    } catch (const CLI::OptionNotFound&) {
+        return false;
+    }
+}
+
+/// Options whose texts are names of other things, which files may have too.
+bool names_no_file(const CLI::Option& option) {
+    constexpr std::array<std::string_view, 7> kOptions{"--method", "--methods",     "--solver", "--solvers",
+                                                       "--id",     "--formulation", "--pairing"};
+    return std::ranges::find(kOptions, option.get_name()) != kOptions.end();
+}
+
+void append_files_of(const fs::path& folder, std::span<const std::string_view> endings,
+                     std::vector<fs::path>& files) {
+    std::error_code no_folder;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, no_folder)) {
+        if (std::ranges::find(endings, entry.path().extension()) != endings.end()) files.push_back(entry);
+    }
+}
+
+/// The files that the text of an option may mean: the one of that name, the one behind the kind of a track or
+/// behind NAME=, those of a folder of tracks or of results, the companion of scenes.
+std::vector<fs::path> files_meant(const std::string& text) {
+    constexpr std::array<std::string_view, 1> kTracks{".yaml"};
+    constexpr std::array<std::string_view, 3> kResults{".json", ".jsonl", ".txt"};
+    std::vector<fs::path> files{text};
+    if (text.ends_with(".scenes.jsonl")) files.push_back(track_boundaries_path(text));
+    for (const char separator : {':', '='}) {
+        const std::size_t at = text.find(separator);
+        if (at != std::string::npos) files.emplace_back(text.substr(at + 1));
+    }
+    if (text.starts_with("fsd:")) append_files_of(text.substr(4, text.find(':', 4) - 4), kTracks, files);
+    append_files_of(text, kResults, files);
+    return files;
+}
+
+/// Whether writing the output would replace the file, or both are one that is not there yet.
+bool are_the_same(const fs::path& output, const fs::path& file) {
+    std::error_code ignored;
+    if (fs::exists(output, ignored)) {
+        return fs::is_regular_file(output, ignored) && fs::equivalent(output, file, ignored);
+    }
+    return !fs::exists(file, ignored) &&
+           fs::weakly_canonical(output, ignored) == fs::weakly_canonical(file, ignored);
+}
+
+void refuse_to_replace(const CLI::Option& output, std::span<const fs::path> written, const CLI::Option& input,
+                       const fs::path& file) {
+    for (const fs::path& place : written) {
+        if (place == "-" || !are_the_same(place, file)) continue;
+        throw CLI::ValidationError(output.get_name(), fmt::format("'{}' would replace the file that {} names",
+                                                                  place.string(), input.get_name()));
+    }
+}
+
+/// The options that were given, those of groups too.
+void collect_options(CLI::App& app, std::vector<CLI::Option*>& options) {
+    for (CLI::Option* option : app.get_options(nullptr)) {
+        if (option->count() > 0) options.push_back(option);
+    }
+    for (CLI::App* group : app.get_subcommands(nullptr)) {
+        collect_options(*group, options);
+    }
+}
+
+/// What is wrong with the text of a time limit, nothing where it is right.
+std::string time_limit_fault(const std::string& text) {
+    double limit_ms = 0.0;
+    if (CLI::detail::lexical_cast(text, limit_ms) && limit_ms > 0.0) return {};
+    return fmt::format("'{}' is no number above 0", text);
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    command.add_option("--fp", options.false_positive_rates, "false positives / all points of a scene")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--range", options.ranges_m, "radius of the visible half disc [m]")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--every", options.every_m, "travel between poses [m]")->capture_default_str();
+    command.add_option("--noise", options.noise_sigma_m, "standard deviation of the seen positions [m]");
+    command
+        .add_option_function<std::vector<double>>(
+            "--pose-noise",
+            [&options](const std::vector<double>& values) {
+                options.pose_noise_lateral_m = values[0];
+                options.pose_noise_yaw_rad = values[1];
+            },
+            "standard deviations of the pose: LATERAL [m], YAW [rad]")
+        ->delimiter(',')
+        ->expected(2);
+    command.add_option("--miss", options.miss_rate, "share of the cones not seen");
+    command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
+    command.add_option("--color-error", options.color_error_rate,
+                       "with --color: share of the cones seen in the other boundary's colour");
+    command.add_flag("--confidence", options.with_confidence,
+                     "scenes carry simulated confidences, lower ones for false positives");
+    command.add_option("--seed", options.seed, "base seed")
+        ->check(CLI::Validator(seed_fault, ""))
+        ->capture_default_str();
+}
+
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning) {
+    command.add_option("--seed", seed, meaning)->check(CLI::Validator(seed_fault, ""));
+}
+
+RldParameters ParameterSource::load() const {
+    DetectorOptions options;
+    apply_to(options);
+    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
+    if (options.pairing) parameters.pairing = *options.pairing;
+    return parameters;
+}
+
+void ParameterSource::apply_to(DetectorOptions& options) const {
+    if (!name.empty()) {
+        const auto shipped = rld_parameter_set(name);
+        options.rld_parameters = shipped ? *shipped : read_rld_parameters(name);
+    }
+    if (!pairing.empty()) options.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
+}
+
+void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without) {
+    command.add_option("--params", source.name,
+                       fmt::format("RLD parameters: {} or a file (JSON); without it {}",
+                                   fmt::join(rld_parameter_set_names(), ", "), without));
+    command.add_option("--pairing", source.pairing, "overrides the pairing of the parameters")
+        ->check(CLI::IsMember({"paper", "near_far"}));
+}
+
+void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning) {
+    command
+        .add_option_function<std::size_t>(
+            "--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
+        ->check(CLI::Range(1, 100000));
+}
+
+void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
+    command.add_option("--time-limit", time_limit_ms, "per scene, wall clock [ms]; inf for none")
+        ->check(CLI::Validator(time_limit_fault, "POSITIVE"))
+        ->capture_default_str();
+}
+
+CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
+                               const std::string& meaning, bool or_standard_output) {
+    if (or_standard_output) {
+        const auto fault = [](const std::string& text) { return text == "-" ? "" : output_fault(text); };
+        return command.add_option(name, file, meaning)->check(CLI::Validator(fault, "", kOutput));
+    }
+    return command.add_option(name, file, meaning)->check(CLI::Validator(output_fault, "", kOutput));
+}
+
+void refuse_lost_inputs(CLI::App& command) {
+    std::vector<CLI::Option*> options;
+    collect_options(command, options);
+    for (CLI::Option* output : options) {
+        if (!is_output(*output)) continue;
+        std::vector<fs::path> written{output->results().front()};
+        if (command.get_name() == "scenes") written.push_back(track_boundaries_path(written.front()));
+        for (const CLI::Option* input : options) {
+            if (input == output || names_no_file(*input)) continue;
+            for (const std::string& text : input->results()) {
+                for (const fs::path& file : files_meant(text))
+                    refuse_to_replace(*output, written, *input, file);
+            }
+        }
+    }
+}
+
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
+    command.add_option("--threads", threads, meaning)
+        ->check(CLI::Range(1U, kMostThreads))
+        ->capture_default_str();
+}
+
+}  // namespace conelane::experiments

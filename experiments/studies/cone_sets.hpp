@@ -1,0 +1,34 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// Cone sets of certain sizes, which studies solve that measure by size.
+struct ConeSetOptions {
+    RldParameters parameters;
+    std::vector<std::size_t> sizes;
+    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
+    double time_limit_ms = 0.0;        ///< a solve
+};
+
+/// The scenes that have `size` cones ahead and pass `wanted`; at most `limit` of them, evenly spread.
+[[nodiscard]] std::vector<const AnnotatedScene*> scenes_of_size(
+    std::span<const AnnotatedScene> scenes, std::size_t size, std::optional<std::size_t> limit,
+    const std::function<bool(const AnnotatedScene&)>& wanted);
+
+/// Objectives that differ by no more than this are the same: what a solver's answer may be off, see
+/// SolveLimits.
+inline constexpr double kObjectiveTolerance = 1e-6;
+
+/// (objective - optimum) / max(1, |optimum|), at least 0.
+[[nodiscard]] double relative_gap(double objective, double optimum);
+
+}  // namespace conelane::experiments

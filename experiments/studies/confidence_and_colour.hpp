@@ -1,0 +1,72 @@
+#pragma once
+
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "model/rld_parameters.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+class Study;
+
+/// RLD with simulated confidences and colours of cones against geometry alone.
+[[nodiscard]] std::unique_ptr<Study> make_confidence_and_colour_study();
+
+/// Tracks that a fit has not seen, and what it found on the others.
+struct HeldOut {
+    std::vector<std::string> tracks;
+    RldParameters parameters;
+};
+
+/// The scenes and folds of a tuning whose parameters were fitted to geometry alone, and what is simulated on
+/// them. With confidences the weight w_b, which they lower, and with colours the weight w_color are, in each
+/// fold, those that are most accurate on the tracks that are not held out; of equal ones the smallest.
+struct ConfidenceColorOptions {
+    std::vector<std::string> tracks;  ///< as in make_scene_set
+    SceneOptions scenes;
+    EvaluationOptions evaluation;  ///< its objective is without effect
+    std::vector<HeldOut> folds;
+    std::vector<std::string> only;  ///< tracks that rows are of; all held-out ones where empty
+    std::vector<double> color_errors{0.0, 0.05, 0.2};
+    std::vector<double> color_weights{0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};  ///< w_color, ascending
+    std::vector<double> benefits{1.0, 1.5, 2.0, 2.5, 3.0};                       ///< w_b, ascending
+};
+
+/// Scenes, cone set and folds of a record that `conelane tune` has written. Throws InputError where the file
+/// is none or its tuning held no track out.
+[[nodiscard]] ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file);
+
+/// What is simulated beside the geometry: one of both or nothing.
+struct SimulatedKnowledge {
+    bool confidence = false;
+    std::optional<double> color_error;  ///< share of wrong colours; absent without colours
+
+    bool operator==(const SimulatedKnowledge&) const = default;
+};
+[[nodiscard]] std::string to_string(const SimulatedKnowledge& knowledge);
+
+/// One knowledge at one rate of false positives, over the held-out tracks of all folds.
+struct ConfidenceColorRow {
+    SimulatedKnowledge knowledge;
+    double false_positive_rate = 0.0;
+    std::size_t scenes = 0;       ///< whose cone set holds a ground truth
+    double accurate = 0.0;        ///< share of them (RLD paper, IV-B)
+    double success = 0.0;         ///< share of all scenes (CLC paper, Table I)
+    std::vector<double> weights;  ///< w_b with confidences, w_color with colours, by fold; empty with neither
+};
+
+/// Rows by knowledge: geometry alone, confidences, colours in the order of their errors; then by rate. Throws
+/// InvalidInput where a fold holds out a track that has no scene, or none holds out one of `only`.
+[[nodiscard]] std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options);
+
+/// Of these rows, for a terminal.
+[[nodiscard]] std::string confidence_color_table(std::span<const ConfidenceColorRow> rows);
+
+}  // namespace conelane::experiments

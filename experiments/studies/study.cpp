@@ -1,0 +1,21 @@
+#include "experiments/studies/study.hpp"
+
+#include "experiments/studies/backends.hpp"
+#include "experiments/studies/confidence_and_colour.hpp"
+#include "experiments/studies/formulations.hpp"
+#include "experiments/studies/optimality.hpp"
+#include "experiments/studies/relaxations.hpp"
+
+namespace conelane::experiments {
+
+std::vector<std::unique_ptr<Study>> make_studies() {
+    std::vector<std::unique_ptr<Study>> studies;
+    studies.push_back(make_optimality_study());
+    studies.push_back(make_backends_study());
+    studies.push_back(make_formulations_study());
+    studies.push_back(make_relaxations_study());
+    studies.push_back(make_confidence_and_colour_study());
+    return studies;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A table for a terminal: a line of titles, then a line for each row, every column as wide as its widest
+/// cell.
+class TextTable {
+  public:
+    struct Column {
+        std::string title;
+        bool is_text = false;  ///< aligned to the left; numbers are aligned to the right
+    };
+    explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+    /// Precondition: as many cells as columns.
+    void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
+
+    /// Each line ends with a line feed.
+    [[nodiscard]] std::string text() const;
+
+  private:
+    std::vector<Column> columns_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+/// With so many decimals; "-" where there is none.
+[[nodiscard]] std::string fixed(std::optional<double> value, int decimals);
+
+/// A share times 100, as `fixed`.
+[[nodiscard]] std::string percent(std::optional<double> share, int decimals);
+
+/// part / whole; nothing where the whole is 0.
+[[nodiscard]] std::optional<double> share(std::size_t part, std::size_t whole);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "model/deadline.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <coin/CbcEventHandler.hpp>
+#include <coin/CbcModel.hpp>
+#include <coin/ClpEventHandler.hpp>
+
+namespace conelane::detail {
+
+/// The one clock of a COIN solve. COIN's own limits are not used: where they strike inside of CBC, a
+/// relaxation that was cut short counts as infeasible, and the whole search as complete. Here each cut is on
+/// record, so that a search which was never cut is known to be a proof.
+struct DeadlineWatch {
+    Deadline deadline;
+    bool struck = false;  ///< some part of the solve was cut short
+    /// CBC's lower bound when no relaxation had been cut short yet.
+    double bound = -std::numeric_limits<double>::infinity();
+
+    bool strikes() {
+        struck = struck || deadline.passed();
+        return struck;
+    }
+};
+
+/// Stops Clp at the next iteration. The watch must outlive it and its clones.
+class ClpDeadline : public ClpEventHandler {
+  public:
+    explicit ClpDeadline(DeadlineWatch* watch) : watch_(watch) {}
+    int event(Event which) override {
+        const bool may_stop = which == endOfIteration || which == endOfFactorization;
+        return may_stop && watch_->strikes() ? 1 : -1;
+    }
+    ClpEventHandler* clone() const override { return new ClpDeadline(*this); }
+
+  private:
+    DeadlineWatch* watch_;
+};
+
+/// Stops CBC at the next node. The watch must outlive it and its clones.
+class CbcDeadline : public CbcEventHandler {
+  public:
+    explicit CbcDeadline(DeadlineWatch* watch) : watch_(watch) {}
+    CbcAction event(CbcEvent which) override {
+        if (which == node && !watch_->struck && model_ != nullptr) {
+            watch_->bound = std::max(watch_->bound, model_->getBestPossibleObjValue());
+        }
+        return watch_->strikes() ? stop : noAction;
+    }
+    CbcEventHandler* clone() const override { return new CbcDeadline(*this); }
+
+  private:
+    DeadlineWatch* watch_;
+};
+
+}  // namespace conelane::detail

@@ -1,0 +1,147 @@
+// Studies: what is listed, the table they share, and the exact backends under one objective.
+
+#include "experiments/scenes/scene_set.hpp"
+#include "experiments/studies/backends.hpp"
+#include "experiments/studies/cone_sets.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/text_table.hpp"
+#include "model/invalid_input.hpp"
+#include "solvers/registry.hpp"
+#include "tests/straight_scene.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+SceneSet some_scenes(std::vector<double> rates) {
+    SceneOptions options;
+    options.false_positive_rates = std::move(rates);
+    options.ranges_m = {25.0};
+    options.every_m = 20.0;
+    return make_scene_set({"generated:kidney", "generated:straight"}, options);
+}
+
+TEST(Studies, HaveANameOfTheirOwnAQuestionAndAProtocol) {
+    std::set<std::string_view> names;
+    for (const auto& study : make_studies()) {
+        const StudyDescription& description = study->description();
+        EXPECT_TRUE(names.insert(description.name).second) << description.name;
+        EXPECT_THAT(description.name, testing::MatchesRegex("[a-z-]+"));
+        EXPECT_TRUE(description.question.ends_with('?')) << description.question;
+        EXPECT_FALSE(description.protocol.empty());
+    }
+    EXPECT_GE(names.size(), 5U);
+}
+
+TEST(TextTable, MakesEveryColumnAsWideAsItsWidestCell) {
+    TextTable table({{"n"}, {"solver", true}, {"ms"}});
+    table.add({"6", "cbc", fixed(12.345, 1)});
+    table.add({"12", "path-pair", fixed({}, 1)});
+    EXPECT_EQ(table.text(),
+              " n solver      ms\n"
+              " 6 cbc       12.3\n"
+              "12 path-pair    -\n");
+    EXPECT_EQ(percent(share(1, 3), 2), "33.33");
+    EXPECT_EQ(percent(share(0, 0), 2), "-");
+}
+
+TEST(ConeSets, AreSpreadEvenlyOverTheScenesThatHaveThem) {
+    std::vector<AnnotatedScene> scenes(10, straight_scene());
+    const auto any = [](const AnnotatedScene&) { return true; };
+    EXPECT_EQ(scenes_of_size(scenes, 20, {}, any).size(), 10U);
+    EXPECT_TRUE(scenes_of_size(scenes, 21, {}, any).empty());
+    EXPECT_THAT(scenes_of_size(scenes, 6, 3, any), ElementsAre(&scenes[0], &scenes[3], &scenes[6]));
+    const auto not_first = [&](const AnnotatedScene& scene) { return &scene != scenes.data(); };
+    EXPECT_THAT(scenes_of_size(scenes, 6, 1, not_first), ElementsAre(&scenes[1]));
+}
+
+TEST(Backends, AreAllExactSolversOfTheRegistry) {
+    std::vector<std::string> exact;
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        if (entry.exact) exact.emplace_back(entry.name);
+    }
+    std::vector<std::string> found;
+    for (const Backend& backend : exact_backends()) found.push_back(backend.solver);
+    EXPECT_EQ(found, exact);
+}
+
+TEST(Backends, HaveNamesWithAndWithoutAFormulation) {
+    EXPECT_EQ(backend_of("path-pair").label(), "path-pair");
+    EXPECT_EQ(backend_of("cbc").label(), "cbc/tight");
+    EXPECT_EQ(backend_of("cbc/paper").label(), "cbc/paper");
+    for (const char* bad : {"magic", "lp-rounding", "path-pair/tight", "cbc/", "cbc/loose", "/tight", ""}) {
+        EXPECT_THROW((void)backend_of(bad), InvalidInput) << bad;
+    }
+}
+
+TEST(Backends, SolveOnlyTheSizesThatTheyTake) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};
+    BackendOptions options;
+    options.backends = {backend_of("exhaustive"), backend_of("path-pair")};
+    options.sizes = {6, 10};
+    std::vector<std::pair<std::size_t, std::string>> solved;
+    std::vector<SolveStatus> statuses;
+    for (const BackendRow& row : backend_rows(scenes, options)) {
+        solved.emplace_back(row.cones, row.backend.solver);
+        statuses.push_back(row.status);
+    }
+    using Solved = std::pair<std::size_t, std::string>;
+    EXPECT_THAT(solved,
+                ElementsAre(Solved(6, "exhaustive"), Solved(6, "path-pair"), Solved(10, "path-pair")));
+    EXPECT_THAT(statuses, Each(SolveStatus::optimal));
+}
+
+TEST(Backends, AgreeWithAndWithoutAStart) {
+    const SceneSet set = some_scenes({0.2});
+    BackendOptions options;
+    options.sizes = {8, 10};
+    std::vector<Backend> backends = exact_backends();
+    backends.push_back(backend_of("cbc-main/paper"));
+    for (Backend backend : backends) {
+        options.backends.push_back(backend);
+        backend.warm_start = true;
+        options.backends.push_back(backend);
+    }
+    const std::vector<BackendRow> rows = backend_rows(set.scenes, options);
+    std::map<std::pair<std::size_t, std::string>, double> optimum;
+    std::set<std::string> labels;
+    for (const BackendRow& row : rows) {
+        SCOPED_TRACE(row.scene->scene.id + " " + row.backend.label());
+        labels.insert(row.backend.label());
+        EXPECT_THAT(row.message, "");
+        if (row.status == SolveStatus::stopped || row.status == SolveStatus::feasible) continue;
+        ASSERT_TRUE(row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible);
+        const double value = row.status == SolveStatus::optimal ? *row.objective : 1e9;
+        const auto known = optimum.try_emplace({row.cones, row.scene->scene.id}, value).first;
+        EXPECT_NEAR(value, known->second, 1e-6);
+    }
+    EXPECT_EQ(labels.size(), options.backends.size());
+    EXPECT_TRUE(labels.contains("path-pair"));
+    EXPECT_TRUE(labels.contains("cbc-main/paper warm"));
+}
+
+TEST(Backends, LeaveOutScenesWithFewerCones) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};  // 20 cones
+    BackendOptions options;
+    options.backends = {Backend{"path-pair"}};
+    options.sizes = {20, 21};
+    const std::vector<BackendRow> rows = backend_rows(scenes, options);
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].cones, 20u);
+    options.backends = {Backend{"magic"}};
+    EXPECT_THROW((void)backend_rows(scenes, options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
