@@ -4,6 +4,7 @@
 #include "experiments/files/interruption.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/provenance.hpp"
+#include "solvers/registry.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -59,12 +60,21 @@ void refuse_empty_values(CLI::App& program) {
     for (CLI::App* command : program.get_subcommands({})) refuse_empty_values(*command);
 }
 
+std::string version() {
+    const conelane::experiments::Provenance origin = conelane::experiments::provenance();
+    std::string solvers;
+    for (const conelane::RldSolverEntry& solver : conelane::rld_solvers()) {
+        solvers += (solvers.empty() ? "" : ", ") + std::string(solver.name);
+    }
+    return fmt::format("conelane {}\ncommit {}\ncompiler {}\nsolvers {}", CONELANE_VERSION, origin.commit,
+                       origin.compiler, solvers);
+}
+
 int run(int argument_count, char** arguments) {
     namespace experiments = conelane::experiments;
     CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
                      "conelane");
-    program.set_version_flag("--version",
-                             "conelane " CONELANE_VERSION ", commit " + experiments::provenance().commit);
+    program.set_version_flag("--version", version());
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
     experiments::add_report_command(program);

@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -870,6 +871,78 @@ TEST_F(Interruption, OfAReportLeavesNoPage) {
         EXPECT_FALSE(std::filesystem::exists(path("page.html")));
         EXPECT_FALSE(std::filesystem::exists(path("pictures")));
     }
+}
+
+/// A file that is open all the time: a stream of scenes that has not ended.
+TEST_F(Interruption, OfAStreamLeavesNoTemporaryFile) {
+    ASSERT_EQ(std::system(("mkfifo " + path("scenes").string()).c_str()), 0);
+    const int held_open = ::open(path("scenes").c_str(), O_RDWR);
+    interrupt("detect --method clc --scenes - --out l.lanes.jsonl <scenes", SIGINT, [&] {
+        return std::ranges::any_of(std::filesystem::directory_iterator(path("")), [](const auto& entry) {
+            return entry.path().filename().string().starts_with("l.lanes.jsonl.tmp");
+        });
+    });
+    ::close(held_open);
+    EXPECT_FALSE(std::filesystem::exists(path("l.lanes.jsonl")));
+}
+
+/// Each line is answered before the next one is sent.
+TEST_F(Program, AStreamIsAnsweredLineByLine) {
+    make_scenes("--fp 0.2");
+    const std::vector<Lane> expected = [&] {
+        EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+        return lanes_in(path("l.lanes.jsonl"));
+    }();
+    const std::string in = path("in").string();
+    const std::string out = path("out").string();
+    ASSERT_EQ(std::system(("mkfifo " + in + " " + out).c_str()), 0);
+    ASSERT_EQ(std::system(("(timeout 60 " CONELANE_PROGRAM " detect --method clc --scenes - --out - <" + in +
+                           " >" + out + "; echo $? >" + path("code").string() + ") &")
+                              .c_str()),
+              0);
+    std::ofstream scenes(in);
+    std::ifstream lanes(out);
+    std::ifstream file(path("s.scenes.jsonl"));
+    std::size_t count = 0;
+    for (std::string scene, lane; std::getline(file, scene); ++count) {
+        scenes << "{\"reset\": true}\n" << scene << std::endl;
+        ASSERT_TRUE(std::getline(lanes, lane));
+        const nlohmann::json answer = nlohmann::json::parse(lane);
+        EXPECT_EQ(answer["scene"], nlohmann::json::parse(scene)["id"]);
+        EXPECT_EQ(answer["left"].get<std::vector<ConeId>>(), expected.at(count).left);
+        EXPECT_EQ(answer["right"].get<std::vector<ConeId>>(), expected.at(count).right);
+    }
+    scenes << "{\"id\": 3}" << std::endl;
+    std::string lane;
+    ASSERT_TRUE(std::getline(lanes, lane));
+    const nlohmann::json wrong = nlohmann::json::parse(lane);
+    EXPECT_EQ(wrong["status"], "error");
+    EXPECT_EQ(wrong["scene"], std::to_string(2 * count + 1));
+    EXPECT_THAT(wrong["message"].get<std::string>(), HasSubstr("id"));
+    scenes.close();
+    EXPECT_FALSE(std::getline(lanes, lane)) << "it ends with its input";
+    for (int wait = 0; wait < 200 && text_of(path("code")).empty(); ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_EQ(text_of(path("code")), "0\n");
+    const Outcome whole = run("detect --method clc --scenes s.scenes.jsonl --out -");
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(whole.output, '\n')), expected.size());
+    expect_refused("detect --method clc --scenes - --out - --threads 2", {"--threads", "stream"});
+}
+
+TEST_F(Program, MethodsForUsersComeFirstAndAblationsOnRequest) {
+    const std::string some = run("methods").output;
+    const std::string all = run("methods --all").output;
+    EXPECT_THAT(some, HasSubstr("rld-pair "));
+    EXPECT_THAT(some, Not(HasSubstr("clc-no-beam")));
+    EXPECT_THAT(all, HasSubstr("clc-no-beam"));
+    EXPECT_THAT(all, testing::StartsWith(some));
+}
+
+TEST_F(Program, TheVersionNamesCommitCompilerAndSolvers) {
+    const std::string version = run("--version").output;
+    EXPECT_THAT(version,
+                testing::MatchesRegex("conelane [0-9.]+\ncommit .+\ncompiler .+\nsolvers .*path-pair.*\n"));
 }
 
 }  // namespace

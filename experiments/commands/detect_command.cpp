@@ -1,11 +1,18 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/comparison/runner.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
+#include "model/invalid_input.hpp"
 
+#include <cstddef>
+#include <iostream>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -13,6 +20,9 @@
 
 namespace conelane::experiments {
 namespace {
+
+/// Stands for standard input and standard output.
+constexpr const char* kStandardStream = "-";
 
 struct Options {
     std::string method;
@@ -22,9 +32,60 @@ struct Options {
     RunOptions run;
 };
 
+/// Where answers go line by line: a file that appears when all is done, or standard output, each at once.
+class LaneSink {
+  public:
+    explicit LaneSink(const std::string& out) {
+        if (out != kStandardStream) file_.emplace(out);
+    }
+    void put(const LaneRecord& record) {
+        std::ostream& stream = file_ ? file_->stream() : std::cout;
+        stream << lane_line(record) << '\n' << std::flush;
+        if (!stream) throw InputError("", 0, "--out", "cannot be written to its end");
+    }
+    void commit() {
+        if (file_) file_->commit();
+    }
+
+  private:
+    std::optional<AtomicFile> file_;
+};
+
+/// One scene after the other; nothing is answered untimed before, since no scene is known before.
+void detect_streamed(const Method& method, const Options& options) {
+    if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
+    TimedMethod timed(method, options.run);
+    LaneSink sink(options.out);
+    if (options.scenes == kStandardStream) {
+        for_each_scene_line(std::cin, [&](const SceneLine& line) {
+            if (line.reset) {
+                timed.reset();
+            } else if (line.scene) {
+                sink.put(timed.answer(line.scene->scene));
+            } else {
+                LaneRecord wrong{std::to_string(line.number), std::string(method.name), {}, 0.0, {}};
+                wrong.answer.status = LaneStatus::error;
+                wrong.answer.message = line.fault;
+                sink.put(wrong);
+            }
+        });
+    } else {
+        const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+        for (std::size_t i = 0; i < scenes.size(); ++i) {
+            if (i > 0 && !same_lap(scenes[i - 1], scenes[i])) timed.reset();
+            sink.put(timed.answer(scenes[i].scene));
+        }
+    }
+    sink.commit();
+}
+
 void detect(Options& options) {
     const Method& method = find_method(options.method);
     options.parameters.apply_to(options.run.method);
+    if (options.scenes == kStandardStream || options.out == kStandardStream) {
+        detect_streamed(method, options);
+        return;
+    }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     write_lanes(options.out, run(method, scenes, options.run));
 }
@@ -32,8 +93,12 @@ void detect(Options& options) {
 }  // namespace
 
 void add_methods_command(CLI::App& program) {
-    program.add_subcommand("methods", "the detection methods of this build")->callback([] {
+    CLI::App& command = *program.add_subcommand("methods", "the detection methods of this build");
+    auto all = std::make_shared<bool>(false);
+    command.add_flag("--all", *all, "also those that leave a part out, to show what the part is worth");
+    command.callback([all] {
         for (const Method& method : methods()) {
+            if (method.is_ablation && !*all) continue;
             const ConeSet set = cone_set(method, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
@@ -43,12 +108,19 @@ void add_methods_command(CLI::App& program) {
 }
 
 void add_detect_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("detect", "lanes of scenes, by any method");
+    CLI::App& command = *program.add_subcommand(
+        "detect",
+        "lanes of scenes, by any method. With `--scenes - --out -` a stream: a lane line for each scene "
+        "line, at once; a line {\"reset\": true} says that another lap begins, a line that is no scene gets "
+        "an answer of status error");
     auto options = std::make_shared<Options>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command.add_option("--method", options->method, "see `conelane methods`")->required();
-    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
-    add_output_option(command, "--out", options->out, "*.lanes.jsonl")->required();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
+        ->required();
+    add_output_option(command, "--out", options->out,
+                      "*.lanes.jsonl; - writes each line to standard output at once", true)
+        ->required();
     add_nearest_option(command, options->run.method.nearest, "cone-set size instead of the method's own");
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");

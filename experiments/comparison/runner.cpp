@@ -3,9 +3,9 @@
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/progress.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <memory>
 #include <mutex>
@@ -20,27 +20,14 @@
 namespace conelane::experiments {
 namespace {
 
-bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
-    return a.track == b.track && a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
-}
-
 std::vector<LaneRecord> drive_lap(const Method& method, std::span<const AnnotatedScene> lap,
                                   const RunOptions& options, Progress& progress) {
-    const std::unique_ptr<LaneDetector> detector = make_detector(method, options.method);
-    const ConeSet cones = cone_set(method, options.method);
-    const RldParameters parameters = rld_parameters(method, options.method);
-    (void)detector->detect(lap.front().scene, options.limits);
-    detector->reset();
+    TimedMethod timed(method, options);
+    timed.warm_up(lap.front().scene);
     std::vector<LaneRecord> records;
     records.reserve(lap.size());
     for (const AnnotatedScene& scene : lap) {
-        const auto start = std::chrono::steady_clock::now();
-        LaneAnswer answer = detector->detect(scene.scene, options.limits);
-        const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - start;
-        LaneRecord record{scene.scene.id, std::string(method.name), std::move(answer), latency.count(),
-                          cones.nearest};
-        if (method.is_rld()) check_answer(record, cones.seen(scene.scene), parameters);
-        records.push_back(std::move(record));
+        records.push_back(timed.answer(scene.scene));
         progress.advance();
     }
     return records;
@@ -68,6 +55,31 @@ class InOrder {
 };
 
 }  // namespace
+
+TimedMethod::TimedMethod(const Method& method, const RunOptions& options)
+    : method_(method),
+      limits_(options.limits),
+      detector_(make_detector(method, options.method)),
+      cones_(cone_set(method, options.method)),
+      parameters_(rld_parameters(method, options.method)) {}
+
+LaneRecord TimedMethod::answer(const Scene& scene) {
+    const Stopwatch watch;
+    LaneAnswer answer = detector_->detect(scene, limits_);
+    const double latency_ms = watch.elapsed_ms();
+    LaneRecord record{scene.id, std::string(method_.name), std::move(answer), latency_ms, cones_.nearest};
+    if (method_.is_rld()) check_answer(record, cones_.seen(scene), parameters_);
+    return record;
+}
+
+void TimedMethod::warm_up(const Scene& scene) {
+    (void)detector_->detect(scene, limits_);
+    detector_->reset();
+}
+
+bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
+    return a.track == b.track && a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
+}
 
 std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     std::vector<std::size_t> starts;

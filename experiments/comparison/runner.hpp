@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,31 @@ struct RunOptions {
     bool show_progress = true;
 };
 
+/// A method that answers scene after scene, each timed in the same way: from the scene in memory to the lane
+/// in memory, on the wall clock. What an RLD method found and the independent checker rejects becomes an
+/// answer of status error (see check_answer; not timed).
+class TimedMethod {
+  public:
+    /// The method must outlive it.
+    TimedMethod(const Method& method, const RunOptions& options);
+
+    [[nodiscard]] LaneRecord answer(const Scene& scene);
+    /// Answers the scene untimed and forgets it, so that no latency holds the loading of code.
+    void warm_up(const Scene& scene);
+    /// What follows is another lap.
+    void reset() { detector_->reset(); }
+
+  private:
+    const Method& method_;
+    DetectionLimits limits_;
+    std::unique_ptr<LaneDetector> detector_;
+    ConeSet cones_;
+    RldParameters parameters_;
+};
+
+/// Whether two scenes are of one lap: the same track, rate and range.
+[[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
+
 /// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track, rate
 /// and range, the unit of work: a detector that carries state sees each lap from its beginning, alone.
 [[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
@@ -28,11 +54,8 @@ struct RunOptions {
 /// Gets the records of each lap, in the order of the laps, from one thread at a time.
 using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
-/// Runs a method on every scene and times each call in the same way: from the scene in memory to the lane in
-/// memory, on the wall clock. The first scene of each lap is answered once untimed before, so that no latency
-/// holds the loading of code; the detector then forgets it. The cut to the cone set is part of the method and
-/// of its time. An exception becomes an answer with status error, and so does what an RLD method found where
-/// the independent checker rejects it (see check_answer; not timed).
+/// Runs a method on every scene, a TimedMethod for each lap. The first scene of a lap is answered once
+/// untimed before. The cut to the cone set is part of the method and of its time.
 void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
          const LapSink& sink);
 

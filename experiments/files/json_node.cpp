@@ -213,16 +213,25 @@ std::size_t JsonNode::index_in(std::span<const std::string_view> names) const {
 
 void for_each_json_line(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {
     std::ifstream stream = open(file);
-    JsonOrigin origin{file, 0};
+    std::size_t number = 0;
     for (std::string line; std::getline(stream, line);) {
-        ++origin.line;
-        if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-        const json value = parse(line, file, origin.line);
-        const JsonNode node(value, origin);
-        node.require_object();
-        read(node);
+        ++number;
+        if (!is_blank(line)) with_json_line(line, file, number, read);
     }
     require_read_to_end(stream, file);
+}
+
+void with_json_line(std::string_view text, const std::filesystem::path& file, std::size_t line,
+                    const std::function<void(const JsonNode&)>& read) {
+    const json value = parse(text, file, line);
+    const JsonOrigin origin{file, line};
+    const JsonNode node(value, origin);
+    node.require_object();
+    read(node);
+}
+
+bool is_blank(std::string_view line) {
+    return line.find_first_not_of(" \t\r") == std::string_view::npos;
 }
 
 void with_json_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {

@@ -76,12 +76,19 @@ Choice JsonNode::one_of(const std::array<Choice, count>& choices) const {
 /// cannot be read or a line is no JSON object.
 void for_each_json_line(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
+/// The same for one line that was read already, by its number. `file` is named in errors.
+void with_json_line(std::string_view text, const std::filesystem::path& file, std::size_t line,
+                    const std::function<void(const JsonNode&)>& read);
+
 /// Calls `read` with the object that a whole file holds. Throws like for_each_json_line.
 void with_json_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
 /// The same for a text that stands for the file.
 void with_json_text(std::string_view text, const std::filesystem::path& file,
                     const std::function<void(const JsonNode&)>& read);
+
+/// Whether a line holds nothing; such lines are passed over.
+[[nodiscard]] bool is_blank(std::string_view line);
 
 /// JSON on one line, keys in their order, bytes that are no UTF-8 replaced.
 [[nodiscard]] std::string to_line(const nlohmann::ordered_json& json);

@@ -38,7 +38,6 @@ std::string seed_fault(const std::string& text) {
 
 /// Why a file cannot be written, nothing where it can.
 std::string output_fault(const std::string& file) {
-    if (file == "-") return {};
     try {
         require_writable(file);
         return {};
@@ -196,7 +195,11 @@ void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
 }
 
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
-                               const std::string& meaning) {
+                               const std::string& meaning, bool or_standard_output) {
+    if (or_standard_output) {
+        const auto fault = [](const std::string& text) { return text == "-" ? "" : output_fault(text); };
+        return command.add_option(name, file, meaning)->check(CLI::Validator(fault, "", kOutput));
+    }
     return command.add_option(name, file, meaning)->check(CLI::Validator(output_fault, "", kOutput));
 }
 

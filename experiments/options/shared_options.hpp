@@ -37,9 +37,10 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, 
 inline constexpr double kRealTimeLimit_ms = 400.0;
 /// --time-limit MS; what `time_limit_ms` holds is the default
 void add_time_limit_option(CLI::App& command, double& time_limit_ms);
-/// A file to write. That it can be is looked at before the work, not after it.
+/// A file to write, or standard output by the name "-" where that is allowed. That it can be written is
+/// looked at before the work, not after it.
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
-                               const std::string& meaning);
+                               const std::string& meaning, bool or_standard_output = false);
 /// Refuses the options of a command that is about to run where a file of add_output_option would replace an
 /// input or another output: the same file, be it under another name, through a symbolic or a hard link. Any
 /// other option that names a file counts as an input, a track by its SPEC and a scenes file with its

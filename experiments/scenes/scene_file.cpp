@@ -148,6 +148,25 @@ std::vector<AnnotatedScene> read_scenes(const std::filesystem::path& file) {
     return scenes;
 }
 
+void for_each_scene_line(std::istream& stream, const std::function<void(const SceneLine&)>& use) {
+    std::size_t number = 0;
+    for (std::string text; std::getline(stream, text);) {
+        ++number;
+        if (is_blank(text)) continue;
+        SceneLine line{number, {}, false, {}};
+        try {
+            with_json_line(text, "", number, [&](const JsonNode& json) {
+                const auto reset = json.find("reset");
+                line.reset = reset && reset->boolean();
+                if (!line.reset) line.scene = read_scene(json);
+            });
+        } catch (const InputError& error) {
+            line.fault = error.what();
+        }
+        use(line);
+    }
+}
+
 void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {
     AtomicFile output(file);
     for (std::size_t i = 0; i < scenes.size(); ++i) {

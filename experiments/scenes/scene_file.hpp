@@ -3,8 +3,13 @@
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <istream>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace conelane::experiments {
@@ -14,6 +19,18 @@ namespace conelane::experiments {
 /// cone id, a scene id or a ground-truth id is there twice, a ground-truth id has no cone, or the file has no
 /// scene.
 [[nodiscard]] std::vector<AnnotatedScene> read_scenes(const std::filesystem::path& file);
+
+/// A line of a stream of scenes.
+struct SceneLine {
+    std::size_t number = 0;               ///< from 1, blank lines counted
+    std::optional<AnnotatedScene> scene;  ///< absent where the line is no scene
+    bool reset = false;                   ///< {"reset": true}: what follows is another lap
+    std::string fault;                    ///< what is wrong with a line that is neither
+};
+
+/// Calls `use` with each line of a stream that is not blank, before the next one is read. A line that is
+/// wrong is passed on as such; its scenes may have the same id as others.
+void for_each_scene_line(std::istream& stream, const std::function<void(const SceneLine&)>& use);
 
 /// Throws InvalidInput where a number is not finite, InputError where the file cannot be written; then an old
 /// file stays as it was.
