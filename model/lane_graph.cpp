@@ -1,5 +1,7 @@
 #include "conelane/lane_graph.hpp"
 
+#include "model/geometry.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>

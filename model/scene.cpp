@@ -1,6 +1,7 @@
 #include "conelane/scene.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "model/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 // shows what goes wrong. The corrected rows stand beside it. model/formulation.md lists the errata.
 
 #include "conelane/check.hpp"
+#include "model/geometry.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_solver.hpp"
 #include "solvers/registry.hpp"

@@ -1,5 +1,7 @@
 #include "experiments/scoring/lane_polygon.hpp"
 
+#include "model/geometry.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

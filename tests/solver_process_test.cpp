@@ -2,6 +2,7 @@
 // it.
 
 #include "conelane/lane_graph_problem.hpp"
+#include "model/formulation_parts.hpp"
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 

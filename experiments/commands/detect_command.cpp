@@ -1,3 +1,4 @@
+#include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
@@ -6,7 +7,6 @@
 #include "experiments/methods.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "model/invalid_input.hpp"
 
 #include <cstddef>
 #include <iostream>
