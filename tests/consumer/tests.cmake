@@ -12,7 +12,7 @@ set(consumer_output "1 3 5 [|] 2 4 6 straight\n1 3 5 [|] 2 4 6 straight")
 # `consumer_test(NAME COMPILER NEEDED FIXTURE ARGUMENTS...)`
 function(consumer_test name compiler needed)
     add_test(NAME consumer.${name}
-             COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_LIST_DIR}/consumer ${consumer}/${name}
+             COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_LIST_DIR} ${consumer}/${name}
                      --build-generator ${CMAKE_GENERATOR} --build-options -D CMAKE_CXX_COMPILER=${compiler}
                      -D CMAKE_CXX_FLAGS=${CMAKE_CXX_FLAGS} ${ARGN} --test-command consumer)
     set_tests_properties(consumer.${name} PROPERTIES FIXTURES_REQUIRED ${needed} FIXTURES_SETUP consumer_${name}
@@ -47,5 +47,5 @@ set_tests_properties(consumer.components_agree PROPERTIES FIXTURES_REQUIRED cons
 # The package names no path of the machine that built it, and at most 25 headers are public.
 add_test(NAME consumer.package_is_relocatable
          COMMAND ${CMAKE_COMMAND} -D PREFIX=${consumer}/prefix -D SOURCES=${PROJECT_SOURCE_DIR}
-                                  -P ${CMAKE_CURRENT_LIST_DIR}/consumer/relocatable.cmake)
+                                  -P ${CMAKE_CURRENT_LIST_DIR}/relocatable.cmake)
 set_tests_properties(consumer.package_is_relocatable PROPERTIES FIXTURES_REQUIRED consumer_prefix)
