@@ -43,7 +43,7 @@ class RldDetector : public LaneDetector {
         if (!cones.nearest) return solve(scene, limits.time_limit_ms);
         LaneAnswer answer = solve(cones.seen(scene), limits.time_limit_ms);
         if (!cones.has_context() || answer.status != LaneStatus::found) return answer;
-        Lane part = cut_to_nearest(answer.lane, scene, *cones.nearest);
+        Lane part = cut_to_nearest(answer.lane, scene, *cones.nearest, options_.parameters.d_max);
         if (part.left.empty() || part.right.empty()) {
             return solve(nearest_ahead(scene, *cones.nearest), deadline.remaining_ms());
         }
@@ -62,7 +62,8 @@ class RldDetector : public LaneDetector {
                 .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;
-        answer.status = lane_status(report.status);
+        // A backend that fails keeps a start that is feasible: a lane, and nothing is said of its optimality.
+        answer.status = report.lane_graph ? LaneStatus::found : lane_status(report.status);
         answer.message = report.message;
         answer.stopped_by = report.stopped_by;
         if (answer.status != LaneStatus::found) return answer;
@@ -93,14 +94,6 @@ bool ConeSet::has_context() const {
 
 Scene ConeSet::seen(const Scene& scene) const {
     return nearest ? nearest_ahead(scene, std::max(*nearest, context.value_or(0))) : scene;
-}
-
-std::optional<Lane> lane_in(const ConeSet& cones, const LaneGraph& graph, const Scene& seen) {
-    std::optional<Lane> lane = to_lane(graph, seen);
-    if (!lane || !cones.has_context()) return lane;
-    *lane = cut_to_nearest(std::move(*lane), seen, *cones.nearest);
-    if (lane->left.empty() || lane->right.empty()) return std::nullopt;
-    return lane;
 }
 
 std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,

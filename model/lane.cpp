@@ -8,7 +8,7 @@
 
 namespace conelane {
 
-void even_far_ends(Lane& lane, const Scene& scene) {
+void even_far_ends(Lane& lane, const Scene& scene, double widest_m) {
     if (lane.closed) return;
     std::unordered_map<ConeId, Point> position_of;
     for (const Cone& cone : scene.cones) position_of.emplace(cone.id, cone.position);
@@ -19,8 +19,8 @@ void even_far_ends(Lane& lane, const Scene& scene) {
     };
     std::vector<Point> left = polyline(lane.left);
     std::vector<Point> right = polyline(lane.right);
-    const auto last_too_far = [](const std::vector<Point>& run, const std::vector<Point>& other) {
-        return foot_on_polyline(run.back(), other).distance_m > kWidestLane_m;
+    const auto last_too_far = [widest_m](const std::vector<Point>& run, const std::vector<Point>& other) {
+        return foot_on_polyline(run.back(), other).distance_m > widest_m;
     };
     while (!left.empty() && !right.empty()) {
         if (last_too_far(left, right)) {
@@ -35,7 +35,7 @@ void even_far_ends(Lane& lane, const Scene& scene) {
     lane.right.resize(right.size());
 }
 
-Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest) {
+Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest, double widest_m) {
     std::unordered_set<ConeId> inside;
     for (const Cone& cone : nearest_ahead(scene, nearest).cones) inside.insert(cone.id);
     for (std::vector<ConeId>* run : {&lane.left, &lane.right}) {
@@ -44,7 +44,7 @@ Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest) {
         if (first_outside != run->end()) lane.closed = false;
         run->erase(first_outside, run->end());
     }
-    even_far_ends(lane, scene);
+    even_far_ends(lane, scene, widest_m);
     return lane;
 }
 

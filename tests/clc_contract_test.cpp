@@ -236,7 +236,7 @@ std::vector<Crowd> crowds() {
 }
 
 // CPU time, so that others on the machine do not matter. The slack is for builds that are not optimised: else
-// the overrun is below 2 ms.
+// the searches look at the clock every fraction of a millisecond.
 TEST(ClcContract, TheTimeLimitHoldsInEveryPart) {
     for (const auto& [name, options] : variants()) {
         const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);

@@ -3,6 +3,7 @@
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/checking/lane_graph_search.hpp"
 #include "model/deadline.hpp"
 #include "solvers/path_pair_solver.hpp"
@@ -42,10 +43,8 @@ const RldSolverEntry* other_solver(std::string_view claimant) {
 
 InfeasibilityVerdict ask_solver(const RldSolverEntry& entry, const Scene& scene,
                                 const RldParameters& parameters, double time_limit_ms) {
-    const Deadline deadline(time_limit_ms);
     const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
-    const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
-    const RldReport report = solver->solve(problem, {.time_limit_ms = deadline.remaining_ms()});
+    const RldReport report = solve_scene(*solver, scene, parameters, {.time_limit_ms = time_limit_ms}).report;
     const std::string name(entry.name);
     if (report.lane_graph && check(scene, parameters, *report.lane_graph).violations.empty()) {
         return {Kind::refuted, name, report.lane_graph};

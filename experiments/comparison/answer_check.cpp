@@ -19,7 +19,8 @@ std::string objection(const LaneRecord& record, const Scene& seen, const RldPara
     const Lane& lane = answer.uncut ? answer.uncut->lane : answer.lane;
     const std::optional<LaneGraph> graph = lane_graph_of(lane, seen);
     if (!graph) return "the lane has a cone that the method was not given, or one twice in a row";
-    if (answer.uncut && (!record.nearest || cut_to_nearest(lane, seen, *record.nearest) != answer.lane)) {
+    if (answer.uncut &&
+        (!record.nearest || cut_to_nearest(lane, seen, *record.nearest, parameters.d_max) != answer.lane)) {
         return "the lane is not what the cut to its cone set leaves";
     }
     CheckReport report;

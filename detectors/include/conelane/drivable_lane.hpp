@@ -17,7 +17,7 @@ struct DrivablePoint {
     double heading_rad = 0.0;    ///< of the driving direction, in (-pi, pi], counter-clockwise, 0 along +x
     double curvature_1pm = 0.0;  ///< [1/m], positive in a left bend
     /// Along the normal to the first place where it meets the boundary. Where the boundary has ended, it is
-    /// taken to go on from its end cone parallel to the centre line.
+    /// taken to go on beside the other one, the lane keeping its width.
     double width_left_m = 0.0;
     double width_right_m = 0.0;  ///< in the same way
 };
@@ -60,10 +60,10 @@ struct DrivableOptions {
 /// the centre line that runs within 90 degrees of the car's heading, or the nearest of all where none does.
 /// A lane that begins ahead of the car has it at its beginning.
 ///
-/// An open lane begins where both boundaries have begun and ends where the first of them ends; the longer one
-/// counts as far as it stays within kWidestLane_m of the other. Any lane ends before the first place where it
-/// is narrower than about 0.8 m, where its boundaries cross or where left and right are swapped; a closed one
-/// is then open.
+/// An open lane begins where both boundaries have begun. Where one boundary ends first, the lane goes on
+/// along the other and keeps its width, as far as that stays within kWidestLane_m of the end and does not
+/// pass the line between both ends. Any lane ends before the first place where it is narrower than about 0.8
+/// m, where its boundaries cross or where left and right are swapped; a closed one is then open.
 ///
 /// A lane without extent has no points: one with an empty side, with one cone on either side, shorter than
 /// 0.5 m, or unusable at the foot point. Throws InvalidInput naming the key where an option is out of its

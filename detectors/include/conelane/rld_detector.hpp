@@ -38,8 +38,4 @@ struct RldDetectorOptions {
 [[nodiscard]] std::unique_ptr<LaneDetector> make_rld_detector(std::unique_ptr<RldSolver> solver,
                                                               const RldDetectorOptions& options);
 
-/// The lane of a lane graph over the cones seen, cut to the cone set; nothing where the cut leaves a side
-/// empty or the edges are no lane graph.
-[[nodiscard]] std::optional<Lane> lane_in(const ConeSet& cones, const LaneGraph& graph, const Scene& seen);
-
 }  // namespace conelane
