@@ -31,19 +31,19 @@ class Verification {
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
         if (p_.w_color > 0.0) violated("certificates are for the model without colour costs");
-        prices();
-        cliques();
+        check_multipliers();
+        check_cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);
-        arcs();
+        build_arcs();
         if (!shortest_walks()) {
-            violated("a walk gains from a cycle without end: the prices prove no bound");
+            violated("a walk gains from a cycle without end: the multipliers prove no bound");
             return std::move(verdict_);
         }
         const double bound = combine();
         verdict_.bound = bound;
         if (!(certificate_.bound <= bound + kAgreement)) {
-            violated("the bound " + std::to_string(certificate_.bound) + " is claimed, the prices prove " +
-                     std::to_string(bound));
+            violated("the bound " + std::to_string(certificate_.bound) +
+                     " is claimed, the multipliers prove " + std::to_string(bound));
         }
         return std::move(verdict_);
     }
@@ -52,7 +52,7 @@ class Verification {
     struct Arc {
         std::size_t from;
         std::size_t to;
-        double cost;  ///< reduced, with the price of `to`
+        double cost;  ///< reduced, with the multiplier of the cone `to`
     };
     /// An edge that (27) allows.
     struct AllowedEdge {
@@ -76,18 +76,19 @@ class Verification {
         const double after = (position(k) - position(middle)).norm();
         return square((before - after) / p_.d_t);
     }
-    /// What a walk gains that begins at the cone.
+    /// A walk that begins at the cone gains this.
     [[nodiscard]] double near_end_benefit(std::size_t cone) const {
         const double off_m = std::abs(cross(heading_, position(cone) - scene_.pose.position)) - 0.5 * p_.d_w;
         return p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
     }
 
-    void prices() {
-        if (certificate_.cone_price.size() != scene_.cones.size()) violated("not one price a cone");
-        const auto bad = [](double price) { return !(price >= 0.0 && std::isfinite(price)); };
-        if (std::ranges::any_of(certificate_.cone_price, bad) || bad(certificate_.heading_price) ||
-            std::ranges::any_of(certificate_.cliques, bad, &BoundCertificate::Clique::price)) {
-            violated("a price is negative or not finite");
+    void check_multipliers() {
+        if (certificate_.cone_multiplier.size() != scene_.cones.size())
+            violated("there is not one multiplier for each cone");
+        const auto bad = [](double multiplier) { return !(multiplier >= 0.0 && std::isfinite(multiplier)); };
+        if (std::ranges::any_of(certificate_.cone_multiplier, bad) || bad(certificate_.heading_multiplier) ||
+            std::ranges::any_of(certificate_.cliques, bad, &BoundCertificate::Clique::multiplier)) {
+            violated("a multiplier is negative or not finite");
         }
     }
 
@@ -106,7 +107,7 @@ class Verification {
         return gap.distance_m < p_.d_min - kTieTolerance && !gap.between_ends;
     }
 
-    void cliques() {
+    void check_cliques() {
         for (const BoundCertificate::Clique& clique : certificate_.cliques) {
             for (std::size_t k = 0; k < clique.edges.size(); ++k) {
                 const Edge& edge = clique.edges[k];
@@ -139,7 +140,7 @@ class Verification {
         return edges;
     }
 
-    /// v_ij of formulation.md, by the one of all allowed edges that faces this one best.
+    /// v_ij of formulation.md: the allowed edge that faces this one best decides.
     [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
         double best = 1.0;
         for (const AllowedEdge& other : all) {
@@ -155,10 +156,10 @@ class Verification {
         return best;
     }
 
-    void arcs() {
-        std::map<Edge, double> clique_price;
+    void build_arcs() {
+        std::map<Edge, double> clique_multiplier;
         for (const BoundCertificate::Clique& clique : certificate_.cliques) {
-            for (const Edge& edge : clique.edges) clique_price[edge] += clique.price;
+            for (const Edge& edge : clique.edges) clique_multiplier[edge] += clique.multiplier;
         }
         leaving_.resize(scene_.cones.size());
         const std::vector<AllowedEdge> edges = allowed_edges();
@@ -174,23 +175,23 @@ class Verification {
             const bool along_heading =
                 foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
                 std::atan2(across, std::abs(edge.vector.dot(heading_))) <= p_.theta_heading + kTieTolerance;
-            if (along_heading) cost -= certificate_.heading_price;
-            const auto priced = clique_price.find({edge.i, edge.j});
-            if (priced != clique_price.end()) cost += priced->second;
+            if (along_heading) cost -= certificate_.heading_multiplier;
+            const auto multiplier = clique_multiplier.find({edge.i, edge.j});
+            if (multiplier != clique_multiplier.end()) cost += multiplier->second;
             for (const auto& [from, to] : {std::pair{edge.i, edge.j}, std::pair{edge.j, edge.i}}) {
                 leaving_[from].push_back(arcs_.size());
-                arcs_.push_back({from, to, cost + certificate_.cone_price[to]});
+                arcs_.push_back({from, to, cost + certificate_.cone_multiplier[to]});
             }
         }
     }
 
-    /// Bellman and Ford's rounds; false where they do not end.
+    /// The rounds of Bellman and Ford; false where they do not end.
     bool shortest_walks() {
         walk_.assign(arcs_.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
             const std::size_t from = arcs_[a].from;
             if (!near(from)) continue;
-            walk_[a] = certificate_.cone_price[from] - near_end_benefit(from) + arcs_[a].cost;
+            walk_[a] = certificate_.cone_multiplier[from] - near_end_benefit(from) + arcs_[a].cost;
         }
         for (std::size_t round = 0; round <= arcs_.size(); ++round) {
             bool shorter = false;
@@ -213,7 +214,8 @@ class Verification {
         return false;
     }
 
-    /// Two walks to far cones within d_max of each other, less what the prices promise back.
+    /// The cheapest two walks to far cones within d_max of each other, less the constant part of the relaxed
+    /// constraints.
     [[nodiscard]] double combine() const {
         std::vector<double> best(scene_.cones.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -226,10 +228,10 @@ class Verification {
                 pair = std::min(pair, best[f] + best[g]);
             }
         }
-        double promised = -2.0 * certificate_.heading_price;
-        for (const double price : certificate_.cone_price) promised += price;
-        for (const BoundCertificate::Clique& clique : certificate_.cliques) promised += clique.price;
-        return pair - promised;
+        double constant = -2.0 * certificate_.heading_multiplier;
+        for (const double multiplier : certificate_.cone_multiplier) constant += multiplier;
+        for (const BoundCertificate::Clique& clique : certificate_.cliques) constant += clique.multiplier;
+        return pair - constant;
     }
 
     const Scene& scene_;

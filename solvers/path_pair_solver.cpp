@@ -14,7 +14,7 @@
 namespace conelane {
 namespace {
 
-using namespace path_pair;  // NOLINT(google-build-using-namespace): this is its face
+using namespace path_pair;  // NOLINT(google-build-using-namespace): this file is its interface
 
 // Labels are exact to less than this, so smaller gaps cannot be told from none.
 constexpr double kLeastGap = 1e-10;
@@ -52,12 +52,12 @@ class PathPairSolver : public RldSolver {
         near_to_far(problem);
         BoundCertificate certificate;
         certificate.bound = search_.run_root(system_, kLeastGap, [&deadline] { return deadline.passed(); });
-        const Prices& prices = search_.root_prices();
-        certificate.cone_price = prices.cone;
-        certificate.heading_price = prices.heading;
-        for (std::size_t q = 0; q < prices.clique.size(); ++q) {
-            if (prices.clique[q] <= 0.0) continue;
-            BoundCertificate::Clique clique{{}, prices.clique[q]};
+        const Multipliers& multipliers = search_.root_multipliers();
+        certificate.cone_multiplier = multipliers.cone;
+        certificate.heading_multiplier = multipliers.heading;
+        for (std::size_t q = 0; q < multipliers.clique.size(); ++q) {
+            if (multipliers.clique[q] <= 0.0) continue;
+            BoundCertificate::Clique clique{{}, multipliers.clique[q]};
             for (const int edge : search_.cliques().edges(static_cast<int>(q))) {
                 const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
                 clique.edges.push_back({e.i, e.j});
@@ -181,7 +181,7 @@ class PathPairSolver : public RldSolver {
 }  // namespace
 
 BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time_limit_ms) {
-    // Prices alone have to carry the bound: nothing may be dropped by the incumbent.
+    // The multipliers alone have to carry the bound, so the incumbent must not drop anything.
     PathPairOptions options;
     options.fix_arcs = false;
     options.search_fronts = false;

@@ -10,21 +10,21 @@ namespace conelane {
 
 /// Stages of `path-pair`. The answer is the same with each of them off; it takes longer.
 struct PathPairOptions {
-    bool fix_arcs = true;          ///< drop arcs whose reduced-cost bound reaches the incumbent
-    bool clique_prices = true;     ///< price cliques of incompatible edges, not cones alone
-    bool complete_walks = true;    ///< look for incumbents around the relaxation's walks
-    bool search_fronts = true;     ///< end nodes by the search on fronts, not by branching to the last edge
-    bool drop_sure_losses = true;  ///< there, drop what every way up to it or on from it excludes
-    int root_steps = 150;          ///< most ascent steps at the root
-    int node_steps = 30;           ///< and at each other node
+    bool fix_arcs = true;            ///< drop arcs whose reduced-cost bound reaches the incumbent
+    bool clique_multipliers = true;  ///< multipliers on cliques of incompatible edges, not on cones alone
+    bool complete_walks = true;      ///< complete the relaxation's walks to incumbents
+    bool search_fronts = true;       ///< end nodes by the search on fronts, not by branching to the last edge
+    bool drop_dominated_edges = true;  ///< there, drop what every way up to a front, or on, excludes
+    int root_steps = 150;              ///< most ascent steps at the root
+    int node_steps = 30;               ///< and at each other node
 };
 
 /// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its
 /// workspace and reuses it from call to call. A gap below 1e-10 counts as 1e-10.
 [[nodiscard]] std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options = {});
 
-/// Prices and cliques that prove a lower bound for the pairing near_far, for `verify_bound`: those of the
-/// root, of a search that rests on prices alone, so its bound may be below the solver's own.
+/// Multipliers and cliques that prove a lower bound for the pairing near_far, for `verify_bound`. They are
+/// the root's. The multipliers alone carry this bound, so it may be below the solver's own.
 [[nodiscard]] BoundCertificate certify_root_bound(
     const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 

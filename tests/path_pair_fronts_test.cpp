@@ -3,12 +3,12 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
-#include "solvers/path_pair/sure_losses.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
-/// The fronts of a problem at prices drawn at random.
+/// The fronts of a problem, with random multipliers.
 struct Fronts {
     Fronts(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
         graph.build(problem, clock);
@@ -43,18 +43,18 @@ struct Fronts {
         relaxation.bind(graph, system, cliques, decisions, clock);
         boost::random::mt19937_64 random(seed);
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
-            prices.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
+            multipliers.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
         }
-        leg_bound = relaxation.evaluate(residual, prices);
+        leg_bound = relaxation.evaluate(residual, multipliers);
         edges.assign(graph, residual, clock);
-        losses.find(residual, relaxation, edges, true, clock);
+        dominated.find(residual, relaxation, edges, true, clock);
         fronts.bind(relaxation, stopped);
         search.bind(graph, relaxation, incumbent);
         incumbent.reset(graph, 1e6);
     }
 
     bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
-        return fronts.build(residual, losses, limit, most_fronts);
+        return fronts.build(residual, dominated, limit, most_fronts);
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -109,11 +109,11 @@ struct Fronts {
     LegSystem system;
     CliquePool cliques;
     Decisions decisions;
-    Prices prices;
+    Multipliers multipliers;
     PairRelaxation relaxation;
     double leg_bound = 0.0;
     EdgeSets edges;
-    SureLosses losses;
+    DominatedEdges dominated;
     FrontGraph fronts;
     Incumbent incumbent;
     FrontSearch search;
@@ -136,20 +136,20 @@ LaneGraphProblem straight_problem() {
     return make_problem(scene, {});
 }
 
-// Whoever is on 4 -> 6 has come over 0, 2 and 4: the edge {0, 2} is lost to the other boundary, though it has
-// no cone in common with {4, 6} and is not too close to it.
-TEST(PathPairSureLosses, FollowedByHandOnAStraightLane) {
+// A leg on 4 -> 6 has come over 0, 2 and 4. So {0, 2} is dominated: the other leg cannot use it, though it
+// has no cone in common with {4, 6} and is not too close to it.
+TEST(PathPairDominatedEdges, FollowedByHandOnAStraightLane) {
     Fronts s(straight_problem(), 1);
     const int late = s.arc(4, 6);
     const int early = s.arc(0, 2);
     const int opposite = s.arc(1, 3);
-    EXPECT_FALSE(s.losses.may_pair(0, late, 0, early, true));
-    EXPECT_TRUE(s.losses.may_pair(0, late, 0, opposite, true));
-    s.losses.find(s.residual, s.relaxation, s.edges, false, s.clock);
-    EXPECT_TRUE(s.losses.may_pair(0, late, 0, early, true));
+    EXPECT_FALSE(s.dominated.may_pair(0, late, 0, early, true));
+    EXPECT_TRUE(s.dominated.may_pair(0, late, 0, opposite, true));
+    s.dominated.find(s.residual, s.relaxation, s.edges, false, s.clock);
+    EXPECT_TRUE(s.dominated.may_pair(0, late, 0, early, true));
 }
 
-TEST(PathPairSureLosses, LetEveryPairOfLegsPass) {
+TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
     std::size_t pairs = 0;
     int dropped = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -161,19 +161,19 @@ TEST(PathPairSureLosses, LetEveryPairOfLegsPass) {
                 if (!s.are_pair(first, second)) continue;
                 ++pairs;
                 for (std::size_t k = 0; k + 1 < first.size(); ++k) {
-                    ASSERT_TRUE(s.losses.may_follow(0, first[k], first[k + 1]));
+                    ASSERT_TRUE(s.dominated.may_follow(0, first[k], first[k + 1]));
                 }
                 for (const int a : first) {
-                    for (const int b : second) ASSERT_TRUE(s.losses.may_pair(0, a, 0, b, false));
+                    for (const int b : second) ASSERT_TRUE(s.dominated.may_pair(0, a, 0, b, false));
                 }
             }
         }
-        SureLosses alone;
+        DominatedEdges alone;
         SearchClock clock;
         alone.find(s.residual, s.relaxation, s.edges, false, clock);
         for (int a = 0; a < s.residual.size(); ++a) {
             for (int b = 0; b < s.residual.size(); ++b) {
-                const bool passes = s.losses.may_pair(0, a, 0, b, false);
+                const bool passes = s.dominated.may_pair(0, a, 0, b, false);
                 dropped += alone.may_pair(0, a, 0, b, false) && !passes ? 1 : 0;
             }
         }
@@ -182,7 +182,7 @@ TEST(PathPairSureLosses, LetEveryPairOfLegsPass) {
     EXPECT_GT(dropped, 1000);
 }
 
-/// Between the bound of single legs and the optimum, with sure losses and without.
+/// The fronts' bound lies between that of single legs and the optimum, with dominated edges and without.
 TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
@@ -197,7 +197,7 @@ TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
         const double bound = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
         EXPECT_GE(bound, s.leg_bound - 1e-9);
         EXPECT_LE(bound, optimum + 1e-9);
-        s.fronts.drop_sure_losses(s.edges);
+        s.fronts.drop_dominated_edges(s.edges);
         s.fronts.find_forward();
         const double thinned = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
         EXPECT_GE(thinned, bound - 1e-9);

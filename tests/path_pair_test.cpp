@@ -11,7 +11,7 @@
 #include "solvers/path_pair/clique_separation.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"
 #include "solvers/path_pair/leg_search.hpp"
-#include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"
 
@@ -29,32 +29,32 @@
 namespace conelane::path_pair {
 namespace {
 
-/// A scene's arcs with prices under which no cycle pays, and legs from the near cones to the far ones.
-struct PricedScene {
-    explicit PricedScene(std::uint64_t seed, std::size_t cones = 9) {
+/// A scene's arcs with multipliers such that no cycle costs less than 0, and legs from near to far cones.
+struct SceneWithMultipliers {
+    explicit SceneWithMultipliers(std::uint64_t seed, std::size_t cones = 9) {
         const Scene scene = tests::random_scene(seed, cones);
         graph.build(make_problem(scene, {}), clock);
         std::vector<char> near;
         for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
         residual.assign(graph, near);
-        prices.cone.assign(cones, 0.0);
+        multipliers.cone.assign(cones, 0.0);
         boost::random::mt19937_64 random(seed);
-        for (double& price : prices.cone) {
-            price = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
+        for (double& multiplier : multipliers.cone) {
+            multiplier = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
         }
         do {
-            reduce(graph, cliques, prices, residual, edge_price, reduced);
+            reduce(graph, cliques, multipliers, residual, edge_multiplier, reduced);
             start.clear();
             end.clear();
             for (int a = 0; a < residual.size(); ++a) {
                 const std::size_t at = static_cast<std::size_t>(a);
                 const int tail = residual.tail[at];
-                start.push_back(graph.near(tail) ? prices.cone[static_cast<std::size_t>(tail)]
+                start.push_back(graph.near(tail) ? multipliers.cone[static_cast<std::size_t>(tail)]
                                                  : kUnreachable);
                 end.push_back(graph.near(residual.head[at]) ? kUnreachable : 0.25);
             }
             if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
-            raise_cycle(residual, cycle, reduced, prices.cone);
+            raise_cycle(residual, cycle, reduced, multipliers.cone);
             ++raised;
         } while (true);
         bounds.backward(residual, reduced, end, std::vector<char>(residual.arc.size(), 1), backward);
@@ -95,9 +95,9 @@ struct PricedScene {
     ArcGraph graph;
     ResidualGraph residual;
     CliquePool cliques;
-    Prices prices;
+    Multipliers multipliers;
     LegBounds bounds;
-    std::vector<double> edge_price, reduced, start, end, forward, backward;
+    std::vector<double> edge_multiplier, reduced, start, end, forward, backward;
     std::vector<int> before, cycle;
     int raised = 0;
 };
@@ -106,7 +106,7 @@ TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
     int legs = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        const PricedScene s(seed);
+        const SceneWithMultipliers s(seed);
         s.for_each_leg([&](const std::vector<int>& leg, double cost) {
             ++legs;
             for (const int a : leg) {
@@ -120,7 +120,7 @@ TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
 
 TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-        const PricedScene s(seed, 14);
+        const SceneWithMultipliers s(seed, 14);
         double forth = kUnreachable;
         double back = kUnreachable;
         for (std::size_t a = 0; a < s.residual.arc.size(); ++a) {
@@ -135,7 +135,8 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     }
 }
 
-/// A far square of cones whose loop pays: its prices rise until it does not, and no further.
+/// A loop over a far square of cones costs less than 0: its multipliers rise until it costs 0, and no
+/// further.
 TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     RldParameters parameters;
     parameters.theta_t = 2.0;
@@ -149,31 +150,31 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     graph.build(make_problem(scene, parameters), clock);
     ResidualGraph residual;
     residual.assign(graph, std::vector<char>{1, 0, 0, 0});
-    Prices prices;
-    prices.cone.assign(4, 0.0);
+    Multipliers multipliers;
+    multipliers.cone.assign(4, 0.0);
     LegBounds bounds;
-    std::vector<double> edge_price, reduced, forward;
+    std::vector<double> edge_multiplier, reduced, forward;
     std::vector<int> before, cycle;
     int raised = 0;
     while (true) {
-        reduce(graph, {}, prices, residual, edge_price, reduced);
+        reduce(graph, {}, multipliers, residual, edge_multiplier, reduced);
         std::vector<double> start(residual.arc.size(), kUnreachable);
         for (std::size_t a = 0; a < start.size(); ++a) {
-            if (residual.tail[a] == 0) start[a] = prices.cone[0];
+            if (residual.tail[a] == 0) start[a] = multipliers.cone[0];
         }
         if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
-        raise_cycle(residual, cycle, reduced, prices.cone);
+        raise_cycle(residual, cycle, reduced, multipliers.cone);
         ASSERT_LT(++raised, 20);
     }
     EXPECT_GT(raised, 0);
-    for (const double price : prices.cone) EXPECT_LT(price, 1.0);
+    for (const double multiplier : multipliers.cone) EXPECT_LT(multiplier, 1.0);
 }
 
 TEST(PathPairLegSearch, FindsTheLegsThatBruteForceFinds) {
     LegSearch search;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        const PricedScene s(seed);
+        const SceneWithMultipliers s(seed);
         double best = kUnreachable;
         s.for_each_leg([&](const std::vector<int>&, double cost) { best = std::min(best, cost); });
         const double cutoff = best + 0.5;
@@ -191,19 +192,19 @@ TEST(PathPairLegSearch, FindsTheLegsThatBruteForceFinds) {
     }
 }
 
-/// With prices, a leg costs its own cost plus the prices of what it uses.
-TEST(PathPairPrices, ReducedCostOfALegIsItsCostPlusWhatItUses) {
+/// The reduced cost of a leg is its own cost plus the multipliers of what it uses.
+TEST(PathPairMultipliers, ReducedCostOfALegIsItsCostPlusWhatItUses) {
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
-        PricedScene s(seed);
+        SceneWithMultipliers s(seed);
         s.for_each_leg([&](const std::vector<int>& leg, double cost) {
             double sum =
                 s.end[static_cast<std::size_t>(leg.back())] +
-                s.prices
+                s.multipliers
                     .cone[static_cast<std::size_t>(s.residual.tail[static_cast<std::size_t>(leg.front())])];
             for (std::size_t k = 0; k < leg.size(); ++k) {
                 const std::size_t at = static_cast<std::size_t>(leg[k]);
                 sum += s.graph.cost(s.residual.edge(leg[k])) +
-                       s.prices.cone[static_cast<std::size_t>(s.residual.head[at])];
+                       s.multipliers.cone[static_cast<std::size_t>(s.residual.head[at])];
                 if (k > 0) {
                     sum += s.graph.turn_cost(s.residual.arc[static_cast<std::size_t>(leg[k - 1])],
                                              s.residual.arc[at]);
@@ -218,7 +219,7 @@ TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
     int found = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        const PricedScene s(seed, 20);
+        const SceneWithMultipliers s(seed, 20);
         const std::size_t edges = static_cast<std::size_t>(s.graph.edge_count());
         boost::random::mt19937_64 random(seed);
         std::vector<double> use;
@@ -279,12 +280,12 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
     std::vector<PathPairOptions> ablations(6);
     ablations[0].fix_arcs = false;
-    ablations[1].clique_prices = false;
+    ablations[1].clique_multipliers = false;
     ablations[2].complete_walks = false;
     ablations[3].search_fronts = false;
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
-    ablations[5].drop_sure_losses = false;
+    ablations[5].drop_dominated_edges = false;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
@@ -443,7 +444,7 @@ TEST(PathPair, TakesLargeConeSets) {
 }
 
 /// The verifier finds the root's bound again from the scene, below the optimum, and refuses a higher claim, a
-/// price below zero and a clique that is none.
+/// multiplier below zero and a clique that is none.
 TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
     for (const RldParameters& parameters : {RldParameters{}, with_shape_costs({})}) {
@@ -469,11 +470,11 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
             for (const BoundCertificate::Clique& clique : certificate.cliques) {
                 // An edge does not exclude itself.
                 BoundCertificate wrong = certificate;
-                wrong.cliques = {{{clique.edges.front(), clique.edges.front()}, clique.price}};
+                wrong.cliques = {{{clique.edges.front(), clique.edges.front()}, clique.multiplier}};
                 EXPECT_FALSE(verify_bound(scene, parameters, wrong).violations.empty());
                 ++forged_cliques;
             }
-            certificate.cone_price.front() = -0.1;
+            certificate.cone_multiplier.front() = -0.1;
             EXPECT_FALSE(verify_bound(scene, parameters, certificate).violations.empty());
         }
         EXPECT_GT(forged_cliques, 0);

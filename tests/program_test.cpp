@@ -538,16 +538,16 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
 
-    // A bound that is higher by 1, a price below zero, a clique of edges that may go together.
+    // A bound that is higher by 1, a multiplier below zero, a clique of edges that may go together.
     std::string first_line = text_of(path("s.certificates.jsonl"));
     first_line.resize(first_line.find('\n'));
     const nlohmann::json certificate = nlohmann::json::parse(first_line);
     std::vector<nlohmann::json> forgeries(4, certificate);
     forgeries[0]["bound"] = certificate["bound"].get<double>() + 1.0;
     forgeries[1]["heading_price"] = -0.1;
-    const nlohmann::json& prices = certificate["cone_prices"];
-    ASSERT_GE(prices.size(), 2U);
-    const nlohmann::json edge{prices[0][0], prices[1][0]};  // which does not exclude itself
+    const nlohmann::json& multipliers = certificate["cone_prices"];
+    ASSERT_GE(multipliers.size(), 2U);
+    const nlohmann::json edge{multipliers[0][0], multipliers[1][0]};  // which does not exclude itself
     forgeries[2]["cliques"].push_back({{"price", 0.1}, {"edges", {edge, edge}}});
     forgeries[3]["cone_prices"][0][0] = 123456;
     for (const nlohmann::json& forgery : forgeries) {

@@ -36,14 +36,14 @@ Scene cone_set(const Options& options, const Scene& scene) {
 }
 
 CertificateRecord to_record(const Scene& scene, const BoundCertificate& certificate) {
-    CertificateRecord record{scene.id, {}, {}, certificate.heading_price, certificate.bound};
+    CertificateRecord record{scene.id, {}, {}, certificate.heading_multiplier, certificate.bound};
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
-        if (certificate.cone_price[i] == 0.0) continue;
-        record.cone_prices.emplace_back(scene.cones[i].id, certificate.cone_price[i]);
+        if (certificate.cone_multiplier[i] == 0.0) continue;
+        record.cone_multipliers.emplace_back(scene.cones[i].id, certificate.cone_multiplier[i]);
     }
     for (const BoundCertificate::Clique& clique : certificate.cliques) {
         CertificateRecord::Clique& listed = record.cliques.emplace_back();
-        listed.price = clique.price;
+        listed.multiplier = clique.multiplier;
         for (const Edge& edge : clique.edges) {
             listed.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
         }
@@ -51,7 +51,7 @@ CertificateRecord to_record(const Scene& scene, const BoundCertificate& certific
     return record;
 }
 
-/// Nothing where the record names a cone that the scene has not; `missing` is its id then.
+/// Nothing where the record names a cone that is not in the scene; `missing` is then its id.
 std::optional<BoundCertificate> from_record(const Scene& scene, const CertificateRecord& record,
                                             ConeId& missing) {
     const auto index_of = index_by_id(scene);
@@ -60,14 +60,14 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
         return index_of.contains(id);
     };
     BoundCertificate certificate{
-        std::vector<double>(scene.cones.size(), 0.0), {}, record.heading_price, record.bound};
-    for (const auto& [id, price] : record.cone_prices) {
+        std::vector<double>(scene.cones.size(), 0.0), {}, record.heading_multiplier, record.bound};
+    for (const auto& [id, multiplier] : record.cone_multipliers) {
         if (!known(id)) return std::nullopt;
-        certificate.cone_price[index_of.at(id)] += price;
+        certificate.cone_multiplier[index_of.at(id)] += multiplier;
     }
     for (const CertificateRecord::Clique& listed : record.cliques) {
         BoundCertificate::Clique& clique = certificate.cliques.emplace_back();
-        clique.price = listed.price;
+        clique.multiplier = listed.multiplier;
         for (const auto& [a, b] : listed.edges) {
             if (!known(a) || !known(b)) return std::nullopt;
             clique.edges.push_back(make_edge(index_of.at(a), index_of.at(b)));
@@ -124,10 +124,10 @@ void verify(const Options& options, const RldParameters& parameters) {
 }  // namespace
 
 void add_certify_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand(
-        "certify",
-        "prices that prove a lower bound of each scene's optimum; --verify recomputes such bounds "
-        "independently of the solver, exit code 1 on a failure");
+    CLI::App& command = *program.add_subcommand("certify",
+                                                "Lagrange multipliers that prove a lower bound of each "
+                                                "scene's optimum; --verify recomputes such bounds "
+                                                "independently of the solver, exit code 1 on a failure");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");

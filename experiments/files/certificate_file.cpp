@@ -10,7 +10,7 @@ using nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A pair of two elements; `what` says of what.
+/// Two elements; `what` names them in the message.
 std::pair<JsonNode, JsonNode> read_pair(const JsonNode& json, const std::string& what) {
     if (json.array_size() != 2) json.fail("must be a pair of " + what);
     return {json.element(0), json.element(1)};
@@ -37,11 +37,11 @@ CertificateRecord read_record(const JsonNode& json) {
         if (bound) bound->fail("must be left out where the scene is called infeasible");
         record.bound = kInfinity;
     }
-    record.heading_price = json.member("heading_price").number();
-    const JsonNode prices = json.member("cone_prices");
-    for (std::size_t k = 0; k < prices.array_size(); ++k) {
-        const auto [cone, price] = read_pair(prices.element(k), "cone id and price");
-        record.cone_prices.emplace_back(cone.integer(), price.number());
+    record.heading_multiplier = json.member("heading_price").number();
+    const JsonNode multipliers = json.member("cone_prices");
+    for (std::size_t k = 0; k < multipliers.array_size(); ++k) {
+        const auto [cone, multiplier] = read_pair(multipliers.element(k), "cone id and multiplier");
+        record.cone_multipliers.emplace_back(cone.integer(), multiplier.number());
     }
     const JsonNode cliques = json.member("cliques");
     for (std::size_t k = 0; k < cliques.array_size(); ++k) {
@@ -51,16 +51,16 @@ CertificateRecord read_record(const JsonNode& json) {
 }
 
 ordered_json to_json(const CertificateRecord& record, const std::string& key) {
-    ordered_json prices = ordered_json::array();
-    for (const auto& [cone, price] : record.cone_prices) {
-        prices.push_back(ordered_json::array({cone, require_finite(price, key + "cone_prices")}));
+    ordered_json multipliers = ordered_json::array();
+    for (const auto& [cone, multiplier] : record.cone_multipliers) {
+        multipliers.push_back(ordered_json::array({cone, require_finite(multiplier, key + "cone_prices")}));
     }
     ordered_json cliques = ordered_json::array();
     for (const CertificateRecord::Clique& clique : record.cliques) {
         ordered_json edges = ordered_json::array();
         for (const auto& [i, j] : clique.edges) edges.push_back(ordered_json::array({i, j}));
         cliques.push_back(
-            {{"price", require_finite(clique.price, key + "cliques")}, {"edges", std::move(edges)}});
+            {{"price", require_finite(clique.multiplier, key + "cliques")}, {"edges", std::move(edges)}});
     }
     ordered_json json{{"scene", record.scene}};
     if (record.bound == kInfinity) {
@@ -68,8 +68,8 @@ ordered_json to_json(const CertificateRecord& record, const std::string& key) {
     } else {
         put_bound(json, record.bound, key + "bound");
     }
-    json["heading_price"] = require_finite(record.heading_price, key + "heading_price");
-    json["cone_prices"] = std::move(prices);
+    json["heading_price"] = require_finite(record.heading_multiplier, key + "heading_price");
+    json["cone_prices"] = std::move(multipliers);
     json["cliques"] = std::move(cliques);
     return json;
 }

@@ -12,27 +12,29 @@
 
 namespace conelane::experiments {
 
-/// A line of a `*.certificates.jsonl` file: prices that prove a lower bound of a scene's optimum, see
-/// BoundCertificate, with cones by id. What is not listed has the price 0.
+/// A line of a `*.certificates.jsonl` file: multipliers that prove a lower bound of a scene's optimum, see
+/// BoundCertificate, with cones by id. What is not listed has the multiplier 0. The keys of the file call a
+/// multiplier `price`.
 struct CertificateRecord {
     struct Clique {
         std::vector<std::pair<ConeId, ConeId>> edges;
-        double price;
+        double multiplier;
     };
     std::string scene;
-    std::vector<std::pair<ConeId, double>> cone_prices;
+    std::vector<std::pair<ConeId, double>> cone_multipliers;
     std::vector<Clique> cliques;
-    double heading_price = 0.0;
-    /// Infinite where the prices prove that there is no lane graph, minus infinity where nothing is claimed.
+    double heading_multiplier = 0.0;
+    /// Infinite where the multipliers prove that no lane graph exists, minus infinity where nothing is
+    /// claimed.
     double bound = -std::numeric_limits<double>::infinity();
-    std::size_t line = 0;  ///< in the file that was read; 0: none was
+    std::size_t line = 0;  ///< in the file that was read; 0 where no file was read
 };
 
 /// Records in the order of the file. Throws InputError naming file, line and key.
 [[nodiscard]] std::vector<CertificateRecord> read_certificates(const std::filesystem::path& file);
 
-/// Throws InvalidInput where a price is not finite, InputError where the file cannot be written; then an old
-/// file stays as it was.
+/// Throws InvalidInput where a multiplier is not finite, InputError where the file cannot be written. An old
+/// file then stays as it was.
 void write_certificates(const std::filesystem::path& file, std::span<const CertificateRecord> records);
 
 }  // namespace conelane::experiments

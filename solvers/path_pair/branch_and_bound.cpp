@@ -17,11 +17,10 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
-constexpr double kWorthwhile = 0.8;        ///< of the gap at which the fronts were too many, to try again
-constexpr std::int64_t kFewFronts = 2000;  ///< of the first try
-constexpr std::int64_t kWorkPerFront =
-    30;  ///< label updates of the ascent that a front may take the place of
-constexpr std::size_t kMostFronts = 100000;         ///< before a node branches
+constexpr double kWorthwhile = 0.8;          ///< of the gap at which the fronts were too many, to try again
+constexpr std::int64_t kFewFronts = 2000;    ///< of the first try
+constexpr std::int64_t kWorkPerFront = 30;   ///< label updates of the ascent that allow one front
+constexpr std::size_t kMostFronts = 100000;  ///< of the last try, before a node branches
 constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
 constexpr std::size_t kMostLabels = 500000;
 constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
@@ -33,7 +32,6 @@ constexpr int kNearArcs = 100;
 constexpr int kRestSteps = 2;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
-constexpr double kStepScale = 1.0;
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -83,22 +81,22 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     }
     Node& root = node(0);
     root.graph.assign(graph_, starting);
-    root.prices.cone.assign(at(graph_.cone_count()), 0.0);
-    root.prices.clique.clear();
-    root.prices.heading = 0.0;
+    root.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
+    root.multipliers.clique.clear();
+    root.multipliers.heading = 0.0;
     open_bound_ = kUnreachable;
 }
 
-/// In a large graph first the arcs that a leg reaches first: their best pair is one of the whole.
+/// A large graph is first searched on the arcs that a leg reaches first: their best pair is an incumbent.
 void BranchAndBound::begin_near() {
     const ResidualGraph& whole = node(0).graph;
     if (whole.size() < kLargeGraph) return;
     order_.resize(at(kNearArcs));
     std::iota(order_.begin(), order_.end(), 0);
-    keep_out_.assign(whole.out_arc.size(), 1);
+    keep_successor_.assign(whole.out_arc.size(), 1);
     Node& near = node(1);
-    near.graph.filter(whole, order_, keep_out_, index_);
-    near.prices = node(0).prices;
+    near.graph.filter(whole, order_, keep_successor_, index_);
+    near.multipliers = node(0).multipliers;
     double bound = -kUnreachable;
     ascend(1, bound, options_.node_steps);
     std::ranges::fill(edge_use_, 0.0);
@@ -114,13 +112,13 @@ void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
         return;
     }
     const Branching branching = choose(node(depth).graph);
-    // An end: first all pairs that have it, then the rest, bounded by the same prices until its turn comes.
+    // On an end: first all pairs that have it, then the rest, from the same multipliers.
     const bool on_end = branching.on == Branching::On::end;
     const bool in_first = on_end || branching.use >= 0.4;
     for (const bool in : {in_first, !in_first}) {
         Node& child = node(depth + 1);
         branch(node(depth).graph, branching, in, child.graph);
-        child.prices = node(depth).prices;
+        child.multipliers = node(depth).multipliers;
         decide(branching, in, false);
         explore(depth + 1, bound, on_end && !in ? kRestSteps : options_.node_steps);
         decide(branching, in, true);
@@ -134,82 +132,36 @@ void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
 
 BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound, int most_steps) {
     Node& here = node(depth);
-    prices_ = here.prices;
-    prices_.clique.resize(at(cliques_.size()), 0.0);
-    // A required cone's price has no sign, others' have one.
-    for (std::size_t v = 0; v < prices_.cone.size(); ++v) {
-        if (decisions_.visited()[v] == 0) prices_.cone[v] = std::max(0.0, prices_.cone[v]);
-    }
-    ascent_.restart(prices_);
-    double best = -kUnreachable;
-    double scale = kStepScale;
-    int since_best = 0;
-    int next_try = 0;
+    begin_ascent(here);
+    AscentState state;
     // The root looks for an incumbent of its own, whatever its near part found.
-    const double first_cutoff = depth == 0 ? incumbent_.cutoff() : kUnreachable;
-    const auto has_incumbent = [&] { return incumbent_.found() && incumbent_.cutoff() < first_cutoff; };
-    std::int64_t work = 0;             // label updates, about
-    double failed_gap = kUnreachable;  // at which the fronts were too many
-    for (int step = 0;; ++step) {
+    if (depth == 0) state.first_cutoff = incumbent_.cutoff();
+    for (;; ++state.step) {
         if (stopped_()) return Verdict::stopped;
-        const double value = relaxation_.evaluate(here.graph, prices_);
-        if (value == -kUnreachable) return Verdict::stopped;
-        work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
-        if (value > best + kLeastGain * std::abs(incumbent_.cutoff() - best)) {
-            since_best = 0;
-        } else {
-            ++since_best;
-        }
-        if (value > best) {
-            best = value;
-            here.prices = prices_;
-        }
-        bound = std::max(bound, value);
-        if (value >= cutoff()) return Verdict::closed;
+        state.value = relaxation_.evaluate(here.graph, multipliers_);
+        if (state.value == -kUnreachable) return Verdict::stopped;
+        note_value(here, state);
+        bound = std::max(bound, state.value);
+        if (state.value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         if (clock_.struck()) return Verdict::stopped;
         count_usage(here.graph);
-        if (options_.complete_walks) {
-            if (step == next_try) {
-                const double before = incumbent_.cutoff();
-                const std::array<std::vector<int>, 2>& walks = relaxation_.walks(here.graph);
-                for (int leg = 0; leg < 2; ++leg) {
-                    completion_.complete(here.graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)],
-                                         tolerance_, has_incumbent() ? kTries : kFirstTries);
-                }
-                next_try = step + (!has_incumbent() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + step / 2);
-            }
+        if (options_.complete_walks && state.step == state.next_completion) complete_walks(here.graph, state);
+        if (state.value >= cutoff()) return Verdict::closed;
+        state.last = state.step + 1 >= most_steps || state.scale < kLeastScale;
+        if (state.last) {
+            take_best_multipliers(here);
+            if (relaxation_.evaluate(here.graph, multipliers_) == -kUnreachable) return Verdict::stopped;
         }
-        if (value >= cutoff()) return Verdict::closed;
-        const bool last = step + 1 >= most_steps || scale < kLeastScale;
-        if (last) {
-            prices_ = here.prices;
-            prices_.clique.resize(at(cliques_.size()), 0.0);
-            if (relaxation_.evaluate(here.graph, prices_) == -kUnreachable) return Verdict::stopped;
-        }
-        if (options_.search_fronts && (step == 1 || step % 4 == 3 || last) &&
-            (last || cutoff() - value < kWorthwhile * failed_gap)) {
-            const std::size_t most_fronts =
-                last ? kMostFronts : static_cast<std::size_t>(std::max(kFewFronts, work / kWorkPerFront));
-            const Verdict verdict = search_fronts(here.graph, most_fronts, kMostLabels);
+        if (options_.search_fronts) {
+            const Verdict verdict = try_fronts(here.graph, state);
             if (verdict != Verdict::open) return verdict;
-            failed_gap = cutoff() - value;
-            work = 0;
         }
-        if (last) break;
-        if (since_best >= kPatience) {
-            // Too far: from the best prices again, in shorter steps.
-            since_best = 0;
-            scale *= 0.5;
-            prices_ = here.prices;
-            prices_.clique.resize(at(cliques_.size()), 0.0);
-            ascent_.restart(prices_);
-        } else {
-            ascent_.step(prices_, usage_, decisions_.visited(), incumbent_.cutoff() - value, scale);
-        }
+        if (state.last) break;
+        move_multipliers(here, state);
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
-        if (options_.clique_prices && step % kStepsPerRound == kStepsPerRound - 1) {
-            separate(here.graph, prices_);
+        if (options_.clique_multipliers && state.step % kStepsPerRound == kStepsPerRound - 1) {
+            separate(here.graph, multipliers_);
         }
     }
     // With every edge decided nothing is left to branch on: one pair of paths at most.
@@ -217,23 +169,88 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     return search_fronts(here.graph, kAny, kAny);
 }
 
+void BranchAndBound::take_best_multipliers(const Node& here) {
+    multipliers_ = here.multipliers;
+    multipliers_.clique.resize(at(cliques_.size()), 0.0);
+}
+
+void BranchAndBound::begin_ascent(const Node& here) {
+    take_best_multipliers(here);
+    // Only a required cone's multiplier may be negative.
+    for (std::size_t v = 0; v < multipliers_.cone.size(); ++v) {
+        if (decisions_.visited()[v] == 0) multipliers_.cone[v] = std::max(0.0, multipliers_.cone[v]);
+    }
+    ascent_.restart(multipliers_);
+}
+
+void BranchAndBound::note_value(Node& here, AscentState& state) {
+    state.work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
+    if (state.value > state.best + kLeastGain * std::abs(incumbent_.cutoff() - state.best)) {
+        state.since_best = 0;
+    } else {
+        ++state.since_best;
+    }
+    if (state.value > state.best) {
+        state.best = state.value;
+        here.multipliers = multipliers_;
+    }
+}
+
+void BranchAndBound::complete_walks(const ResidualGraph& graph, AscentState& state) {
+    const auto has_incumbent = [&] { return incumbent_.found() && incumbent_.cutoff() < state.first_cutoff; };
+    const double before = incumbent_.cutoff();
+    const std::array<std::vector<int>, 2>& walks = relaxation_.walks(graph);
+    for (int leg = 0; leg < 2; ++leg) {
+        completion_.complete(graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)], tolerance_,
+                             has_incumbent() ? kTries : kFirstTries);
+    }
+    const int wait = !has_incumbent() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + state.step / 2;
+    state.next_completion = state.step + wait;
+}
+
+BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, AscentState& state) {
+    const bool due = state.step == 1 || state.step % 4 == 3;
+    const bool promising = due && cutoff() - state.value < kWorthwhile * state.failed_gap;
+    if (!state.last && !promising) return Verdict::open;
+    const auto work_done = static_cast<std::size_t>(std::max(kFewFronts, state.work / kWorkPerFront));
+    const Verdict verdict = search_fronts(graph, state.last ? kMostFronts : work_done, kMostLabels);
+    if (verdict == Verdict::open) {
+        state.failed_gap = cutoff() - state.value;
+        state.work = 0;
+    }
+    return verdict;
+}
+
+void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
+    if (state.since_best < kPatience) {
+        ascent_.step(multipliers_, usage_, decisions_.visited(), incumbent_.cutoff() - state.value,
+                     state.scale);
+        return;
+    }
+    // The steps were too long: shorter ones, from the best multipliers.
+    state.since_best = 0;
+    state.scale *= 0.5;
+    take_best_multipliers(here);
+    ascent_.restart(multipliers_);
+}
+
 BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
                                                       std::size_t most_labels) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
     edge_sets_.assign(graph_, graph, clock_);
     if (clock_.struck()) return Verdict::stopped;
-    sure_losses_.find(graph, relaxation_, edge_sets_, options_.drop_sure_losses, clock_);
+    dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, clock_);
     if (clock_.struck()) return Verdict::stopped;
     if (most_fronts != kAny) {
         most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
     }
-    if (!fronts_.build(graph, sure_losses_, limit(), most_fronts)) {
+    if (!fronts_.build(graph, dominated_edges_, limit(), most_fronts)) {
         return stopped_() ? Verdict::stopped : Verdict::open;
     }
     double bound = fronts_.find_onward(limit());
-    if (options_.drop_sure_losses && bound < limit()) {
+    if (options_.drop_dominated_edges && bound < limit()) {
         fronts_.drop(limit());
-        fronts_.drop_sure_losses(edge_sets_);
+        fronts_.drop_dominated_edges(edge_sets_);
         fronts_.find_forward();
         bound = fronts_.find_onward(limit());
     }
@@ -282,19 +299,19 @@ void BranchAndBound::count_usage(const ResidualGraph& graph) {
     }
 }
 
-void BranchAndBound::separate(const ResidualGraph& graph, Prices& prices) {
+void BranchAndBound::separate(const ResidualGraph& graph, Multipliers& multipliers) {
     if (cliques_.size() >= kMostCliques) return;
     edge_alive_.assign(at(graph_.edge_count()), 0);
     for (int a = 0; a < graph.size(); ++a) edge_alive_[at(graph.edge(a))] = 1;
     separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_, clock_);
-    prices.clique.resize(at(cliques_.size()), 0.0);
+    multipliers.clique.resize(at(cliques_.size()), 0.0);
 }
 
-/// Drops what cannot be in a better pair; false where that is too little to renumber for.
+/// Drops what cannot be in a better pair. False, and nothing dropped, where renumbering is not worth it.
 bool BranchAndBound::fix(Node& here) {
     const ResidualGraph& graph = here.graph;
     const double limit = cutoff() + relaxation_.offset();
-    keep_out_.assign(graph.out_arc.size(), 0);
+    keep_successor_.assign(graph.out_arc.size(), 0);
     order_.clear();
     std::size_t kept = 0;
     for (int a = 0; a < graph.size(); ++a) {
@@ -306,18 +323,18 @@ bool BranchAndBound::fix(Node& here) {
             alive = true;
             for (int position = graph.out_start[at(a)]; position < graph.out_start[at(a) + 1]; ++position) {
                 const std::size_t next = at(graph.out_arc[at(position)]);
-                if (keep_out_[at(position)] == 0 && forward[at(a)] + graph.out_cost[at(position)] +
-                                                            relaxation_.reduced()[next] + backward[next] <
-                                                        limit) {
-                    keep_out_[at(position)] = 1;
-                    ++kept;
-                }
+                if (keep_successor_[at(position)] != 0) continue;
+                const double through = forward[at(a)] + graph.out_cost[at(position)] +
+                                       relaxation_.reduced()[next] + backward[next];
+                if (!(through < limit)) continue;
+                keep_successor_[at(position)] = 1;
+                ++kept;
             }
         }
         if (alive) order_.push_back(a);
     }
     if (10 * (order_.size() + kept) > 9 * (graph.arc.size() + graph.out_arc.size())) return false;
-    spare_.filter(graph, order_, keep_out_, index_);
+    spare_.filter(graph, order_, keep_successor_, index_);
     std::swap(spare_, here.graph);
     return true;
 }
@@ -335,12 +352,12 @@ void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
 void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,
                             ResidualGraph& target) {
     order_.clear();
-    keep_out_.assign(source.out_arc.size(), 1);
+    keep_successor_.assign(source.out_arc.size(), 1);
     if (branching.on == Branching::On::end) {
         for (int a = 0; a < source.size(); ++a) {
             if (!in || source.tail[at(a)] != branching.what) order_.push_back(a);
         }
-        target.filter(source, order_, keep_out_, index_);
+        target.filter(source, order_, keep_successor_, index_);
         return;
     }
     const int edge = branching.what;
@@ -354,11 +371,11 @@ void BranchAndBound::branch(const ResidualGraph& source, const Branching& branch
             const int cone = source.head[at(a)];
             if ((cone != ends[0] && cone != ends[1]) || source.edge(a) == edge) continue;
             for (int p = source.out_start[at(a)]; p < source.out_start[at(a) + 1]; ++p) {
-                if (source.edge(source.out_arc[at(p)]) != edge) keep_out_[at(p)] = 0;
+                if (source.edge(source.out_arc[at(p)]) != edge) keep_successor_[at(p)] = 0;
             }
         }
     }
-    target.filter(source, order_, keep_out_, index_);
+    target.filter(source, order_, keep_successor_, index_);
 }
 
 BranchAndBound::Branching BranchAndBound::choose(const ResidualGraph& graph) const {

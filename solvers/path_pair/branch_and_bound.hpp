@@ -2,15 +2,15 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
+#include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
-#include "solvers/path_pair/prices.hpp"
 #include "solvers/path_pair/search_clock.hpp"
-#include "solvers/path_pair/sure_losses.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <cstddef>
@@ -23,17 +23,17 @@
 namespace conelane::path_pair {
 
 /// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
-/// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and hands
-/// what is left to the search on fronts, which ends nearly every node; else it branches on what the
-/// relaxation is least sure about: ends first, for with both of them free two halves of a pair may run along
-/// one boundary, and two halves of another along the other.
+/// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and
+/// searches the fronts of what is left, which ends nearly every node. Else it branches where the relaxation
+/// is least sure: on ends first, for with both ends free half of the relaxed optimum may run along one
+/// boundary and half along the other.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
 
     struct Outcome {
-        double
-            bound;  ///< of every lane graph of the system that is cheaper than the cutoff less the tolerance
+        /// Of every lane graph of the system that is cheaper than the cutoff less the tolerance.
+        double bound;
         bool complete;
     };
     /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
@@ -45,14 +45,14 @@ class BranchAndBound {
     [[nodiscard]] std::int64_t nodes() const { return nodes_; }
     void reset_nodes() { nodes_ = 0; }
 
-    /// Prices of the root's best bound.
-    [[nodiscard]] const Prices& root_prices() const { return nodes_by_depth_.front()->prices; }
+    /// Multipliers of the root's best bound.
+    [[nodiscard]] const Multipliers& root_multipliers() const { return nodes_by_depth_.front()->multipliers; }
     [[nodiscard]] const CliquePool& cliques() const { return cliques_; }
 
   private:
     struct Node {
         ResidualGraph graph;
-        Prices prices;  ///< those of the best bound
+        Multipliers multipliers;  ///< those of the best bound
     };
     enum class Verdict { closed, open, stopped };
 
@@ -60,8 +60,33 @@ class BranchAndBound {
     void begin_near();
     Node& node(std::size_t depth);
     void explore(std::size_t depth, double bound, int most_steps);
+
+    /// The ascent at a node, step by step.
+    struct AscentState {
+        int step = 0;
+        bool last = false;             ///< the ascent ends with this step
+        double value = -kUnreachable;  ///< the bound at this step's multipliers
+        double best = -kUnreachable;
+        double scale = 1.0;                  ///< of the steps
+        int since_best = 0;                  ///< steps without progress
+        int next_completion = 0;             ///< the step that completes walks next
+        double first_cutoff = kUnreachable;  ///< an incumbent counts where it is below
+        std::int64_t work = 0;               ///< label updates since the fronts were last tried, about
+        double failed_gap = kUnreachable;    ///< the gap at which the fronts were too many
+    };
+    /// Raises `bound`. Closed where no better pair is left in the node.
     Verdict ascend(std::size_t depth, double& bound, int most_steps);
-    /// All pairs of a node on the fronts; open where there are more fronts or labels than these.
+    void begin_ascent(const Node& here);
+    /// The node's best multipliers so far, with 0 for cliques that came later.
+    void take_best_multipliers(const Node& here);
+    /// Keeps the multipliers where they are the best so far, and counts steps without progress.
+    void note_value(Node& here, AscentState& state);
+    /// Offers the incumbent the walks of the bound, completed.
+    void complete_walks(const ResidualGraph& graph, AscentState& state);
+    /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
+    Verdict try_fronts(const ResidualGraph& graph, AscentState& state);
+    void move_multipliers(const Node& here, AscentState& state);
+    /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
     /// Precondition: the relaxation was evaluated on the node's graph.
     Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
     bool fix(Node& here);
@@ -74,7 +99,7 @@ class BranchAndBound {
     void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
     void decide(const Branching& branching, bool in, bool back);
     void count_usage(const ResidualGraph& graph);
-    void separate(const ResidualGraph& graph, Prices& prices);
+    void separate(const ResidualGraph& graph, Multipliers& multipliers);
     [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
 
     const ArcGraph& graph_;
@@ -89,19 +114,19 @@ class BranchAndBound {
     PairRelaxation relaxation_;
     PairCompletion completion_;
     EdgeSets edge_sets_;
-    SureLosses sure_losses_;
+    DominatedEdges dominated_edges_;
     FrontGraph fronts_;
     FrontSearch front_search_;
     Ascent ascent_;
     Usage usage_;
-    Prices prices_;                 ///< of the current step
+    Multipliers multipliers_;       ///< of the current step
     std::vector<double> edge_use_;  ///< averaged over the steps
     std::vector<double> end_use_;   ///< legs that end at a cone, averaged
     std::vector<std::unique_ptr<Node>> nodes_by_depth_;
     ResidualGraph spare_;
     std::vector<int> order_;
     std::vector<int> index_;
-    std::vector<char> keep_out_;
+    std::vector<char> keep_successor_;
     std::vector<char> edge_alive_;
     std::vector<int> walk_edges_;
     double open_bound_ = 0.0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/arc_graph.hpp"
-#include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <cstdint>

@@ -92,7 +92,7 @@ void FrontGraph::begin(double limit) {
             const double start = cost(0, a) + cost(second, b);
             if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
             if ((symmetric && b <= a) || r.head[at(a)] == r.head[at(b)] ||
-                !losses_->may_pair(0, a, second, b, false)) {
+                !dominated_of_arcs_->may_pair(0, a, second, b, false)) {
                 continue;
             }
             const int f =
@@ -129,8 +129,8 @@ void FrontGraph::add_steps(int f, double limit) {
         const double moving = relaxation_->forward(kind)[at(here.moving)] + r.out_cost[at(p)] +
                               relaxation_->reduced()[at(next)] + leg_onward_[at(kind)][at(next)];
         if (!(moving + waiting < limit) || r.head[at(next)] == r.head[at(here.waiting)] ||
-            !losses_->may_follow(kind, here.moving, next) ||
-            !losses_->may_pair(kind, next, other, here.waiting, here.ended)) {
+            !dominated_of_arcs_->may_follow(kind, here.moving, next) ||
+            !dominated_of_arcs_->may_pair(kind, next, other, here.waiting, here.ended)) {
             continue;
         }
         now_.steps.push_back({-1, next, r.out_cost[at(p)]});
@@ -139,10 +139,10 @@ void FrontGraph::add_steps(int f, double limit) {
     now_.end[at(f)] = now_.steps.size();
 }
 
-bool FrontGraph::build(const ResidualGraph& residual, const SureLosses& losses, double limit,
+bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                        std::size_t most_fronts) {
     residual_ = &residual;
-    losses_ = &losses;
+    dominated_of_arcs_ = &dominated;
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
         relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
     }
@@ -318,10 +318,10 @@ void FrontGraph::drop(double limit) {
     keep(order_);
 }
 
-void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
+void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
     const std::size_t words = edges.words();
-    const auto row = [&](int f) { return sure_.data() + at(f) * words; };
-    const auto is_lost = [&](int f, int arc) {
+    const auto row = [&](int f) { return dominated_.data() + at(f) * words; };
+    const auto is_dominated = [&](int f, int arc) {
         return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
     };
     nothing_.assign(words, 0);
@@ -329,8 +329,8 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     keep_step_.assign(now_.steps.size(), 1);
     changed_.assign(now_.fronts.size(), 0);
 
-    // What every walk from a first front has lost.
-    sure_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    // Every walk from a first front up to this one has lost these edges.
+    dominated_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
     for (const int f : starts_) {
         intersect_with_union(row(f), edges.lost_after(front(f).moving), edges.lost_after(front(f).waiting),
                              words);
@@ -342,7 +342,7 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
             if (out_of_time()) return;
             if (sweep > 1 && changed_[at(f)] < sweep - 1) continue;
             for (const Step& step : steps(f)) {
-                if (is_lost(f, step.arc)) continue;
+                if (is_dominated(f, step.arc)) continue;
                 const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
                 if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
                 changed_[at(step.to)] = sweep;
@@ -352,12 +352,12 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     }
     for (int f = 0; f < size(); ++f) {
         for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
-            if (is_lost(f, now_.steps[p].arc)) keep_step_[p] = 0;
+            if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
         }
     }
 
-    // What every walk on to a last front excludes.
-    sure_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    // Every walk from this front on to a last one excludes these edges.
+    dominated_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
     changed_.assign(now_.fronts.size(), 0);
     again = true;
     for (int sweep = 1; again; ++sweep) {
@@ -368,7 +368,8 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
             if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
             for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
                 const Step& step = now_.steps[p];
-                if (keep_step_[p] == 0 || changed_[at(step.to)] < sweep - 1 || is_lost(step.to, step.arc)) {
+                if (keep_step_[p] == 0 || changed_[at(step.to)] < sweep - 1 ||
+                    is_dominated(step.to, step.arc)) {
                     continue;
                 }
                 const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_before(step.arc);
@@ -383,7 +384,7 @@ void FrontGraph::drop_sure_losses(const EdgeSets& edges) {
     for (int f = 0; f < size(); ++f) {
         order_.push_back(f);
         for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
-            if (is_lost(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
+            if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
         }
     }
     keep(order_);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
-#include "solvers/path_pair/sure_losses.hpp"
 
 #include <array>
 #include <cstddef>
@@ -20,7 +20,8 @@ namespace conelane::path_pair {
 ///     forward(f)  = cheapest walk from a first front to f,
 ///     onward(f)   = cheapest walk on from f to a last one, whose ends are partners,
 /// forward(f) + onward(f) - offset bounds every pair that passes f. Fronts and steps that reach a limit are
-/// dropped, and so are steps whose edge is lost on every walk up to them or excluded on every walk on.
+/// dropped, and so are steps by a dominated edge: one that every walk up to the front has lost, or that every
+/// walk on excludes.
 class FrontGraph {
   public:
     struct Front {
@@ -45,7 +46,7 @@ class FrontGraph {
     /// forward(f). False where there are more than `most_fronts`, or stopped.
     /// Precondition: the relaxation was evaluated on the residual graph. `limit`: with offset, here and
     /// below.
-    bool build(const ResidualGraph& residual, const SureLosses& losses, double limit,
+    bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                std::size_t most_fronts);
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
@@ -54,8 +55,9 @@ class FrontGraph {
     void find_forward();
     /// Precondition: forward and onward costs are found. They stay.
     void drop(double limit);
-    /// Drops steps by sure losses of fronts, the same intersections as those of arcs. Neither cost stays.
-    void drop_sure_losses(const EdgeSets& edges);
+    /// Drops the steps by dominated edges of fronts, which the same intersections give as for arcs. The
+    /// forward and onward costs then no longer hold.
+    void drop_dominated_edges(const EdgeSets& edges);
 
     [[nodiscard]] int size() const { return static_cast<int>(now_.fronts.size()); }
     [[nodiscard]] const ResidualGraph& residual() const { return *residual_; }
@@ -101,7 +103,7 @@ class FrontGraph {
     int until_clock_ = 0;
     bool is_stopped_ = false;
     const ResidualGraph* residual_ = nullptr;
-    const SureLosses* losses_ = nullptr;
+    const DominatedEdges* dominated_of_arcs_ = nullptr;
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
     Arrays now_;
     std::vector<int> starts_;
@@ -114,10 +116,10 @@ class FrontGraph {
     std::vector<int> order_;
     std::vector<int> stack_;
     std::vector<std::size_t> next_step_;
-    std::vector<char> keep_step_;  ///< of old_.steps
-    std::vector<int> changed_;     ///< by front, the sweep that changed it last
-    std::vector<std::uint64_t> sure_;
-    std::vector<std::uint64_t> nothing_;  ///< the empty set
+    std::vector<char> keep_step_;           ///< of old_.steps
+    std::vector<int> changed_;              ///< by front, the sweep that changed it last
+    std::vector<std::uint64_t> dominated_;  ///< by front
+    std::vector<std::uint64_t> nothing_;    ///< the empty set
 };
 
 }  // namespace conelane::path_pair

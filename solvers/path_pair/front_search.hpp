@@ -16,10 +16,9 @@ namespace conelane::path_pair {
 /// Pairs of legs by labels on the fronts. A label is the beginnings of both legs up to a front, with the
 /// edges that they have lost. Front by front, cheapest first; a label is dropped where
 ///   - its reduced cost and the cheapest walk on reach the cutoff, or
-///   - another one of the front dominates it: costs no more (true costs, without prices), has as many edges
-///     along the heading, and has lost no edge on any walk on from the front that this one still has.
-/// What lies behind soon makes no difference, so that beginnings merge: the pairs are searched almost as if
-/// they were walks.
+///   - another label of the front dominates it: that one costs no more (true costs, without multipliers), has
+///     as many edges along the heading, and has lost no edge on any walk on that this one still has.
+/// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
 class FrontSearch {
   public:
     enum class Outcome {
@@ -47,7 +46,7 @@ class FrontSearch {
         int front;
         int along_heading;  ///< edges, at most 2
         int next;           ///< of the labels that wait at the front
-        double cost;        ///< without prices
+        double cost;        ///< without multipliers
         double reduced;
     };
 

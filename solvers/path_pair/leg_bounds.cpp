@@ -8,8 +8,8 @@ namespace {
 
 // Smaller gains are rounding; without a threshold a cycle of cost zero could be walked for ever.
 constexpr double kGain = 1e-12;
-// How far above neutral a cycle is raised, so that rounding does not make it pay again.
-constexpr double kAboveNeutral = 1e-7;
+// A cycle is raised this far above 0, so that rounding does not make its cost negative again.
+constexpr double kAboveZero = 1e-7;
 constexpr std::size_t kArcsPerClock = 512;
 constexpr std::size_t kWorkPerArc = 50;
 
@@ -120,7 +120,7 @@ bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle)
 }
 
 void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
-                 std::vector<double>& cone_price) {
+                 std::vector<double>& cone_multiplier) {
     double cost = 0.0;
     for (std::size_t k = 0; k < cycle.size(); ++k) {
         const auto a = static_cast<std::size_t>(cycle[k]);
@@ -130,9 +130,9 @@ void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::sp
         cost += reduced[a] +
                 graph.out_cost[static_cast<std::size_t>(std::find(first, last, next) - graph.out_arc.data())];
     }
-    const double raise = std::max(kAboveNeutral - cost, kAboveNeutral) / static_cast<double>(cycle.size());
+    const double raise = std::max(kAboveZero - cost, kAboveZero) / static_cast<double>(cycle.size());
     for (const int a : cycle) {
-        cone_price[static_cast<std::size_t>(graph.head[static_cast<std::size_t>(a)])] += raise;
+        cone_multiplier[static_cast<std::size_t>(graph.head[static_cast<std::size_t>(a)])] += raise;
     }
 }
 

@@ -19,7 +19,7 @@ class LegBounds {
     /// With a clock, both end early once it has struck: the labels are of no use then.
     void bind(SearchClock& clock) { clock_ = &clock; }
 
-    /// `start` by arc: what a leg pays to start with it, kUnreachable where it must not. False where a walk
+    /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
     /// gains from a cycle without end; `cycle` then holds the arcs of one.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
                                std::span<const double> start, std::vector<double>& label,
@@ -38,8 +38,8 @@ class LegBounds {
     std::vector<int> colour_;
 };
 
-/// Raises the prices of a cycle's cones alike until it is neutral.
+/// Raises the multipliers of a cycle's cones equally until the cycle costs nothing.
 void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
-                 std::vector<double>& cone_price);
+                 std::vector<double>& cone_multiplier);
 
 }  // namespace conelane::path_pair

@@ -5,7 +5,7 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr int kSecondRounds = 4;  ///< of prices, before the second leg is searched
+constexpr int kSecondRounds = 4;  ///< of the multipliers' ascent, before the second leg is searched
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -20,7 +20,7 @@ void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Inc
     bounds_.bind(clock);
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
-    second_price_.assign(at(graph.cone_count()), 0.0);
+    second_multiplier_.assign(at(graph.cone_count()), 0.0);
 }
 
 double PairCompletion::cutoff(double tolerance) const {
@@ -58,7 +58,7 @@ void PairCompletion::leave_out(const ResidualGraph& residual, int second_kind, s
     }
 }
 
-double PairCompletion::price_second(const ResidualGraph& residual, int second_kind) {
+double PairCompletion::reduce_second_costs(const ResidualGraph& residual, int second_kind) {
     const PairRelaxation& r = *relaxation_;
     second_reduced_.resize(residual.arc.size());
     second_start_.resize(residual.arc.size());
@@ -67,14 +67,15 @@ double PairCompletion::price_second(const ResidualGraph& residual, int second_ki
             second_reduced_[at(a)] = second_start_[at(a)] = kUnreachable;
             continue;
         }
-        second_reduced_[at(a)] = graph_->cost(residual.edge(a)) + second_price_[at(residual.head[at(a)])];
+        second_reduced_[at(a)] =
+            graph_->cost(residual.edge(a)) + second_multiplier_[at(residual.head[at(a)])];
         second_start_[at(a)] = r.start(second_kind)[at(a)] < kUnreachable
-                                   ? second_price_[at(residual.tail[at(a)])]
+                                   ? second_multiplier_[at(residual.tail[at(a)])]
                                    : kUnreachable;
     }
     double offset = 0.0;
     for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
-        if (taken_[cone] == 0) offset += second_price_[cone];
+        if (taken_[cone] == 0) offset += second_multiplier_[cone];
     }
     return offset;
 }
@@ -93,13 +94,13 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
     };
     double offset = 0.0;
     for (int round = 0; round < kSecondRounds;) {
-        offset = price_second(residual, second_kind);
+        offset = reduce_second_costs(residual, second_kind);
         budget -= residual.size();
         const bool bounded = bounds_.forward(residual, second_reduced_, second_start_, second_forward_,
                                              second_before_, cycle_);
         if (clock_->out_of_time(residual.out_arc.size())) return false;
         if (!bounded) {
-            raise_cycle(residual, cycle_, second_reduced_, second_price_);
+            raise_cycle(residual, cycle_, second_reduced_, second_multiplier_);
             continue;
         }
         ++round;
@@ -117,23 +118,23 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
         std::ranges::reverse(second_walk_);
         offer(second_walk_);
         if (value >= limit()) return true;
-        // Towards one visit of every cone that has a price.
+        // A step towards one visit of every cone that has a multiplier.
         visits_.assign(taken_.size(), 0);
         ++visits_[at(residual.tail[at(second_walk_.front())])];
         for (const int a : second_walk_) ++visits_[at(residual.head[at(a)])];
         double squared = 0.0;
         for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
-            if (taken_[cone] != 0 || (second_price_[cone] <= 0.0 && visits_[cone] < 2)) continue;
+            if (taken_[cone] != 0 || (second_multiplier_[cone] <= 0.0 && visits_[cone] < 2)) continue;
             squared += (visits_[cone] - 1) * (visits_[cone] - 1);
         }
         if (squared == 0.0 || round == kSecondRounds) break;
         const double length = (limit() - value) / squared;
         for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
-            if (taken_[cone] != 0 || (second_price_[cone] <= 0.0 && visits_[cone] < 2)) continue;
-            second_price_[cone] = std::max(0.0, second_price_[cone] + length * (visits_[cone] - 1));
+            if (taken_[cone] != 0 || (second_multiplier_[cone] <= 0.0 && visits_[cone] < 2)) continue;
+            second_multiplier_[cone] = std::max(0.0, second_multiplier_[cone] + length * (visits_[cone] - 1));
         }
     }
-    // Cycles that no leg reaches were not raised.
+    // Cycles that no leg reaches may still have a negative cost.
     for (int a = 0; a < residual.size(); ++a) {
         if (second_forward_[at(a)] == kUnreachable) usable_[at(a)] = 0;
     }

@@ -11,15 +11,15 @@
 
 namespace conelane::path_pair {
 
-/// Incumbents from single legs: a leg given, the best other one in what it leaves. Its own cones and all
-/// edges incompatible with it are gone. Nothing couples the other leg any more, so its bound is by true
-/// costs, with prices on cones against cycles alone.
+/// Incumbents from single legs: for a given leg, the best second one. The cones of the given leg and all
+/// edges incompatible with it are left out. Nothing else couples the second leg, so its bound needs true
+/// costs and multipliers on cones against cycles, nothing more.
 class PairCompletion {
   public:
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);
 
-    /// Looks for an incumbent around a walk of the relaxation: the walk, or the best leg near by where it is
-    /// no path, completed by the best second leg, which is then completed in turn.
+    /// Looks for an incumbent around a walk of the relaxation. The walk, or the best leg where it is no path,
+    /// gets the best second leg; that leg is then the given one, and so on.
     void complete(const ResidualGraph& residual, int kind, std::span<const int> walk, double tolerance,
                   std::int64_t budget);
 
@@ -27,7 +27,8 @@ class PairCompletion {
     bool second_legs(const ResidualGraph& residual, int kind, std::span<const int> first, double tolerance,
                      std::int64_t& budget);
     void leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first);
-    double price_second(const ResidualGraph& residual, int second_kind);
+    /// Reduced costs of the second leg; returns their offset.
+    double reduce_second_costs(const ResidualGraph& residual, int second_kind);
     [[nodiscard]] double cutoff(double tolerance) const;
     [[nodiscard]] bool is_leg(const ResidualGraph& residual, std::span<const int> walk);
     void to_arcs(const ResidualGraph& residual, std::span<const int> leg, std::vector<int>& arcs) const;
@@ -43,7 +44,7 @@ class PairCompletion {
     std::vector<double> second_end_;
     std::vector<double> second_start_;
     std::vector<double> second_backward_;
-    std::vector<double> second_price_;  ///< by cone
+    std::vector<double> second_multiplier_;  ///< by cone
     std::vector<double> second_reduced_;
     std::vector<double> second_forward_;
     std::vector<int> second_before_;

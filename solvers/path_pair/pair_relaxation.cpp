@@ -44,8 +44,8 @@ bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) c
            decisions_->may_be_last(cone, residual.edge(arc));
 }
 
-void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& prices) {
-    reduce(*graph_, *cliques_, prices, residual, edge_price_, reduced_);
+void PairRelaxation::reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers) {
+    reduce(*graph_, *cliques_, multipliers, residual, edge_multiplier_, reduced_);
     for (int kind = 0; kind < system_->kind_count; ++kind) {
         std::vector<double>& start = legs_[at(kind)].start;
         start.resize(residual.arc.size());
@@ -53,14 +53,14 @@ void PairRelaxation::price_arcs(const ResidualGraph& residual, const Prices& pri
             const int cone = residual.tail[at(a)];
             start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
                                    decisions_->may_be_last(cone, residual.edge(a))
-                               ? prices.cone[at(cone)]
+                               ? multipliers.cone[at(cone)]
                                : kUnreachable;
         }
     }
 }
 
-double PairRelaxation::evaluate(const ResidualGraph& residual, Prices& prices) {
-    price_arcs(residual, prices);
+double PairRelaxation::evaluate(const ResidualGraph& residual, Multipliers& multipliers) {
+    reduce_arc_costs(residual, multipliers);
     for (int kind = 0; kind < system_->kind_count; ++kind) {
         Legs& legs = legs_[at(kind)];
         const bool bounded =
@@ -70,11 +70,11 @@ double PairRelaxation::evaluate(const ResidualGraph& residual, Prices& prices) {
             pick_ends(residual, kind);
             continue;
         }
-        raise_cycle(residual, cycle_, reduced_, prices.cone);
-        price_arcs(residual, prices);
-        kind = -1;  // prices only ever rise: from the first kind again
+        raise_cycle(residual, cycle_, reduced_, multipliers.cone);
+        reduce_arc_costs(residual, multipliers);
+        kind = -1;  // the multipliers rose: all kinds again
     }
-    offset_ = prices.offset();
+    offset_ = multipliers.offset();
     return combine() - offset_;
 }
 

@@ -2,7 +2,7 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"
-#include "solvers/path_pair/prices.hpp"
+#include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
 
 #include <array>
@@ -57,8 +57,9 @@ class Decisions {
     int always_ = 0;
 };
 
-/// The Lagrangian relaxation of a pair of legs at given prices. With F_k(f) the reduced cost of the cheapest
-/// walk of kind k that ends at cone f, and h_k(f) the cheapest F of the other leg over the partners of f,
+/// The Lagrangian relaxation of a pair of legs at given multipliers. With F_k(f) the reduced cost of the
+/// cheapest walk of kind k that ends at cone f, and h_k(f) the cheapest F of the other leg over the partners
+/// of f,
 ///     bound = min over k, f of F_k(f) + h_k(f) - offset,
 /// and, with h as the cost of ending, forward(a) + backward(a) - offset bounds every pair that uses arc a.
 class PairRelaxation {
@@ -66,11 +67,12 @@ class PairRelaxation {
     void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
               const Decisions& decisions, SearchClock& clock);
 
-    /// The bound. Where walks gain from a cycle, first raises the prices of the cycle's cones until it is
-    /// neutral. Minus infinity if stopped.
-    double evaluate(const ResidualGraph& residual, Prices& prices);
+    /// The bound. Where a walk gains from a cycle, the multipliers of the cycle's cones are first raised
+    /// until the cycle costs nothing. Minus infinity if stopped.
+    double evaluate(const ResidualGraph& residual, Multipliers& multipliers);
 
-    /// Backward labels for the prices last evaluated; of no use once the clock has struck, as below.
+    /// Backward labels for the multipliers last evaluated. Once the clock has struck, these and those below
+    /// are of no use.
     void evaluate_backward(const ResidualGraph& residual);
 
     /// By arc: the cheapest way on from it to an end, whatever the other leg does. Precondition: evaluated.
@@ -113,7 +115,7 @@ class PairRelaxation {
         std::vector<double> rest;   ///< h by cone
     };
     static std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
-    void price_arcs(const ResidualGraph& residual, const Prices& prices);
+    void reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers);
     double combine();
     void pick_ends(const ResidualGraph& residual, int kind);
 
@@ -125,7 +127,7 @@ class PairRelaxation {
     LegBounds bounds_;
     std::array<Legs, 2> legs_;
     std::vector<double> reduced_;
-    std::vector<double> edge_price_;
+    std::vector<double> edge_multiplier_;
     std::vector<int> cycle_;
     std::vector<char> reachable_;
     std::vector<double> onward_end_;

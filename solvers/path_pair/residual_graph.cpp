@@ -38,7 +38,7 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
 }
 
 void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> order,
-                           std::span<const char> keep_out, std::vector<int>& index) {
+                           std::span<const char> keep_successor, std::vector<int>& index) {
     assert(this != &source);
     index.assign(source.arc.size(), -1);
     arc.clear();
@@ -59,7 +59,7 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
         for (int position = source.out_start[a]; position < source.out_start[a + 1]; ++position) {
             const auto p = static_cast<std::size_t>(position);
             const int next = index[static_cast<std::size_t>(source.out_arc[p])];
-            if (keep_out[p] == 0 || next < 0) continue;
+            if (keep_successor[p] == 0 || next < 0) continue;
             out_arc.push_back(next);
             out_cost.push_back(source.out_cost[p]);
         }

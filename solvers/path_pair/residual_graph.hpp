@@ -31,8 +31,8 @@ struct ResidualGraph {
     void assign(const ArcGraph& graph, std::span<const char> starting_cone);
 
     /// Keeps the arcs of `order` (arcs of `source`, in their new order) and the successions among them that
-    /// `keep_out` (by position in source.out_arc) marks. `index` is scratch.
-    void filter(const ResidualGraph& source, std::span<const int> order, std::span<const char> keep_out,
+    /// `keep_successor` (by position in source.out_arc) marks. `index` is scratch.
+    void filter(const ResidualGraph& source, std::span<const int> order, std::span<const char> keep_successor,
                 std::vector<int>& index);
 
   private:

@@ -10,26 +10,25 @@
 
 namespace conelane {
 
-/// Prices that prove a lower bound of (29), shape costs included, for the pairing near_far and without colour
-/// costs. Every lane graph visits each cone at most once, holds at most one edge of each clique and at least
-/// two edges along the heading (9); so for non-negative prices
-///     cost >= cost + sum_v price_v (visits_v - 1) + sum_q price_q (edges_q - 1) + price_h (2 -
-///     along_heading),
+/// Lagrange multipliers that prove a lower bound of (29), shape costs included, for the pairing near_far and
+/// without colour costs. Every lane graph visits each cone at most once, holds at most one edge of each
+/// clique and at least two edges along the heading (9). So with non-negative multipliers m,
+///     cost >= cost + sum_v m_v (visits_v - 1) + sum_q m_q (edges_q - 1) + m_h (2 - along_heading),
 /// and the right-hand side is a sum over two walks from near to far cones.
 struct BoundCertificate {
     struct Clique {
         std::vector<Edge> edges;  ///< pairwise excluded by (7) or (28)
-        double price;
+        double multiplier;
     };
-    std::vector<double> cone_price;  ///< by cone of the scene
+    std::vector<double> cone_multiplier;  ///< by cone of the scene
     std::vector<Clique> cliques;
-    double heading_price = 0.0;
+    double heading_multiplier = 0.0;
     double bound = 0.0;  ///< claimed
 };
 
 struct BoundVerdict {
     std::vector<std::string> violations;  ///< a sentence each; empty: the claim holds
-    std::optional<double> bound;          ///< that the prices prove; infinite where no lane graph exists
+    std::optional<double> bound;          ///< proven by the multipliers; infinite where no lane graph exists
 };
 
 /// Recomputes the bound from the scene alone, by shortest walks of its own; shares no code with any solver.

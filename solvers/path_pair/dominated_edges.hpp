@@ -11,24 +11,27 @@
 
 namespace conelane::path_pair {
 
-/// What an arc excludes however its leg came to it and however it goes on. With lost(a) of EdgeSets,
+/// The dominated edges of every arc (bound fixing): those that every way up to the arc has lost, and those
+/// that every way on from it excludes. A pair with a leg through the arc cannot use them. With the sets of
+/// EdgeSets,
 ///     before(b) = lost_after(b)  united with the intersection of before(a) over all a that b may follow,
 ///     after(a)  = the intersection, over all b that may follow a, of lost_before(b) united with after(b),
-/// where b may follow a unless before(a) has b or after(b) has a; a leg that may start with b, or end with a,
+/// where b may follow a unless before(a) has b or after(b) has a. A leg that may start with b, or end with a,
 /// adds the empty set to the intersection. Both are the largest sets that fulfil this.
-class SureLosses {
+class DominatedEdges {
   public:
-    /// `propagate` false: an arc alone, lost_after and nothing. Of no use once the clock has struck.
+    /// With `propagate` false, only the arc itself counts: before is lost_after, after is empty. Of no use
+    /// once the clock has struck.
     void find(const ResidualGraph& residual, const PairRelaxation& relaxation, const EdgeSets& edges,
               bool propagate, SearchClock& clock);
 
-    /// Whether b may follow a on a leg of the kind. Precondition: a succession.
+    /// Whether b may follow a on a leg of the kind. Precondition: b is a successor of a.
     [[nodiscard]] bool may_follow(int kind, int a, int b) const {
         return !EdgeSets::contains(row(before_, kind, a), edges_->number(b)) &&
                !EdgeSets::contains(row(after_, kind, b), edges_->number(a));
     }
-    /// Whether a leg of `kind` through a and another of `other_kind` through b, or that has ended with b, may
-    /// be a pair.
+    /// Whether a leg of `kind` through a and a leg of `other_kind` through b may be a pair. `b_ended`: the
+    /// other leg ends with b.
     [[nodiscard]] bool may_pair(int kind, int a, int other_kind, int b, bool b_ended) const {
         const std::size_t edge_a = edges_->number(a);
         const std::size_t edge_b = edges_->number(b);
@@ -49,7 +52,7 @@ class SureLosses {
     Sets after_;
 };
 
-/// target = target intersected with (given united with own); whether that changed it.
+/// Intersects target with the union of given and own. True where that changes target.
 bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, const std::uint64_t* own,
                           std::size_t words);
 

@@ -1,4 +1,4 @@
-#include "solvers/path_pair/sure_losses.hpp"
+#include "solvers/path_pair/dominated_edges.hpp"
 
 #include <algorithm>
 
@@ -22,8 +22,8 @@ bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, con
     return change != 0;
 }
 
-void SureLosses::find(const ResidualGraph& residual, const PairRelaxation& relaxation, const EdgeSets& edges,
-                      bool propagate, SearchClock& clock) {
+void DominatedEdges::find(const ResidualGraph& residual, const PairRelaxation& relaxation,
+                          const EdgeSets& edges, bool propagate, SearchClock& clock) {
     edges_ = &edges;
     const std::size_t words = edges.words();
     const auto work = [&](int a) {
@@ -44,7 +44,7 @@ void SureLosses::find(const ResidualGraph& residual, const PairRelaxation& relax
             }
         }
         if (!propagate) continue;
-        // What is taken away from a set opens successions, so both go on until nothing changes.
+        // An edge taken out of a set lets more arcs follow, so both passes go on until nothing changes.
         for (bool again = true; again;) {
             again = false;
             for (int a = 0; a < residual.size(); ++a) {
