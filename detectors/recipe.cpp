@@ -1,5 +1,6 @@
 #include "detectors/recipe.hpp"
 
+#include "graph_search/clc_detector.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -17,21 +18,29 @@ std::unique_ptr<RldSolver> path_pair() {
     return make_path_pair_solver();
 }
 
-ClcOptions warm_clc_options() {
-    ClcOptions clc = extended_clc_options();
-    clc.warm_start = true;
-    return clc;
+std::unique_ptr<LaneDetector> clc() {
+    return make_clc_detector(extended_clc_options());
+}
+
+std::unique_ptr<LaneDetector> warm_clc() {
+    ClcOptions options = extended_clc_options();
+    options.warm_start = true;
+    return make_clc_detector(options);
+}
+
+std::unique_ptr<LaneDetector> paper_clc() {
+    return make_clc_detector(paper_clc_options());
 }
 
 constexpr std::array kRecipes{
     DetectorRecipe{"clc",
                    "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
                    "features and consensus of the candidates that it puts first",
-                   ClcRecipe{extended_clc_options}},
+                   OtherRecipe{clc}},
     DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
-                   ClcRecipe{warm_clc_options}},
+                   OtherRecipe{warm_clc}},
     DetectorRecipe{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)",
-                   ClcRecipe{paper_clc_options}},
+                   OtherRecipe{paper_clc}},
     DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones",
                    RldRecipe{path_pair, {}}},
     DetectorRecipe{"rld-shape",
@@ -72,7 +81,7 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         validate(made.parameters);
         return make_rld_detector(rld->make_solver(), made);
     }
-    auto detector = make_clc_detector(std::get<ClcRecipe>(recipe.how).options());
+    auto detector = std::get<OtherRecipe>(recipe.how).make();
     if (!options.nearest) return detector;
     return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
 }

@@ -3,7 +3,6 @@
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
-#include "graph_search/clc_detector.hpp"
 
 #include <memory>
 #include <span>
@@ -19,16 +18,16 @@ struct RldRecipe {
     bool shape_costs = false;  ///< adds the costs of a lane's shape where the parameters have none
 };
 
-/// CLC: its options.
-struct ClcRecipe {
-    ClcOptions (*options)();
+/// Any other detector: what makes it.
+struct OtherRecipe {
+    std::unique_ptr<LaneDetector> (*make)();
 };
 
 /// How a detector of a name is made.
 struct DetectorRecipe {
     std::string_view name;
     std::string_view meaning;
-    std::variant<RldRecipe, ClcRecipe> how;
+    std::variant<RldRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
     [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }

@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/delaunay.hpp"
+#include "graph_search/clc_detector.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -23,26 +24,26 @@ std::unique_ptr<RldSolver> printed_cbc() {
     return find_rld_solver("cbc-main")->make(Formulation::paper);
 }
 
-ClcOptions without_beam() {
+std::unique_ptr<LaneDetector> without_beam() {
     ClcOptions clc = extended_clc_options();
     clc.step_scores = nullptr;
-    return clc;
+    return make_clc_detector(clc);
 }
 
-ClcOptions without_consensus() {
+std::unique_ptr<LaneDetector> without_consensus() {
     ClcOptions clc = extended_clc_options();
     clc.consensus_candidates = 0;
-    return clc;
+    return make_clc_detector(clc);
 }
 
-ClcOptions on_delaunay_graph() {
+std::unique_ptr<LaneDetector> on_delaunay_graph() {
     ClcOptions clc = paper_clc_options();
     clc.edge_rule = delaunay_edges;
-    return clc;
+    return make_clc_detector(clc);
 }
 
-ClcOptions longest_lane() {
-    return {};
+std::unique_ptr<LaneDetector> longest_lane() {
+    return make_clc_detector({});
 }
 
 std::vector<Method> all_methods() {
@@ -58,13 +59,13 @@ std::vector<Method> all_methods() {
         add("rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones",
             RldRecipe{printed_cbc, {kRldConeSet, std::nullopt}}, false);
     }
-    add("clc-no-beam", "clc whose first search follows no lane of a beam search", ClcRecipe{without_beam},
+    add("clc-no-beam", "clc whose first search follows no lane of a beam search", OtherRecipe{without_beam},
         true);
     add("clc-no-consensus", "clc that answers with the candidate of the highest score",
-        ClcRecipe{without_consensus}, true);
+        OtherRecipe{without_consensus}, true);
     add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
-        ClcRecipe{on_delaunay_graph}, true);
-    add("clc-longest", "CLC without network: the longest of the enumerated lanes", ClcRecipe{longest_lane},
+        OtherRecipe{on_delaunay_graph}, true);
+    add("clc-longest", "CLC without network: the longest of the enumerated lanes", OtherRecipe{longest_lane},
         true);
     return all;
 }

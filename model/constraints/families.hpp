@@ -4,7 +4,7 @@
 
 #include <vector>
 
-/// The constraint families of the RLD model, one file each; `formulation.cpp` says which of them make a
+/// The constraint families of the RLD model, one file each; `formulation_parts.cpp` says which of them make a
 /// formulation. Those that may write many rows, or long ones, ask RowWriter::stop between them.
 namespace conelane::constraints {
 
