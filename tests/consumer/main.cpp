@@ -1,4 +1,4 @@
-// The first program of the README: the lane between six cones and a stray one, and its centre line.
+// The lane between six cones and a stray one, and its centre line, by the calls that the README shows.
 #include <cmath>
 #include <iostream>
 
