@@ -343,7 +343,7 @@ std::vector<BridgedGap> CentreLine::gaps(double longest_gap_m) const {
 }
 
 /// The gaps as seen from the foot point, cut to what the lane has of them.
-std::vector<BridgedGap> seen_from(std::vector<BridgedGap> gaps, double foot_m, double around_m,
+std::vector<BridgedGap> seen_from(const std::vector<BridgedGap>& gaps, double foot_m, double around_m,
                                   const DrivableLane& lane) {
     std::vector<BridgedGap> seen;
     for (BridgedGap gap : gaps) {
