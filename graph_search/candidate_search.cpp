@@ -168,7 +168,7 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
     double longest_m = 0.0;
     for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[kLength]);
     std::size_t i = 0;
-    for (const Seed& seed : seeds_) {
+    for (const Seed& seed : seeds()) {  // those behind them are of scenes before
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];

@@ -37,9 +37,20 @@ void look(glp_tree* tree, void* data) {
     }
 }
 
+/// GLPK keeps an environment in each thread that has used it, and frees none.
+struct ThreadEnvironment {
+    ThreadEnvironment() = default;
+    ~ThreadEnvironment() { glp_free_env(); }
+    ThreadEnvironment(const ThreadEnvironment&) = delete;
+    ThreadEnvironment& operator=(const ThreadEnvironment&) = delete;
+    void use() const {}
+};
+
 class GlpkSession : public MilpSession {
   public:
     explicit GlpkSession(const BinaryProgram& program) : problem_(glp_create_prob()) {
+        static const thread_local ThreadEnvironment environment;
+        environment.use();  // so that it is made
         glp_term_out(GLP_OFF);
         glp_set_obj_dir(problem_, GLP_MIN);
         if (!program.columns.empty()) glp_add_cols(problem_, static_cast<int>(program.columns.size()));
