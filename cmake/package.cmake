@@ -18,8 +18,8 @@ macro(conelane_find_library component name header)
 endmacro()
 
 # What all code of this project is compiled with. Internal headers are included as FOLDER/FILE from the top, a path that
-# no user sees. Contraction to fused multiply-add would make results differ between processors. GCC 12 sees an overlap (-Wrestrict) in
-# every inlined concatenation of strings (its bug 105651).
+# no user sees. Contraction to fused multiply-add would make results differ between processors. GCC 12 sees an overlap
+# (-Wrestrict) in every inlined concatenation of strings (its bug 105651).
 function(conelane_compile_options target)
     set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})

@@ -1,6 +1,6 @@
 // `conelane drive` as a user or a script calls it.
 
-#include "tests/file_test.hpp"
+#include "tests/program_fixture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,35 +20,12 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class DriveCommand : public FileTest {
+class DriveCommand : public ProgramFixture {
   protected:
-    struct Outcome {
-        int exit_code;
-        std::string output;
-        std::string errors;
-    };
-
-    /// Runs `conelane drive ARGUMENTS` in the test's folder.
-    Outcome drive(const std::string& arguments) {
-        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " drive " +
-                                    arguments + " >" + path("stdout").string() + " 2>" +
-                                    path("stderr").string();
-        const int status = std::system(command.c_str());
-        Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(path("stdout")),
-                        text_of(path("stderr"))};
-        std::filesystem::remove(path("stdout"));
-        std::filesystem::remove(path("stderr"));
-        return outcome;
-    }
+    Outcome drive(const std::string& arguments) { return run("drive " + arguments); }
 
     void expect_refused(const std::string& arguments, const std::vector<std::string>& names) {
-        SCOPED_TRACE("conelane drive " + arguments);
-        const std::size_t files_before = files_in_folder();
-        const Outcome outcome = drive(arguments);
-        EXPECT_EQ(outcome.exit_code, 2);
-        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
-        for (const std::string& name : names) EXPECT_THAT(outcome.errors, HasSubstr(name));
-        EXPECT_EQ(files_in_folder(), files_before);
+        ProgramFixture::expect_refused("drive " + arguments, names);
     }
 
     /// A bend to the right that starts at the origin; the right boundary is nearer in its middle. Scenes "a"

@@ -4,6 +4,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/contestants.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
@@ -20,21 +21,12 @@
 namespace conelane {
 namespace {
 
-struct Contestant {
-    const RldSolverEntry* entry;
-    Formulation formulation;
-    friend void PrintTo(const Contestant& c, std::ostream* out) {
-        *out << c.entry->name << to_string(c.formulation);
-    }
-};
+using tests::Contestant;
 
-std::vector<Contestant> contestants() {
-    std::vector<Contestant> all;
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        if (!entry.exact) continue;  // see relaxation_test
-        all.push_back({&entry, Formulation::tight});
-        if (entry.uses_formulation) all.push_back({&entry, Formulation::paper});
-    }
+/// Those that prove their optimum; the others are in relaxation_test.
+std::vector<Contestant> exact_contestants() {
+    std::vector<Contestant> all = tests::contestants();
+    std::erase_if(all, [](const Contestant& contestant) { return !contestant.entry->exact; });
     return all;
 }
 
@@ -321,12 +313,13 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
     EXPECT_GT(started, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(contestants()), [](const auto& test) {
-    std::string name =
-        std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
-    std::ranges::replace(name, '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_contestants()),
+                         [](const auto& test) {
+                             std::string name = std::string(test.param.entry->name) + "_" +
+                                                std::string(to_string(test.param.formulation));
+                             std::ranges::replace(name, '-', '_');
+                             return name;
+                         });
 
 }  // namespace
 }  // namespace conelane

@@ -8,6 +8,7 @@
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
+#include "tests/contestants.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
@@ -27,22 +28,8 @@
 namespace conelane {
 namespace {
 
-struct Contestant {
-    const RldSolverEntry* entry;
-    Formulation formulation;
-    friend void PrintTo(const Contestant& c, std::ostream* out) {
-        *out << c.entry->name << to_string(c.formulation);
-    }
-};
-
-std::vector<Contestant> contestants() {
-    std::vector<Contestant> all;
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        all.push_back({&entry, Formulation::tight});
-        if (entry.uses_formulation) all.push_back({&entry, Formulation::paper});
-    }
-    return all;
-}
+using tests::Contestant;
+using tests::contestants;
 
 Scene scene_of(const std::vector<Point>& positions) {
     Scene scene;

@@ -1,9 +1,12 @@
 # cmake -D SCRATCH=DIR -P violations.cmake: the other checks let pass what is right and find what is not.
 cmake_minimum_required(VERSION 3.25)
 
+if(NOT SCRATCH)
+    message(FATAL_ERROR "-D SCRATCH=DIR is missing: the folder is emptied and written to")
+endif()
+
 # Runs a check on a tree of two files, model/scene.hpp and FILE with the line CONTENT, and a third, the header `also`,
-# where that is set. It must fail with a message
-# that matches COMPLAINT, or pass where that is empty.
+# where that is set. It must fail with a message that matches COMPLAINT, or pass where that is empty.
 function(expect complaint check file content)
     file(REMOVE_RECURSE ${SCRATCH})
     file(WRITE ${SCRATCH}/model/scene.hpp "#pragma once\n#include <vector>\n")
