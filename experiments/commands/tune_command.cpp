@@ -246,13 +246,13 @@ void add_tune_command(CLI::App& program) {
         .add_option_function<std::string>(
             "--objective",
             [options](const std::string& name) {
-                for (const TuningObjective objective :
-                     {TuningObjective::accuracy, TuningObjective::iou, TuningObjective::success}) {
+                for (const TuningObjective objective : {TuningObjective::accuracy, TuningObjective::iou,
+                                                        TuningObjective::success, TuningObjective::usable}) {
                     if (to_string(objective) == name) options->evaluation.objective = objective;
                 }
             },
             "what to maximise, as a mean over scenes [accuracy]")
-        ->check(CLI::IsMember({"accuracy", "iou", "success"}));
+        ->check(CLI::IsMember({"accuracy", "iou", "success", "usable"}));
     add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
     command
         .add_option_function<std::size_t>(
