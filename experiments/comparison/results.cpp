@@ -19,7 +19,7 @@ namespace conelane::experiments {
 namespace {
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
-    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest};
+    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
@@ -30,6 +30,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     };
     put_if_known("nearest", record->nearest);
     line["track"] = scene->track;
+    if (!scene->condition.empty()) line["condition"] = scene->condition;
     put_if_known("false_positive_rate", scene->false_positive_rate);
     put_if_known("range", scene->range_m);
     line["status"] = to_string(record->answer.status);
