@@ -22,6 +22,8 @@ void add_report_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
+/// `front` below it.
+void add_train_front_command(CLI::App& train_command);
 void add_tune_command(CLI::App& program);
 
 }  // namespace conelane::experiments

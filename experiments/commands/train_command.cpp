@@ -131,9 +131,8 @@ void add_number_option(CLI::App& command, const std::string& name, double& numbe
 
 /// What is trained on, and what only measured on.
 CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
-    command
-        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
-        ->required();
+    command.add_option("--tracks", run.tracks,
+                       "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE");
     command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,
@@ -205,8 +204,16 @@ void add_train_command(CLI::App& program) {
     add_step_options(command, options->step_training);
     add_network_options(command, run.training);
     add_threads_option(command, options->threads, "the weights are the same with any number");
-    add_output_option(command, "--out", options->out, "weights (JSON)")->required();
-    command.callback([options] { train(*options); });
+    add_output_option(command, "--out", options->out, "weights (JSON)");
+    add_train_front_command(command);
+    command.callback([options, &command] {
+        if (!command.get_subcommands().empty()) return;
+        // Required of this command, but not of the ones below it, where CLI11 would ask for them too.
+        for (const char* name : {"--tracks", "--out"}) {
+            if (command.count(name) == 0) throw CLI::RequiredError(name);
+        }
+        train(*options);
+    });
 }
 
 }  // namespace conelane::experiments

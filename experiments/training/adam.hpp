@@ -32,6 +32,21 @@ class Adam {
         return (second_ / (1.0 - second_power_)).sqrt() + smallest_deviation_;
     }
 
+    /// All of it, for a training that is to go on later.
+    struct State {
+        Eigen::ArrayXd first;
+        Eigen::ArrayXd second;
+        double first_power;
+        double second_power;
+    };
+    [[nodiscard]] State state() const { return {first_, second_, first_power_, second_power_}; }
+    void restore(const State& state) {
+        first_ = state.first;
+        second_ = state.second;
+        first_power_ = state.first_power;
+        second_power_ = state.second_power;
+    }
+
   private:
     static constexpr double kFirstDecay = 0.9;
     static constexpr double kSecondDecay = 0.999;

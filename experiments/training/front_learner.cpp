@@ -1,0 +1,359 @@
+#include "experiments/training/front_learner.hpp"
+
+#include "experiments/scenes/cone_index.hpp"
+#include "experiments/scoring/divergence.hpp"
+#include "experiments/scoring/lane_polygon.hpp"
+#include "experiments/scoring/score.hpp"
+#include "experiments/training/front_gradient.hpp"
+#include "graph_search/front/front_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr std::size_t kNone = FrontSearch::kNone;
+/// A derivative below this is left out.
+constexpr double kLeastFactor = 1e-4;
+
+/// Turns scores into probabilities in place; returns the logarithm of their sum.
+template <typename Number>
+double to_probabilities(std::vector<Number>& scores) {
+    const double highest = *std::ranges::max_element(scores);
+    double sum = 0.0;
+    for (Number& score : scores) {
+        score = static_cast<Number>(std::exp(static_cast<double>(score) - highest));
+        sum += static_cast<double>(score);
+    }
+    for (Number& score : scores) score = static_cast<Number>(static_cast<double>(score) / sum);
+    return highest + std::log(sum);
+}
+
+LaneOutline outline(const FrontMap& map, const std::array<std::vector<Vertex>, 2>& cones) {
+    LaneOutline lane;
+    for (const Vertex cone : cones[kLeft]) lane.left.push_back(map.position(cone));
+    for (const Vertex cone : cones[kRight]) lane.right.push_back(map.position(cone));
+    return lane;
+}
+
+/// Cones of one lane but not of the other, as a share of the true ones.
+double cone_error(const std::array<std::vector<Vertex>, 2>& lane,
+                  const std::array<std::vector<Vertex>, 2>& truth) {
+    std::size_t shared = 0;
+    for (const Side side : {kLeft, kRight}) {
+        for (const Vertex cone : lane[side])
+            shared += static_cast<std::size_t>(std::ranges::count(truth[side], cone));
+    }
+    const std::size_t all = lane[kLeft].size() + lane[kRight].size();
+    const std::size_t right = truth[kLeft].size() + truth[kRight].size();
+    return std::min(1.0, static_cast<double>(all + right - 2 * shared) / static_cast<double>(right));
+}
+
+}  // namespace
+
+void FrontLearner::set_truth(const AnnotatedScene& scene) {
+    // From the place in the scene to that in the map.
+    std::vector<Vertex> vertex_of(front_.map().size());
+    for (Vertex cone = 0; cone < vertex_of.size(); ++cone) vertex_of[front_.map().scene_index(cone)] = cone;
+    const auto index_of = index_by_id(scene.scene);
+    for (const Side side : {kLeft, kRight}) {
+        truth_[side].clear();
+        for (const ConeId id : side == kLeft ? scene.ground_truth->left : scene.ground_truth->right) {
+            truth_[side].push_back(vertex_of[index_of.at(id)]);
+        }
+    }
+}
+
+std::size_t FrontLearner::true_start() const {
+    const FrontStarts& starts = front_.starts();
+    for (std::size_t i = 0; i < starts.pairs.size(); ++i) {
+        if (starts.cones[kLeft][starts.pairs[i].left] == truth_[kLeft].front() &&
+            starts.cones[kRight][starts.pairs[i].right] == truth_[kRight].front()) {
+            return i;
+        }
+    }
+    return kNone;
+}
+
+FrontMove FrontLearner::true_move(const FrontState& state, Side side) const {
+    const std::size_t place = state.ends[side].count;
+    return place < truth_[side].size() ? FrontMove{truth_[side][place], 0} : FrontMove{};
+}
+
+FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const FrontWeights& weights,
+                                         FrontCost& cost, const FrontSearchOptions& search,
+                                         FrontWeights& derivatives) {
+    Loss loss;
+    front_.begin(scene.scene, cost, search);
+    set_truth(scene);
+    const std::size_t start = true_start();
+    if (start == kNone) return loss;
+    const std::span<const float> rows = cost.start_features_seen();
+    start_rows_.assign(rows.begin(), rows.end());
+    const auto starts = cost.score_starts(front_.map(), front_.starts());
+    std::vector<float> probabilities(starts.begin(), starts.end());
+    const double true_score = probabilities[start];
+    loss.sum += to_probabilities(probabilities) - true_score;
+    ++loss.decisions;
+    for (std::size_t i = 0; i < probabilities.size(); ++i) {
+        const double factor = static_cast<double>(probabilities[i]) - (i == start ? 1.0 : 0.0);
+        if (std::abs(factor) > kLeastFactor) add_start(i, factor, weights, derivatives);
+    }
+    std::size_t node = front_.add({0.0, kNone, {}, kLeft, start});
+    while (!front_.node(node).state.finished()) {
+        const FrontState state = front_.node(node).state;
+        const Side side = moving_side(front_.map(), state);
+        moves_.list(front_.map(), state, side, search.rules);
+        const auto scores = cost.score_moves(front_.map(), state, side, moves_);
+        const Vertex to = true_move(state, side).to;
+        std::size_t right = moves_.extensions.size();
+        if (to != kNoCone) {
+            right = static_cast<std::size_t>(std::ranges::find(moves_.extensions, to, &FrontMove::to) -
+                                             moves_.extensions.begin());
+            if (right == moves_.extensions.size()) return loss;
+        }
+        probabilities.assign(scores.begin(), scores.end());
+        const double score = probabilities[right];
+        loss.sum += to_probabilities(probabilities) - score;
+        ++loss.decisions;
+        // The inputs seen stay as they are: what is added looks at nothing else.
+        std::array<float, kExtendInputs> inputs{};
+        std::ranges::copy(cost.state_features_seen(), inputs.begin());
+        for (std::size_t i = 0; i < probabilities.size(); ++i) {
+            const double factor = static_cast<double>(probabilities[i]) - (i == right ? 1.0 : 0.0);
+            if (std::abs(factor) <= kLeastFactor) continue;
+            if (i < moves_.extensions.size()) {
+                std::ranges::copy(cost.extend_features_seen().subspan(i * kExtendFeatures, kExtendFeatures),
+                                  inputs.begin() + kStateFeatures);
+                add_derivatives(weights.extend, inputs, static_cast<float>(factor), derivatives.extend);
+            } else {
+                std::ranges::copy(cost.stop_features_seen(), inputs.begin() + kStateFeatures);
+                add_derivatives(weights.stop, std::span(inputs).first(kStopInputs),
+                                static_cast<float>(factor), derivatives.stop);
+            }
+        }
+        node = front_.add({0.0, node, to == kNoCone ? FrontMove{} : moves_.extensions[right], side, start});
+        if (node == kNone) return loss;
+    }
+    loss.reached = true;
+    return loss;
+}
+
+void FrontLearner::foresee(Follow& truth, std::size_t level, FrontCost& cost) {
+    const FrontSearch::Node& from = front_.node(truth.node);
+    const FrontState state = from.state;
+    const Side side = moving_side(front_.map(), state);
+    moves_.list(front_.map(), state, side, front_.options().rules);
+    const FrontMove move = true_move(state, side);
+    truth.next = {from.score, truth.node, move, side, from.start};
+    const auto scores = cost.score_moves(front_.map(), state, side, moves_);
+    if (move.stops()) {
+        truth.next.score += static_cast<double>(scores.back());
+        truth.ended = state.ends[opposite(side)].stopped;
+    } else {
+        const auto found = std::ranges::find(moves_.extensions, move.to, &FrontMove::to);
+        if (found == moves_.extensions.end()) {
+            truth.reachable = false;
+            return;
+        }
+        truth.next.move = *found;
+        truth.next.score +=
+            static_cast<double>(scores[static_cast<std::size_t>(found - moves_.extensions.begin())]);
+    }
+    truth.level = front_.level_after(level, moved(front_.map(), state, side, truth.next.move));
+}
+
+void FrontLearner::follow(Follow& truth, FrontCost& cost) {
+    if (!truth.reachable || truth.lost || truth.ended) return;
+    const std::size_t level = front_.level_number();
+    if (level < truth.level) return;
+    const auto found = std::ranges::find_if(front_.level(), [&](std::size_t number) {
+        const FrontSearch::Node& node = front_.node(number);
+        return node.parent == truth.next.parent && node.start == truth.next.start &&
+               (node.parent == kNone || (node.side == truth.next.side && node.move.to == truth.next.move.to));
+    });
+    if (found == front_.level().end()) {
+        truth.lost = true;
+        return;
+    }
+    truth.node = *found;
+    foresee(truth, level, cost);
+}
+
+FrontLearner::Loss& FrontLearner::add_fall_out(const Follow& truth, const FrontLossOptions& options,
+                                               Loss& loss) {
+    std::vector<std::size_t> rivals(front_.level().begin(), front_.level().end());
+    const std::size_t right = front_.add(truth.next);
+    if (right == kNone) return loss;
+    rivals.push_back(right);
+    std::vector<double> probabilities;
+    for (const std::size_t number : rivals) probabilities.push_back(front_.node(number).score);
+    loss.sum += options.fall_out * (to_probabilities(probabilities) - front_.node(right).score);
+    ++loss.decisions;
+    coefficients_.resize(std::max(coefficients_.size(), right + 1), 0.0);
+    for (std::size_t i = 0; i < rivals.size(); ++i) {
+        coefficients_[rivals[i]] += options.fall_out * (probabilities[i] - (rivals[i] == right ? 1.0 : 0.0));
+    }
+    return loss;
+}
+
+double FrontLearner::risk(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
+                          const std::array<std::vector<Vertex>, 2>& cones,
+                          const FrontLossOptions& options) const {
+    const double worst = 1.0 + options.unusable + options.cones;
+    if (cones[kLeft].size() < 2 || cones[kRight].size() < 2) return worst;
+    if (cones == truth_) return 0.0;
+    const FrontMap& map = front_.map();
+    const LaneOutline lane = outline(map, cones);
+    const LaneOutline truth = outline(map, truth_);
+    const double iou = intersection_over_union_of_simple(lane, truth);
+    double risk = 1.0 - iou + options.cones * cone_error(cones, truth_);
+    constexpr double kSurelyUsable = 0.985;
+    if (iou > kSurelyUsable) return risk;
+    // Divergence is measured in the frame of the course.
+    LaneOutline in_world;
+    LaneOutline truth_in_world;
+    const auto place = [&](const std::vector<Vertex>& from, std::vector<Point>& to) {
+        for (const Vertex cone : from) to.push_back(scene.scene.cones[map.scene_index(cone)].position);
+    };
+    place(cones[kLeft], in_world.left);
+    place(cones[kRight], in_world.right);
+    place(truth_[kLeft], truth_in_world.left);
+    place(truth_[kRight], truth_in_world.right);
+    const std::optional<double> divergence = divergence_m(in_world, truth_in_world, boundaries);
+    const double needed_m = std::min(kUsableLength_m, kTooShortShare * lane_length_m(truth));
+    const bool usable = divergence ? *divergence >= kCriticalDivergence_m : lane_length_m(lane) >= needed_m;
+    if (!usable) risk += options.unusable;
+    return risk;
+}
+
+FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
+                                        const FrontWeights& weights, FrontCost& cost,
+                                        const FrontLossOptions& options, FrontWeights& derivatives) {
+    Loss loss;
+    front_.begin(scene.scene, cost, options.search);
+    set_truth(scene);
+    const std::span<const float> rows = cost.start_features_seen();
+    start_rows_.assign(rows.begin(), rows.end());
+    coefficients_.clear();
+    finishing_.clear();
+
+    Follow truth;
+    const std::size_t start = true_start();
+    truth.reachable = start != kNone;
+    if (truth.reachable) {
+        truth.next = {static_cast<double>(cost.score_starts(front_.map(), front_.starts())[start]),
+                      kNone,
+                      {},
+                      kLeft,
+                      start};
+        const auto& [left, right] = front_.starts().pairs[start];
+        const FrontState state = start_state(front_.map(), front_.starts().cones[kLeft][left],
+                                             front_.starts().cones[kRight][right]);
+        truth.level = front_.first_level(state);
+    }
+    SearchBudget unlimited;
+    while (front_.advance(unlimited)) {
+        const bool was_lost = truth.lost;
+        follow(truth, cost);
+        if (truth.lost && !was_lost) add_fall_out(truth, options, loss);
+    }
+    loss.reached = truth.reachable;
+    loss.kept = truth.reachable && truth.ended && !truth.lost;
+
+    front_.sort_finished(options.listed);
+    const std::size_t listed = std::min(options.listed, front_.finished().size());
+    if (listed == 0) {
+        loss.risk = 1.0 + options.unusable + options.cones;
+        add_coefficients(weights, cost, derivatives);
+        return loss;
+    }
+    std::vector<FrontSearch::Finished> lanes(front_.finished().begin(),
+                                             front_.finished().begin() + static_cast<std::ptrdiff_t>(listed));
+    if (loss.kept) {
+        const auto is_truth = [&](const FrontSearch::Finished& lane) { return lane.parent == truth.node; };
+        if (std::ranges::none_of(lanes, is_truth)) {
+            const auto own = std::ranges::find_if(front_.finished(), is_truth);
+            if (own != front_.finished().end()) lanes.push_back(*own);
+        }
+        loss.found = lanes.front().parent == truth.node;
+    }
+    std::vector<double> risks;
+    std::vector<double> probabilities;
+    std::vector<double> wanted;
+    for (const FrontSearch::Finished& lane : lanes) {
+        front_.cones(lane.parent, cones_);
+        even_far_ends(front_.map(), cones_, kWidestLane_m);
+        risks.push_back(risk(scene, boundaries, cones_, options));
+        probabilities.push_back(lane.score);
+        wanted.push_back(-risks.back() / options.risk_scale);
+    }
+    loss.risk = risks.front();
+    to_probabilities(probabilities);
+    to_probabilities(wanted);
+    double expected = 0.0;
+    for (std::size_t i = 0; i < lanes.size(); ++i) expected += probabilities[i] * risks[i];
+    loss.sum += options.minimum_risk * expected;
+    ++loss.decisions;
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+        const double factor = options.minimum_risk * probabilities[i] * (risks[i] - expected) +
+                              options.listwise * (probabilities[i] - wanted[i]);
+        if (std::abs(factor) <= kLeastFactor) continue;
+        coefficients_.resize(std::max(coefficients_.size(), lanes[i].parent + 1), 0.0);
+        coefficients_[lanes[i].parent] += factor;
+        finishing_.push_back({lanes[i].parent, lanes[i].side, factor});
+    }
+    add_coefficients(weights, cost, derivatives);
+    return loss;
+}
+
+void FrontLearner::add_coefficients(const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives) {
+    for (const FinishingStop& stop : finishing_) {
+        add_move(front_.node(stop.parent).state, stop.side, {}, stop.factor, weights, cost, derivatives);
+    }
+    // A node comes after its parent.
+    for (std::size_t number = coefficients_.size(); number-- > 0;) {
+        const double factor = coefficients_[number];
+        if (std::abs(factor) <= kLeastFactor) continue;
+        const FrontSearch::Node& node = front_.node(number);
+        if (node.parent == kNone) {
+            add_start(node.start, factor, weights, derivatives);
+        } else {
+            coefficients_[node.parent] += factor;
+            add_move(front_.node(node.parent).state, node.side, node.move, factor, weights, cost,
+                     derivatives);
+        }
+    }
+}
+
+void FrontLearner::add_move(const FrontState& state, Side side, const FrontMove& move, double factor,
+                            const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives) {
+    std::array<float, kExtendInputs> inputs{};
+    if (move.stops()) {
+        moves_.list(front_.map(), state, side, front_.options().rules);
+        static_cast<void>(cost.score_moves(front_.map(), state, side, moves_));
+        std::ranges::copy(cost.state_features_seen(), inputs.begin());
+        std::ranges::copy(cost.stop_features_seen(), inputs.begin() + kStateFeatures);
+        add_derivatives(weights.stop, std::span(inputs).first(kStopInputs), static_cast<float>(factor),
+                        derivatives.stop);
+        return;
+    }
+    std::ranges::copy(state_features(front_.map(), state, side), inputs.begin());
+    std::ranges::copy(extend_features(front_.map(), state, side, move), inputs.begin() + kStateFeatures);
+    add_derivatives(weights.extend, inputs, static_cast<float>(factor), derivatives.extend);
+}
+
+void FrontLearner::add_start(std::size_t start, double factor, const FrontWeights& weights,
+                             FrontWeights& derivatives) {
+    const std::span<const float> rows(start_rows_);
+    for (const std::size_t row : {2 * start, 2 * start + 1}) {
+        add_derivatives(weights.start, rows.subspan(row * kStartFeatures, kStartFeatures),
+                        static_cast<float>(factor), derivatives.start);
+    }
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
+#include "graph_search/front/front_search.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace conelane::experiments {
+
+struct FrontLossOptions {
+    FrontSearchOptions search;
+    std::size_t listed = 20;    ///< best lanes that the loss of a whole lane compares
+    double fall_out = 1.0;      ///< weight of the cross-entropy where the true lane falls out of the beam
+    double minimum_risk = 3.0;  ///< weight of the expected risk
+    double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
+    double risk_scale = 0.05;   ///< lanes with so much more risk should be e times less likely
+    double unusable = 0.5;      ///< risk added for a lane that cannot be driven by
+    double cones = 0.3;         ///< risk added for cones too many and too few, as a share of the true ones
+};
+
+/// The loss of the true lane in one scene and its derivatives. Keeps memory from scene to scene; one serves
+/// one thread.
+class FrontLearner {
+  public:
+    struct Loss {
+        double sum = 0.0;
+        std::size_t decisions = 0;  ///< terms in the sum
+        bool reached = false;       ///< whether the rules allow the whole true lane
+        bool kept = false;          ///< whether the beam kept it to its end
+        bool found = false;         ///< whether it is the best of all
+        double risk = 0.0;          ///< of the best lane; 1 + unusable + cones where there is none
+    };
+
+    /// Teacher forcing: the softmax over the starts, then over the moves of each state of the true lane.
+    Loss imitate(const AnnotatedScene& scene, const FrontWeights& weights, FrontCost& cost,
+                 const FrontSearchOptions& search, FrontWeights& derivatives);
+    /// Through the search: cross-entropy at the level where the true lane falls out of the beam, and minimum
+    /// risk and listwise loss over the best lanes that the search ends with.
+    Loss search(const AnnotatedScene& scene, const TrackBoundaries& boundaries, const FrontWeights& weights,
+                FrontCost& cost, const FrontLossOptions& options, FrontWeights& derivatives);
+
+  private:
+    void set_truth(const AnnotatedScene& scene);
+    /// The place of the true pair among the starts, kNone where it is none.
+    [[nodiscard]] std::size_t true_start() const;
+    /// The true move of a state with the true cones so far; its `edge` is not set.
+    [[nodiscard]] FrontMove true_move(const FrontState& state, Side side) const;
+    [[nodiscard]] double risk(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
+                              const std::array<std::vector<Vertex>, 2>& cones,
+                              const FrontLossOptions& options) const;
+    /// Adds the derivatives of the scores of nodes, each times its coefficient, and of what led to them.
+    void add_coefficients(const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives);
+    void add_move(const FrontState& state, Side side, const FrontMove& move, double factor,
+                  const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives);
+    void add_start(std::size_t start, double factor, const FrontWeights& weights, FrontWeights& derivatives);
+    /// Follows the true lane from where it is; whether it is still in the beam.
+    struct Follow {
+        std::size_t node = FrontSearch::kNone;  ///< the last true state kept
+        std::size_t level = 0;                  ///< where the next one belongs
+        FrontSearch::Candidate next{};          ///< that next one
+        bool reachable = true;
+        bool lost = false;
+        bool ended = false;
+    };
+    void follow(Follow& truth, FrontCost& cost);
+    void foresee(Follow& truth, std::size_t level, FrontCost& cost);
+    Loss& add_fall_out(const Follow& truth, const FrontLossOptions& options, Loss& loss);
+
+    FrontSearch front_;
+    FrontMoves moves_;
+    std::array<std::vector<Vertex>, 2> truth_;
+    std::array<std::vector<Vertex>, 2> cones_;
+    std::vector<float> start_rows_;
+    std::vector<double> coefficients_;
+    struct FinishingStop {
+        std::size_t parent;
+        Side side;
+        double factor;
+    };
+    std::vector<FinishingStop> finishing_;
+};
+
+}  // namespace conelane::experiments

@@ -1,0 +1,227 @@
+#include "experiments/training/front_scenes.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "experiments/scenes/half_disc.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+#include "experiments/seeded_random.hpp"
+#include "experiments/tracks/centre_line.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+using Random = boost::random::mt19937_64;
+
+constexpr double kPoseEvery_m = 0.5;
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+// How often and how far a course is changed and disturbed.
+constexpr double kScaledShare = 0.7;
+constexpr double kLargestLogScale = 0.22;
+constexpr double kSwirledShare = 0.6;
+constexpr double kLargestSwirl = 0.22;  ///< displacement per metre of each wave
+constexpr double kRespacedShare = 0.5;
+constexpr double kLeastSpacing = 0.6;  ///< of the course's own
+constexpr double kMostSpacing = 1.5;
+constexpr double kSpacingJitter = 0.2;
+constexpr double kLongestSpacing_m = 5.6;
+constexpr double kDisturbedShare = 0.68;
+constexpr double kMostNoise_m = 0.2;
+constexpr double kMostMissed = 0.1;
+constexpr double kMostLateral_m = 0.5;
+constexpr double kMostYaw_rad = 8.0 * kDegree_rad;
+constexpr double kShortSightShare = 0.15;
+constexpr double kCleanShare = 0.1;  ///< without false positives
+
+double uniform(Random& random, double low, double high) {
+    return boost::random::uniform_real_distribution<double>(low, high)(random);
+}
+bool one_in(Random& random, double share) {
+    return uniform(random, 0.0, 1.0) < share;
+}
+std::size_t any_below(Random& random, std::size_t count) {
+    return boost::random::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+}
+
+/// A smooth map of the plane: mirrored, scaled, then moved by a few waves across their direction.
+class Warp {
+  public:
+    Warp(Random& random, bool bends) {
+        mirrored_ = one_in(random, 0.5);
+        if (!bends) return;
+        if (one_in(random, kScaledShare))
+            scale_ = std::exp(uniform(random, -kLargestLogScale, kLargestLogScale));
+        if (!one_in(random, kSwirledShare)) return;
+        for (Wave& wave : waves_) {
+            const double direction_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
+            const double number_1_m = 2.0 * std::numbers::pi / uniform(random, 35.0, 130.0);
+            wave.number = number_1_m * Point(std::cos(direction_rad), std::sin(direction_rad));
+            const double to_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
+            wave.amplitude =
+                uniform(random, 0.0, kLargestSwirl) / number_1_m * Point(std::cos(to_rad), std::sin(to_rad));
+            wave.phase_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
+        }
+    }
+
+    [[nodiscard]] bool mirrors() const { return mirrored_; }
+    [[nodiscard]] Point operator()(Point point) const {
+        if (mirrored_) point.y() = -point.y();
+        point *= scale_;
+        Point moved = point;
+        for (const Wave& wave : waves_)
+            moved += std::sin(wave.number.dot(point) + wave.phase_rad) * wave.amplitude;
+        return moved;
+    }
+
+  private:
+    struct Wave {
+        Point number{0.0, 0.0};
+        Point amplitude{0.0, 0.0};
+        double phase_rad = 0.0;
+    };
+    bool mirrored_ = false;
+    double scale_ = 1.0;
+    std::array<Wave, 3> waves_;
+};
+
+/// A boundary with its cones placed anew along it, `spacing` times as far apart as they were.
+std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, double spacing, Random& random) {
+    const double last = static_cast<double>(closed ? boundary.size() : boundary.size() - 1);
+    const auto at = [&](double place) {
+        const auto index = std::min(static_cast<std::size_t>(place), boundary.size() - 1);
+        const double share = place - static_cast<double>(index);
+        return Point((1.0 - share) * boundary[index] + share * boundary[(index + 1) % boundary.size()]);
+    };
+    std::vector<Point> result;
+    double place = closed ? uniform(random, 0.0, 1.0) : 0.0;
+    const double end = last - (closed ? 0.5 * spacing - place : 0.0);
+    while (place <= std::min(end, last)) {
+        result.push_back(at(place));
+        double step = spacing * (1.0 + uniform(random, -kSpacingJitter, kSpacingJitter));
+        while (step > 1.0 && (at(std::min(place + step, last)) - result.back()).norm() > kLongestSpacing_m)
+            step *= 0.9;
+        place += step;
+    }
+    return result;
+}
+
+/// The course after the warp; boundaries swapped where that mirrors or the course is driven backwards.
+Track changed(const Track& track, const Warp& warp, bool backwards, bool respace, Random& random) {
+    const double spacing =
+        respace && one_in(random, kRespacedShare) ? uniform(random, kLeastSpacing, kMostSpacing) : 1.0;
+    Track result;
+    result.closed = track.closed;
+    std::array<std::vector<Point>, 2> sides;
+    std::vector<bool> is_boundary(track.cones.size(), false);
+    const std::array<const std::vector<std::size_t>*, 2> runs{&track.left, &track.right};
+    for (std::size_t side = 0; side < 2; ++side) {
+        for (const std::size_t cone : *runs[side]) {
+            sides[side].push_back(warp(track.cones[cone].position));
+            is_boundary[cone] = true;
+        }
+        if (backwards) std::ranges::reverse(sides[side]);
+        if (spacing != 1.0) {
+            std::vector<Point> anew = respaced(sides[side], track.closed, spacing, random);
+            if (anew.size() >= 3) sides[side] = std::move(anew);
+        }
+    }
+    if (warp.mirrors() != backwards) std::swap(sides[0], sides[1]);
+    const auto add = [&](const Point& position) {
+        Cone cone;
+        cone.id = static_cast<ConeId>(result.cones.size());
+        cone.position = position;
+        result.cones.push_back(cone);
+        return result.cones.size() - 1;
+    };
+    for (const Point& position : sides[0]) result.left.push_back(add(position));
+    for (const Point& position : sides[1]) result.right.push_back(add(position));
+    for (std::size_t i = 0; i < track.cones.size(); ++i) {
+        if (!is_boundary[i]) add(warp(track.cones[i].position));
+    }
+    return result;
+}
+
+Pose changed(const Pose& pose, const Warp& warp, bool backwards) {
+    constexpr double kAhead_m = 0.3;
+    const Point from = warp(pose.position - kAhead_m * pose.heading());
+    const Point to = warp(pose.position + kAhead_m * pose.heading());
+    const Point along = backwards ? Point(from - to) : Point(to - from);
+    return {warp(pose.position), std::atan2(along.y(), along.x())};
+}
+
+/// Adds false positives where the cones of the course are not seen so far.
+void add_false_positives(Scene& scene, double rate, double range_m, Random& random) {
+    const auto seen = static_cast<double>(scene.cones.size());
+    const long count = std::lround(rate * seen / (1.0 - rate));
+    ConeId id = 0;
+    for (const Cone& cone : scene.cones) id = std::max(id, cone.id);
+    const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m};
+    const Point to_left(-view.heading.y(), view.heading.x());
+    for (long i = 0; i < count; ++i) {
+        Cone cone;
+        cone.id = ++id;
+        do {
+            const double ahead_m = uniform(random, 0.0, range_m);
+            cone.position =
+                view.centre + ahead_m * view.heading + uniform(random, -range_m, range_m) * to_left;
+        } while (!view.contains(cone.position));
+        scene.cones.push_back(cone);
+    }
+}
+
+}  // namespace
+
+FrontScenes::FrontScenes(std::vector<Track> courses, const FrontSceneOptions& options, std::uint64_t seed)
+    : options_(options), seed_(seed) {
+    if (courses.empty()) throw InvalidInput("tracks", "there is none to train on");
+    for (Track& track : courses) {
+        std::vector<Pose> poses = centre_line_poses(boundaries(track), kPoseEvery_m);
+        if (poses.empty()) throw InvalidInput("tracks", track.name + " has no centre line");
+        courses_.push_back({std::move(track), std::move(poses)});
+    }
+}
+
+FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
+    const std::string name = fmt::format("front/{}", number);
+    Random random = generator_of(name, seed_);
+    const Course& course = courses_[any_below(random, courses_.size())];
+    const Warp warp(random, options_.warp);
+    const bool backwards = one_in(random, 0.5);
+    Track track = changed(course.track, warp, backwards, options_.respace, random);
+    Drawn drawn;
+    drawn.boundaries = boundaries(track);
+    for (std::size_t i = 0; i < options_.scenes_per_draw; ++i) {
+        track.name = fmt::format("{}/{}", name, i);
+        const Pose pose = changed(course.poses[any_below(random, course.poses.size())], warp, backwards);
+        SceneOptions scenes;
+        scenes.seed = seed_;
+        const double kind = uniform(random, 0.0, 1.0);
+        const double range_m = kind < 0.4 ? 30.0 : kind < 0.8 ? 50.0 : uniform(random, 25.0, 55.0);
+        const double rate = one_in(random, kCleanShare) ? 0.0 : uniform(random, 0.0, options_.highest_rate);
+        if (options_.disturb && one_in(random, kDisturbedShare)) {
+            scenes.noise_sigma_m = uniform(random, 0.0, kMostNoise_m);
+            scenes.miss_rate = uniform(random, 0.0, kMostMissed);
+            scenes.pose_noise_lateral_m = uniform(random, 0.0, kMostLateral_m);
+            scenes.pose_noise_yaw_rad = uniform(random, 0.0, kMostYaw_rad);
+        }
+        const bool short_sight = options_.short_sight && one_in(random, kShortSightShare);
+        scenes.ranges_m = {short_sight ? range_m * uniform(random, 0.6, 0.95) : range_m};
+        scenes.false_positive_rates = {short_sight ? 0.0 : rate};
+        for (AnnotatedScene& scene : generate_scenes(track, std::span(&pose, 1), scenes)) {
+            if (short_sight) add_false_positives(scene.scene, rate, range_m, random);
+            drawn.scenes.push_back(std::move(scene));
+        }
+    }
+    return drawn;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "experiments/scenes/scene_set.hpp"
+#include "experiments/training/front_learner.hpp"
+#include "experiments/training/front_scenes.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+struct FrontTrainingOptions {
+    FrontSceneOptions scenes;
+    FrontLossOptions loss;
+    std::size_t draws_per_step = 8;      ///< changed courses to a step of Adam
+    std::size_t imitation_steps = 2000;  ///< of teacher forcing
+    std::size_t search_steps = 6000;     ///< through the search, after these
+    double imitation_rate = 3e-3;        ///< learning rates of Adam, which fall to 0 along a cosine
+    double search_rate = 1e-3;
+    std::size_t figures_every = 1000;  ///< steps between two looks at the scenes held out
+    std::uint64_t seed = 0;
+    unsigned threads = 1;                ///< the weights are the same with any number
+    std::string checkpoint;              ///< file to go on from, written every so often; none where empty
+    std::size_t checkpoint_every = 200;  ///< steps
+};
+
+/// Throws InvalidInput naming the option that is out of its range.
+void validate(const FrontTrainingOptions& options);
+
+/// How good the lanes of a detector with these weights are.
+struct FrontFigures {
+    std::size_t scenes = 0;
+    double usable = 0.0;  ///< share
+    double iou = 0.0;     ///< mean
+    double exact = 0.0;   ///< share of ground truths
+};
+[[nodiscard]] FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights,
+                                         const FrontSearchOptions& search, unsigned threads);
+
+struct FrontProgress {
+    std::size_t step = 0;
+    std::size_t steps = 0;
+    bool through_search = false;
+    double loss = 0.0;                   ///< mean of a decision, since the last report
+    double reached = 0.0;                ///< share of the scenes whose true lane the rules allow
+    double kept = 0.0;                   ///< share of the scenes whose true lane the beam kept
+    double found = 0.0;                  ///< and whose answer it is
+    double risk = 0.0;                   ///< mean of the answers
+    std::vector<FrontFigures> held_out;  ///< of each set held out
+};
+
+/// Learns the weights of `front` from courses: first each move of the true lane alone, then through the
+/// search. The same courses, options but for `threads` and files, and build give the same weights to the last
+/// bit, also where a run was ended and went on from its checkpoint. Throws InvalidInput where an option is
+/// out of range, InputError where the checkpoint is not one of the same training.
+[[nodiscard]] FrontWeights train_front(const std::vector<Track>& courses,
+                                       const std::vector<SceneSet>& held_out,
+                                       const FrontTrainingOptions& options,
+                                       const std::function<void(const FrontProgress&)>& report);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,75 @@
+#include "experiments/training/front_training_run.hpp"
+
+#include "experiments/files/input_error.hpp"
+#include "experiments/provenance.hpp"
+#include "experiments/tracks/track_spec.hpp"
+#include "experiments/training/front_checkpoint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double rounded(double value) {
+    return std::round(value * 1e6) / 1e6;
+}
+
+Json describe(const FrontFigures& figures) {
+    return {{"scenes", figures.scenes},
+            {"usable", rounded(figures.usable)},
+            {"iou", rounded(figures.iou)},
+            {"exact", rounded(figures.exact)}};
+}
+
+}  // namespace
+
+FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
+                                    const std::function<void(const FrontProgress&)>& report) {
+    std::vector<Track> courses;
+    for (const std::string& spec : options.tracks)
+        std::ranges::move(load_tracks(spec), std::back_inserter(courses));
+    std::vector<SceneSet> held_out;
+    if (!options.hold_out.empty()) {
+        for (const std::string& condition : options.conditions) {
+            SceneOptions scenes;
+            scenes.conditions = {condition};
+            scenes.false_positive_rates = options.rates;
+            scenes.ranges_m = {30.0, 50.0};
+            scenes.every_m = options.hold_out_every_m;
+            scenes.threads = options.training.threads;
+            held_out.push_back(make_scene_set(options.hold_out, scenes));
+        }
+    }
+    Json held_out_names = Json::array();
+    if (!held_out.empty()) {
+        for (const auto& [name, boundaries] : held_out.front().tracks) {
+            held_out_names.push_back(name);
+            if (std::ranges::find(courses, name, &Track::name) != courses.end()) {
+                throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
+            }
+        }
+    }
+    FrontTrainingRun run;
+    std::vector<FrontFigures> last;
+    run.weights = train_front(courses, held_out, options.training, [&](const FrontProgress& progress) {
+        last = progress.held_out;
+        if (report) report(progress);
+    });
+    Json record = Json::parse(describe_training(courses, options.training));
+    record["hold_out_tracks"] = held_out_names;
+    record["hold_out_every"] = options.hold_out_every_m;
+    Json figures = Json::object();
+    for (std::size_t i = 0; i < last.size(); ++i) figures[options.conditions[i]] = describe(last[i]);
+    record["figures_of_hold_out"] = figures;
+    record["commit"] = provenance().commit;
+    run.record = record.dump();
+    return run;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "experiments/training/front_training.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+struct FrontTrainingRunOptions {
+    std::vector<std::string> tracks;    ///< SPECs of load_tracks
+    std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
+    double hold_out_every_m = 10.0;
+    std::vector<std::string> conditions{"paper", "car"};  ///< a set of held-out scenes each
+    std::vector<double> rates{0.0, 0.1, 0.3, 0.5};        ///< of these scenes
+    FrontTrainingOptions training;
+};
+
+struct FrontTrainingRun {
+    FrontWeights weights;
+    std::string record;  ///< JSON object: what it depended on, the last figures, the commit
+};
+
+/// From track names to weights and the record of their training. The record names tracks, not files. Throws
+/// InputError or InvalidInput; also where a track is both trained on and held out.
+[[nodiscard]] FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
+                                                  const std::function<void(const FrontProgress&)>& report);
+
+}  // namespace conelane::experiments

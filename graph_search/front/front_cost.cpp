@@ -1,0 +1,83 @@
+#include "graph_search/front/front_cost.hpp"
+
+#include "conelane/invalid_input.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace conelane {
+
+FrontWeights FrontWeights::zero() {
+    return {FrontNetworkWeights::zero(kExtendInputs), FrontNetworkWeights::zero(kStopInputs),
+            FrontNetworkWeights::zero(kStartFeatures)};
+}
+
+void validate(const FrontWeights& weights) {
+    const auto require = [](const FrontNetworkWeights& network, std::size_t inputs, const char* name) {
+        if (network.inputs != inputs) {
+            throw InvalidInput(std::string(name) + ".inputs", "must be " + std::to_string(inputs));
+        }
+        validate(network, name);
+    };
+    require(weights.extend, kExtendInputs, "extend");
+    require(weights.stop, kStopInputs, "stop");
+    require(weights.start, kStartFeatures, "start");
+}
+
+namespace {
+
+const FrontWeights& valid(const FrontWeights& weights) {
+    validate(weights);
+    return weights;
+}
+
+}  // namespace
+
+FrontCost::FrontCost(const FrontWeights& weights)
+    : extend_network_(valid(weights).extend), stop_network_(weights.stop), start_network_(weights.start) {}
+
+std::span<const float> FrontCost::score_starts(FrontMap& map, const FrontStarts& starts) {
+    for (const Side side : {kLeft, kRight}) {
+        start_cones_[side].clear();
+        for (const Vertex cone : starts.cones[side]) start_cones_[side].push_back(start_cone(map, cone));
+    }
+    starts_.clear();
+    for (const auto& [left, right] : starts.pairs) {
+        for (const Side side : {kLeft, kRight}) {
+            const StartCone& own = start_cones_[side][side == kLeft ? left : right];
+            const StartCone& other = start_cones_[opposite(side)][side == kLeft ? right : left];
+            const StartFeatures seen = start_features(map, own, other, side);
+            starts_.insert(starts_.end(), seen.begin(), seen.end());
+        }
+    }
+    const std::size_t count = starts.pairs.size();
+    scores_.resize(2 * count);
+    FrontSums sums{};
+    start_network_.begin({}, sums);
+    start_network_.score(sums, 0, starts_, scores_);
+    for (std::size_t i = 0; i < count; ++i) scores_[i] = scores_[2 * i] + scores_[2 * i + 1];
+    return std::span(scores_).first(count);
+}
+
+std::span<const float> FrontCost::score_moves(FrontMap& map, const FrontState& state, Side side,
+                                              const FrontMoves& moves) {
+    state_ = state_features(map, state, side);
+    extensions_.clear();
+    for (const FrontMove& move : moves.extensions) {
+        const ExtendFeatures seen = extend_features(map, state, side, move);
+        extensions_.insert(extensions_.end(), seen.begin(), seen.end());
+    }
+    const std::size_t count = moves.extensions.size();
+    scores_.resize(count + (moves.stops ? 1 : 0));
+    FrontSums sums{};
+    extend_network_.begin(state_, sums);
+    extend_network_.score(sums, kStateFeatures, extensions_, std::span(scores_).first(count));
+    if (moves.stops) {
+        stop_ = stop_features(map, state, side, extensions_);
+        stop_network_.begin(state_, sums);
+        stop_network_.score(sums, kStateFeatures, stop_, std::span(scores_).subspan(count));
+    }
+    return scores_;
+}
+
+}  // namespace conelane

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "graph_search/front/front_features.hpp"
+#include "graph_search/front/front_moves.hpp"
+#include "graph_search/front/front_network.hpp"
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+/// The learned scores of what a lane is made of.
+struct FrontWeights {
+    FrontNetworkWeights extend;
+    FrontNetworkWeights stop;
+    FrontNetworkWeights start;  ///< of a pair, once as each boundary sees it
+
+    /// All 0, of the right sizes.
+    [[nodiscard]] static FrontWeights zero();
+    bool operator==(const FrontWeights&) const = default;
+};
+
+/// Throws InvalidInput naming the key.
+void validate(const FrontWeights& weights);
+
+/// Judges starts and moves; the score of a lane is the sum of theirs, a high one is good. Keeps memory from
+/// call to call.
+class FrontCost {
+  public:
+    /// Throws as `validate`.
+    explicit FrontCost(const FrontWeights& weights);
+
+    /// Scores of all pairs, in their order.
+    [[nodiscard]] std::span<const float> score_starts(FrontMap& map, const FrontStarts& starts);
+    /// Scores of all extensions, in their order, then of stopping where the side may stop.
+    [[nodiscard]] std::span<const float> score_moves(FrontMap& map, const FrontState& state, Side side,
+                                                     const FrontMoves& moves);
+
+    // What was seen by the last call of score_moves.
+    [[nodiscard]] const StateFeatures& state_features_seen() const { return state_; }
+    [[nodiscard]] std::span<const float> extend_features_seen() const { return extensions_; }
+    [[nodiscard]] const StopFeatures& stop_features_seen() const { return stop_; }
+    /// And by the last one of score_starts: two rows a pair, of the left and of the right boundary.
+    [[nodiscard]] std::span<const float> start_features_seen() const { return starts_; }
+
+  private:
+    FrontNetwork extend_network_;
+    FrontNetwork stop_network_;
+    FrontNetwork start_network_;
+    StateFeatures state_{};
+    StopFeatures stop_{};
+    std::vector<float> extensions_;
+    std::vector<float> starts_;
+    std::vector<float> scores_;
+    std::array<std::vector<StartCone>, 2> start_cones_;
+};
+
+}  // namespace conelane

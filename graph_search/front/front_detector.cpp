@@ -1,0 +1,105 @@
+#include "graph_search/front/front_detector.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+/// Finished lanes looked at until one is left with two cones a side.
+constexpr std::size_t kFinishedLookedAt = 20;
+
+double distance_m(const FrontMap& map, Vertex cone, const std::vector<Vertex>& boundary) {
+    const Point& at = map.position(cone);
+    double nearest_m = (at - map.position(boundary.front())).norm();
+    for (std::size_t i = 1; i < boundary.size(); ++i) {
+        const Segment segment{map.position(boundary[i - 1]), map.position(boundary[i])};
+        nearest_m = std::min(nearest_m, foot_point(at, segment).distance_m);
+    }
+    return nearest_m;
+}
+
+class FrontDetector final : public LaneDetector {
+  public:
+    explicit FrontDetector(const FrontOptions& options) : cost_(options.weights), options_(options.search) {
+        validate(options_);
+    }
+
+  private:
+    LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
+        SearchBudget budget;
+        budget.deadline = Deadline(limits.time_limit_ms);
+        LaneAnswer answer;
+        if (budget.read_clock()) {
+            answer.stopped_by = budget.stopped_by;
+            return answer;
+        }
+        front_.begin(scene, cost_, options_);
+        front_.run(budget);
+        answer.stopped_by = budget.stopped_by;
+        if (choose(budget.stopped_by.has_value())) {
+            answer.status = LaneStatus::found;
+            answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
+        } else if (!answer.stopped_by) {
+            answer.status = front_.left_out() ? LaneStatus::stopped : LaneStatus::none;
+            if (front_.left_out()) answer.stopped_by = StopReason::iterations;
+        }
+        return answer;
+    }
+
+    /// Puts the best lane into `cones_`; returns false where there is none. `cut_off`: the search did not end
+    /// by itself, and a lane that was still growing may be better than all that had stopped.
+    bool choose(bool cut_off) {
+        front_.sort_finished(kFinishedLookedAt);
+        const std::size_t open = cut_off ? front_.open_lane() : FrontSearch::kNone;
+        const auto finished = front_.finished();
+        if (open != FrontSearch::kNone &&
+            (finished.empty() || front_.node(open).score > finished.front().score) && take(open)) {
+            return true;
+        }
+        const std::size_t count = std::min(kFinishedLookedAt, finished.size());
+        for (const FrontSearch::Finished& lane : finished.first(count)) {
+            if (take(lane.parent)) return true;
+        }
+        return false;
+    }
+
+    bool take(std::size_t node) {
+        front_.cones(node, cones_);
+        even_far_ends(front_.map(), cones_, kWidestLane_m);
+        return cones_[kLeft].size() > 1 && cones_[kRight].size() > 1;
+    }
+
+    [[nodiscard]] std::vector<ConeId> ids(Side side, const Scene& scene) {
+        std::vector<ConeId> ids;
+        ids.reserve(cones_[side].size());
+        for (const Vertex cone : cones_[side]) ids.push_back(scene.cones[front_.map().scene_index(cone)].id);
+        return ids;
+    }
+
+    FrontCost cost_;
+    FrontSearchOptions options_;
+    FrontSearch front_;
+    std::array<std::vector<Vertex>, 2> cones_;
+};
+
+}  // namespace
+
+void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cones, double widest_m) {
+    auto& [left, right] = cones;
+    while (!left.empty() && !right.empty()) {
+        if (distance_m(map, left.back(), right) > widest_m) {
+            left.pop_back();
+        } else if (distance_m(map, right.back(), left) > widest_m) {
+            right.pop_back();
+        } else {
+            break;
+        }
+    }
+}
+
+std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options) {
+    return std::make_unique<FrontDetector>(options);
+}
+
+}  // namespace conelane

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "conelane/lane_detector.hpp"
+#include "graph_search/front/front_search.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+struct FrontOptions {
+    FrontWeights weights;
+    FrontSearchOptions search;
+};
+
+/// The weights that come with the library, in the search that they were trained for.
+[[nodiscard]] FrontOptions shipped_front_options();
+
+/// Lane detection by one front: both boundaries grow together, one cone at a time, under a learned cost that
+/// sees both of them, and a beam search finds the lane of the highest score. A boundary may step over cones
+/// that were not seen. The far ends are evened (see even_far_ends); a lane has two cones a side at least,
+/// each cone at most once, and is never closed.
+///
+/// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none; `stopped` by
+/// iterations where none was found but the beam left some out; `stopped_by` time or memory is the best lane
+/// met until then. Once memory is warm, `detect` allocates the two boundaries of the answer and nothing else.
+/// Nothing is carried from scene to scene. Throws InvalidInput where an option is out of its range.
+[[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
+
+/// The cones of a lane without its far ends, as even_far_ends, on positions. For training too.
+void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cones, double widest_m);
+
+}  // namespace conelane

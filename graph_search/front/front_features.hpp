@@ -1,0 +1,60 @@
+#pragma once
+
+#include "graph_search/front/front_state.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+/// An input of a network. Turns and sides are seen from the boundary that moves, with inward, towards the
+/// other boundary, as positive: so a scene and its mirror image are judged alike.
+struct FrontFeature {
+    std::string_view name;
+    std::string_view unit;    ///< of what is measured, before it is scaled to about 1
+    std::string_view reason;  ///< what it tells, with what a high value means
+};
+
+// The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
+inline constexpr std::size_t kStateFeatures = 20;
+inline constexpr std::size_t kExtendFeatures = 28;
+inline constexpr std::size_t kStopFeatures = 13;
+inline constexpr std::size_t kStartFeatures = 24;
+inline constexpr std::size_t kExtendInputs = kStateFeatures + kExtendFeatures;
+inline constexpr std::size_t kStopInputs = kStateFeatures + kStopFeatures;
+
+[[nodiscard]] std::span<const FrontFeature, kStateFeatures> state_feature_table();
+[[nodiscard]] std::span<const FrontFeature, kExtendFeatures> extend_feature_table();
+[[nodiscard]] std::span<const FrontFeature, kStopFeatures> stop_feature_table();
+[[nodiscard]] std::span<const FrontFeature, kStartFeatures> start_feature_table();
+
+using StateFeatures = std::array<float, kStateFeatures>;
+using ExtendFeatures = std::array<float, kExtendFeatures>;
+using StopFeatures = std::array<float, kStopFeatures>;
+using StartFeatures = std::array<float, kStartFeatures>;
+
+[[nodiscard]] StateFeatures state_features(FrontMap& map, const FrontState& state, Side side);
+/// Precondition: the move extends.
+[[nodiscard]] ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side,
+                                             const FrontMove& move);
+/// `extensions`: those of all moves that extend, one behind the other.
+[[nodiscard]] StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
+                                         std::span<const float> extensions);
+
+/// What a start sees of one of its cones alone, looked up once for all pairs.
+struct StartCone {
+    Vertex cone;
+    float behind;        ///< cones in the strip behind it, up to 3
+    float continuation;  ///< how badly the best segment from it goes along the heading
+    float predecessor;   ///< the same of the best one to it
+    float density;
+};
+[[nodiscard]] StartCone start_cone(FrontMap& map, Vertex cone);
+/// As the boundary on `side` sees the pair.
+[[nodiscard]] StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCone& other,
+                                           Side side);
+
+}  // namespace conelane

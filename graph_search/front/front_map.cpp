@@ -1,0 +1,163 @@
+#include "graph_search/front/front_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace conelane {
+namespace {
+
+/// Cones farther than this beside a way are not seen beside it.
+constexpr double kBeside_m = 2.0;
+constexpr double kBlocking_m = 0.2;
+constexpr double kMiddleFrom = 0.15;
+constexpr double kMiddleTo = 0.85;
+/// Beside a way means between these shares of it: what stands at its ends is another matter.
+constexpr double kBesideFrom = 0.1;
+constexpr double kBesideTo = 0.9;
+/// What `continuation` is where nothing goes on.
+constexpr float kNoContinuation = 2.0F;
+
+}  // namespace
+
+double front_angle(double cross, double dot) {
+    const double x = std::abs(dot);
+    const double y = std::abs(cross);
+    if (x + y == 0.0) return 0.0;
+    const double ratio = std::min(x, y) / std::max(x, y);
+    const double s = ratio * ratio;
+    // Minimax polynomial of the arc tangent on [0, 1].
+    double angle =
+        ratio * (0.99997726 +
+                 s * (-0.33262347 + s * (0.19354346 + s * (-0.11643287 + s * (0.05265332 - s * 0.0117212)))));
+    if (y > x) angle = std::numbers::pi / 2.0 - angle;
+    if (dot < 0.0) angle = std::numbers::pi - angle;
+    return cross < 0.0 ? -angle : angle;
+}
+
+void FrontMap::build(const Scene& scene) {
+    const Point heading = scene.pose.heading();
+    const std::size_t count = scene.cones.size();
+    found_.clear();
+    positions_.resize(count);
+    order_.resize(count);
+    const auto in_car_frame = [&](std::size_t i) {
+        const Point from_car = scene.cones[i].position - scene.pose.position;
+        return Point(heading.dot(from_car), cross(heading, from_car));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        order_[i] = static_cast<std::uint32_t>(i);
+        positions_[i] = in_car_frame(i);
+    }
+    std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+        return std::tuple(positions_[a].x(), positions_[a].y(), scene.cones[a].id) <
+               std::tuple(positions_[b].x(), positions_[b].y(), scene.cones[b].id);
+    });
+    view_radius_m_ = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        positions_[i] = in_car_frame(order_[i]);
+        view_radius_m_ = std::max(view_radius_m_, positions_[i].norm());
+    }
+    places_.assign(count, {0, kNotAsked});
+    used_ = 0;
+    left_out_edges_ = false;
+}
+
+std::pair<Vertex, Vertex> FrontMap::ahead_between(double low_m, double high_m) const {
+    const auto x = [](const Point& point) { return point.x(); };
+    const auto first = std::ranges::lower_bound(positions_, low_m, {}, x);
+    const auto last = std::ranges::upper_bound(positions_, high_m, {}, x);
+    return {static_cast<Vertex>(first - positions_.begin()), static_cast<Vertex>(last - positions_.begin())};
+}
+
+std::span<const FrontEdge> FrontMap::edges(Vertex from) {
+    if (places_[from].count == kNotAsked) find_edges(from);
+    const Place& place = places_[from];
+    if (place.count == 0) return {};
+    return {edge_at(place.first), place.count};
+}
+
+void FrontMap::find_edges(Vertex from) {
+    const Point& at = positions_[from];
+    const auto [first, last] = ahead_between(at.x() - kLongestSegment_m, at.x() + kLongestSegment_m);
+    found_.clear();
+    for (Vertex to = first; to < last; ++to) {
+        const Point way = positions_[to] - at;
+        const double squared_m2 = way.squaredNorm();
+        if (squared_m2 == 0.0 || squared_m2 > kLongestSegment_m * kLongestSegment_m) continue;
+        const double length_m = std::sqrt(squared_m2);
+        found_.push_back({to, static_cast<float>(length_m), 0.0F, way / length_m});
+    }
+    const auto shorter = [](const FrontEdge& a, const FrontEdge& b) {
+        return std::tie(a.length_m, a.to) < std::tie(b.length_m, b.to);
+    };
+    if (found_.size() > kMostEdges) {
+        left_out_edges_ = true;
+        std::nth_element(found_.begin(), found_.begin() + kMostEdges, found_.end(), shorter);
+        found_.resize(kMostEdges);
+    }
+    std::sort(found_.begin(), found_.end(), shorter);
+    // Not across the end of a block.
+    if (used_ % kEdgesPerBlock + found_.size() > kEdgesPerBlock)
+        used_ += kEdgesPerBlock - used_ % kEdgesPerBlock;
+    while (used_ + found_.size() > blocks_.size() * kEdgesPerBlock) {
+        blocks_.emplace_back(kEdgesPerBlock);
+        neighbourhoods_.resize(blocks_.size() * kEdgesPerBlock);
+    }
+    places_[from] = {used_, static_cast<std::uint32_t>(found_.size())};
+    for (FrontEdge& edge : found_) {
+        edge.log_length = static_cast<float>(std::log(static_cast<double>(edge.length_m)));
+        neighbourhoods_[used_].known = false;
+        *edge_at(used_++) = edge;
+    }
+}
+
+const EdgeNeighbourhood& FrontMap::neighbourhood(Vertex from, std::size_t edge) {
+    const std::size_t place = places_[from].first + edge;
+    if (!neighbourhoods_[place].known) {
+        EdgeNeighbourhood about;
+        look_about(from, edge, about);
+        about.known = true;
+        neighbourhoods_[place] = about;  // looking at what goes on may have made more room for them
+    }
+    return neighbourhoods_[place];
+}
+
+void FrontMap::look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about) {
+    const std::span<const FrontEdge> near = edges(from);
+    const FrontEdge& way = near[edge];
+    const double length_m = way.length_m;
+    for (const FrontEdge& other : near) {
+        if (other.length_m > length_m + kBeside_m) break;
+        if (other.to == way.to) continue;
+        const double along_m = other.length_m * way.direction.dot(other.direction);
+        const double left_m = other.length_m * cross(way.direction, other.direction);
+        if (along_m * (along_m - length_m) + left_m * left_m < 0.0) about.within_disc += 1.0F;
+        const double share = along_m / length_m;
+        const double off_m = std::abs(left_m);
+        if (off_m <= kBlocking_m && share >= kMiddleFrom && share <= kMiddleTo) about.blocked = true;
+        if (off_m >= kBeside_m || share < kBesideFrom || share > kBesideTo) continue;
+        const auto nearness = static_cast<float>(1.0 - off_m / kBeside_m);
+        float& nearest = about.nearest_beside[left_m > 0.0 ? kLeft : kRight];
+        nearest = std::max(nearest, nearness);
+        about.beside += nearness;
+    }
+    about.continuation = kNoContinuation;
+    for (const FrontEdge& next : edges(way.to)) {
+        if (next.to == from) continue;
+        if (next.length_m < kBeside_m)
+            about.crowding = std::max(about.crowding, static_cast<float>(1.0 - next.length_m / kBeside_m));
+        if (next.length_m > kShortSegment_m + 1.0) break;
+        const double bend_rad =
+            std::abs(front_angle(cross(way.direction, next.direction), way.direction.dot(next.direction)));
+        const auto badness = static_cast<float>(bend_rad + std::abs(next.log_length - way.log_length));
+        about.continuation = std::min(about.continuation, badness);
+    }
+}
+
+std::size_t FrontMap::memory_bytes() const {
+    return blocks_.size() * kEdgesPerBlock * (sizeof(FrontEdge) + sizeof(EdgeNeighbourhood));
+}
+
+}  // namespace conelane

@@ -1,0 +1,102 @@
+#pragma once
+
+#include "conelane/scene.hpp"
+#include "graph_search/search_graph.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// No cone.
+inline constexpr Vertex kNoCone = ~Vertex{0};
+
+/// Longest segment of a boundary [m], and the longest one that needs no reason (the rules ask for a cone
+/// every 5 m; a longer one bridges cones that were not seen).
+inline constexpr double kLongestSegment_m = 11.5;
+inline constexpr double kShortSegment_m = 5.8;
+
+/// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 where both are 0. An approximation
+/// to 2e-5 rad without the C library, hence the same on any machine.
+[[nodiscard]] double front_angle(double cross, double dot);
+
+/// The way from a cone to another one.
+struct FrontEdge {
+    Vertex to;
+    float length_m;
+    float log_length;  ///< natural logarithm of the length in metres
+    Point direction;   ///< unit vector
+};
+
+/// What lies about the way from a cone to another one. Left and right as seen along it.
+struct EdgeNeighbourhood {
+    bool known = false;
+    bool blocked = false;  ///< a cone within 0.2 m of the middle 70 %
+    /// How near the nearest cone beside it is, from 0 (2 m or more) to 1 (on it).
+    std::array<float, 2> nearest_beside{};
+    float beside = 0.0F;        ///< the same, summed over all cones on both sides
+    float within_disc = 0.0F;   ///< cones in the disc that has the way as diameter
+    float continuation = 0.0F;  ///< how badly the best next segment goes on: bend + change of log length
+    float crowding = 0.0F;      ///< how near the nearest cone at its end is, as nearest_beside
+};
+
+/// The cones of a scene as the search sees them: in the frame of the car (x ahead, y to the left), ordered by
+/// x, then y, then id, so that neither the order of the cones in the scene nor, unless two lie at one place,
+/// their ids make a difference. The ways between them are found when first asked for, and only as many as
+/// kMostEdges from a cone, the shortest ones. Reuses the memory of the map before.
+class FrontMap {
+  public:
+    static constexpr std::size_t kMostEdges = 160;
+
+    void build(const Scene& scene);
+
+    [[nodiscard]] std::size_t size() const { return positions_.size(); }
+    [[nodiscard]] const Point& position(Vertex cone) const { return positions_[cone]; }
+    /// Index in the scene.
+    [[nodiscard]] std::size_t scene_index(Vertex cone) const { return order_[cone]; }
+    /// Cones with x in [low, high] are those from the first to the second.
+    [[nodiscard]] std::pair<Vertex, Vertex> ahead_between(double low_m, double high_m) const;
+    /// Distance of the farthest cone from the car: about as far as the car sees.
+    [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
+
+    /// The ways from a cone of at most kLongestSegment_m, the shortest first. Cones at the same place are not
+    /// joined. Stays valid until the next `build`.
+    [[nodiscard]] std::span<const FrontEdge> edges(Vertex from);
+    /// Whether a cone has more ways than `edges` gives, of all cones asked for.
+    [[nodiscard]] bool left_out_edges() const { return left_out_edges_; }
+    /// `edge`: place in edges(from).
+    [[nodiscard]] const EdgeNeighbourhood& neighbourhood(Vertex from, std::size_t edge);
+
+    /// Bytes that grow with what was asked for.
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+  private:
+    struct Place {
+        std::size_t first;
+        std::uint32_t count;
+    };
+    static constexpr std::uint32_t kNotAsked = ~std::uint32_t{0};
+    static constexpr std::size_t kEdgesPerBlock = 4096;
+
+    [[nodiscard]] FrontEdge* edge_at(std::size_t place) {
+        return &blocks_[place / kEdgesPerBlock][place % kEdgesPerBlock];
+    }
+    void find_edges(Vertex from);
+    void look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about);
+
+    std::vector<Point> positions_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Place> places_;
+    // In blocks, so that spans stay valid while others are asked for.
+    std::vector<std::vector<FrontEdge>> blocks_;
+    std::vector<EdgeNeighbourhood> neighbourhoods_;
+    std::vector<FrontEdge> found_;
+    std::size_t used_ = 0;
+    double view_radius_m_ = 0.0;
+    bool left_out_edges_ = false;
+};
+
+}  // namespace conelane

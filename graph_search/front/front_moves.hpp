@@ -1,0 +1,63 @@
+#pragma once
+
+#include "graph_search/front/front_state.hpp"
+
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace conelane {
+
+/// What no lane may break, whatever its cost. There is no upper width beside a boundary that goes on: it
+/// would exclude true lanes in hairpins.
+struct FrontRules {
+    double narrowest_m = 2.0;     ///< from a new segment to the other boundary, noise included
+    double widest_alone_m = 6.8;  ///< from a new cone to a boundary that has stopped
+    double largest_turn_rad = 83.0 * std::numbers::pi / 180.0;
+    double largest_long_turn_rad = 80.0 * std::numbers::pi / 180.0;    ///< onto a segment that bridges
+    double largest_first_turn_rad = 103.0 * std::numbers::pi / 180.0;  ///< from the heading
+    std::size_t long_segments = 8;    ///< segments over kShortSegment_m, those that go on straightest
+    std::size_t short_segments = 48;  ///< of those up to it, the shortest
+    double longest_boundary_m = 300.0;
+    // Of the cones that a lane may start with.
+    double start_behind_m = 0.6;  ///< noise moves the first cone behind the car
+    double start_ahead_m = 12.0;
+    double start_across_m = 2.5;  ///< a side may cross the heading by so much: pose error
+    double start_aside_m = 9.0;
+    double widest_start_m = 10.0;
+    std::size_t start_cones = 48;  ///< of each side, the nearest to the car
+};
+
+/// The moves of that side that its last cones allow: all segments up to kShortSegment_m and the straightest
+/// of the longer ones that no cone stands on, in the order of their length. What the whole lane forbids is
+/// looked at by FrontSearch. Returns whether short ones were left out. `stops`: whether the side may stop,
+/// which takes two cones.
+struct FrontMoves {
+    std::vector<FrontMove> extensions;
+    bool stops = false;
+    bool left_out = false;
+
+    void list(FrontMap& map, const FrontState& state, Side side, const FrontRules& rules);
+
+  private:
+    struct LongSegment {
+        double off_m;
+        std::size_t edge;
+    };
+    std::vector<LongSegment> long_segments_;
+};
+
+/// The pairs that a lane may start with.
+struct FrontStarts {
+    struct Pair {
+        std::size_t left;  ///< place in cones[kLeft]
+        std::size_t right;
+    };
+    std::array<std::vector<Vertex>, 2> cones;
+    std::vector<Pair> pairs;
+    bool left_out = false;  ///< there are more cones than FrontRules::start_cones
+
+    void list(const FrontMap& map, const FrontRules& rules);
+};
+
+}  // namespace conelane

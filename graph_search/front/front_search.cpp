@@ -1,0 +1,223 @@
+#include "graph_search/front/front_search.hpp"
+
+#include "conelane/invalid_input.hpp"
+
+#include <cmath>
+#include <string>
+#include <tuple>
+
+namespace conelane {
+namespace {
+
+std::size_t word_of(Vertex cone) {
+    return cone / 64 % 4;
+}
+std::uint64_t bit_of(Vertex cone) {
+    return std::uint64_t{1} << (cone % 64);
+}
+
+/// Whether two segments are surely farther apart than `gap_m`.
+bool far_apart(const Segment& a, const Segment& b, double gap_m) {
+    return std::min(a.from.x(), a.to.x()) > std::max(b.from.x(), b.to.x()) + gap_m ||
+           std::min(b.from.x(), b.to.x()) > std::max(a.from.x(), a.to.x()) + gap_m ||
+           std::min(a.from.y(), a.to.y()) > std::max(b.from.y(), b.to.y()) + gap_m ||
+           std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
+}
+
+}  // namespace
+
+void validate(const FrontSearchOptions& options) {
+    if (options.beam_width < 1) throw InvalidInput("beam_width", "must be at least 1");
+    if (!(options.drop > 0.0)) throw InvalidInput("drop", "must be positive");
+    if (!(options.level_m > 0.0 && std::isfinite(options.level_m)))
+        throw InvalidInput("level_m", "must be positive");
+}
+
+void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options) {
+    cost_ = &cost;
+    options_ = options;
+    map_.build(scene);
+    nodes_.clear();
+    finished_.clear();
+    level_.clear();
+    for (std::vector<Candidate>& level : levels_) level.clear();
+    next_level_ = 0;
+    open_lane_ = kNone;
+    expanded_ = 0;
+    starts_.list(map_, options_.rules);
+    left_out_ = starts_.left_out;
+    const std::span<const float> scores = cost.score_starts(map_, starts_);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        const auto& [left, right] = starts_.pairs[i];
+        const FrontState state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
+        push(level_of(state), {static_cast<double>(scores[i]), kNone, {}, kLeft, i});
+    }
+}
+
+bool FrontSearch::advance(SearchBudget& budget) {
+    while (next_level_ < levels_.size() && levels_[next_level_].empty()) ++next_level_;
+    level_.clear();
+    if (next_level_ == levels_.size() || budget.read_clock()) return false;
+    keep_best();
+    levels_[next_level_].clear();
+    ++next_level_;
+    for (const std::size_t number : level_) {
+        expand(number);
+        if (budget.read_clock()) return false;
+    }
+    return !budget.occupy(nodes_.size() * sizeof(Node) + map_.memory_bytes());
+}
+
+void FrontSearch::run(SearchBudget& budget) {
+    while (advance(budget)) {
+    }
+    left_out_ = left_out_ || map_.left_out_edges();
+}
+
+void FrontSearch::keep_best() {
+    const std::vector<Candidate>& candidates = levels_[next_level_];
+    order_.resize(candidates.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
+    std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+        return std::tuple(-candidates[a].score, a) < std::tuple(-candidates[b].score, b);
+    });
+    for (const std::uint32_t i : order_) {
+        const Candidate& candidate = candidates[i];
+        if (level_.size() == options_.beam_width ||
+            (!level_.empty() && candidate.score < nodes_[level_.front()].score - options_.drop)) {
+            left_out_ = true;
+            break;
+        }
+        const std::size_t number = add(candidate);
+        if (number == kNone) continue;
+        if (options_.merge && is_kept_front(nodes_[number].state)) {
+            left_out_ = true;
+            nodes_.pop_back();
+            continue;
+        }
+        level_.push_back(number);
+    }
+    const auto lane =
+        std::ranges::find_if(level_, [&](std::size_t number) { return nodes_[number].state.is_lane(); });
+    if (lane != level_.end()) open_lane_ = *lane;
+}
+
+void FrontSearch::expand(std::size_t number) {
+    ++expanded_;
+    const Side side = moving_side(map_, nodes_[number].state);
+    moves_.list(map_, nodes_[number].state, side, options_.rules);
+    left_out_ = left_out_ || moves_.left_out;
+    const std::span<const float> scores = cost_->score_moves(map_, nodes_[number].state, side, moves_);
+    const Node& from = nodes_[number];
+    const std::size_t level = level_number();
+    for (std::size_t i = 0; i < moves_.extensions.size(); ++i) {
+        const FrontMove& move = moves_.extensions[i];
+        const double ahead_m =
+            static_cast<double>(map_.edges(from.state.ends[side].cones[0])[move.edge].length_m);
+        const double progress_m =
+            from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
+        push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
+             {from.score + static_cast<double>(scores[i]), number, move, side, from.start});
+    }
+    if (!moves_.stops) return;
+    const double score = from.score + static_cast<double>(scores.back());
+    if (!from.state.ends[opposite(side)].stopped) {
+        push(level_after(level, from.state), {score, number, {}, side, from.start});
+    } else if (from.state.is_lane()) {
+        finished_.push_back({number, side, score});
+    }
+}
+
+void FrontSearch::push(std::size_t level, const Candidate& candidate) {
+    if (level >= levels_.size()) levels_.resize(level + 1);
+    levels_[level].push_back(candidate);
+}
+
+std::size_t FrontSearch::level_of(const FrontState& state) const {
+    return static_cast<std::size_t>((state.ends[kLeft].length_m + state.ends[kRight].length_m) /
+                                    options_.level_m);
+}
+
+std::size_t FrontSearch::add(const Candidate& candidate) {
+    Node node;
+    node.score = candidate.score;
+    node.parent = candidate.parent;
+    node.move = candidate.move;
+    node.side = candidate.side;
+    node.start = candidate.start;
+    if (candidate.parent == kNone) {
+        const auto& [left, right] = starts_.pairs[candidate.start];
+        node.state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
+        node.bits.fill(0);
+        for (const FrontEnd& end : node.state.ends) node.bits[word_of(end.cones[0])] |= bit_of(end.cones[0]);
+    } else {
+        if (!candidate.move.stops() && !is_free(candidate.parent, candidate.side, candidate.move.to))
+            return kNone;
+        node.state = moved(map_, nodes_[candidate.parent].state, candidate.side, candidate.move);
+        node.bits = nodes_[candidate.parent].bits;
+        if (!candidate.move.stops()) node.bits[word_of(candidate.move.to)] |= bit_of(candidate.move.to);
+    }
+    nodes_.push_back(node);
+    return nodes_.size() - 1;
+}
+
+bool FrontSearch::is_kept_front(const FrontState& state) const {
+    return std::ranges::any_of(level_,
+                               [&](std::size_t number) { return nodes_[number].state.same_front(state); });
+}
+
+bool FrontSearch::is_on_lane(std::size_t number, Vertex cone) const {
+    if ((nodes_[number].bits[word_of(cone)] & bit_of(cone)) == 0) return false;
+    if (map_.size() <= 64 * nodes_[number].bits.size()) return true;
+    for (; number != kNone; number = nodes_[number].parent) {
+        const Node& node = nodes_[number];
+        if (node.state.ends[kLeft].cones[0] == cone || node.state.ends[kRight].cones[0] == cone) return true;
+    }
+    return false;
+}
+
+bool FrontSearch::is_free(std::size_t number, Side side, Vertex to) const {
+    if (is_on_lane(number, to)) return false;
+    const Vertex last = nodes_[number].state.ends[side].cones[0];
+    const Segment added{map_.position(last), map_.position(to)};
+    for (; number != kNone; number = nodes_[number].parent) {
+        const Node& node = nodes_[number];
+        if (node.parent == kNone) {
+            const Point& facing = map_.position(node.state.ends[opposite(side)].cones[0]);
+            return foot_point(facing, added).distance_m >= options_.rules.narrowest_m;
+        }
+        if (node.move.stops()) continue;
+        const std::array<Vertex, 3>& cones = node.state.ends[node.side].cones;
+        const Segment segment{map_.position(cones[1]), map_.position(cones[0])};
+        if (node.side == side) {
+            if (cones[0] != last && !far_apart(added, segment, 0.0) && segments_intersect(added, segment))
+                return false;
+        } else if (!far_apart(added, segment, options_.rules.narrowest_m) &&
+                   segment_distance(added, segment).distance_m < options_.rules.narrowest_m) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void FrontSearch::sort_finished(std::size_t count) {
+    count = std::min(count, finished_.size());
+    std::partial_sort(finished_.begin(), finished_.begin() + static_cast<std::ptrdiff_t>(count),
+                      finished_.end(), [](const Finished& a, const Finished& b) {
+                          return std::tuple(-a.score, a.parent) < std::tuple(-b.score, b.parent);
+                      });
+}
+
+void FrontSearch::cones(std::size_t number, std::array<std::vector<Vertex>, 2>& cones) const {
+    for (std::vector<Vertex>& side : cones) side.clear();
+    for (; nodes_[number].parent != kNone; number = nodes_[number].parent) {
+        const Node& node = nodes_[number];
+        if (!node.move.stops()) cones[node.side].push_back(node.move.to);
+    }
+    for (const Side side : {kLeft, kRight}) {
+        cones[side].push_back(nodes_[number].state.ends[side].cones[0]);
+        std::ranges::reverse(cones[side]);
+    }
+}
+
+}  // namespace conelane

@@ -1,0 +1,130 @@
+#pragma once
+
+#include "graph_search/front/front_cost.hpp"
+#include "graph_search/search_budget.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+struct FrontSearchOptions {
+    FrontRules rules;
+    std::size_t beam_width = 30;  ///< states kept at each level of progress
+    double drop = 4.0;            ///< those so much behind the best of their level are not kept
+    double level_m = 2.5;         ///< progress, of both boundaries together, from level to level
+    bool merge = true;            ///< of the states with the same front only the best is kept
+};
+
+/// Throws InvalidInput naming the option that is out of its range.
+void validate(const FrontSearchOptions& options);
+
+/// Beam search over fronts. States compete with those of the same progress, the length of both boundaries
+/// with what lies before their first cones; of each level the best go on. A level holds the states of one
+/// front once, the best of them. Of states of equal score the one found first goes first: cones are in the
+/// order of FrontMap, so the answer depends on nothing but the scene and the options.
+///
+/// A new segment may cross none of the lane's segments and comes nowhere within FrontRules::narrowest_m of
+/// the other boundary; no cone is on a lane twice. Where the beam is as wide as there are states, none is
+/// dropped or merged, and the rules leave out no segment or start, every lane is met.
+class FrontSearch {
+  public:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    struct Node {
+        FrontState state;
+        double score;
+        std::size_t parent;  ///< kNone: a start
+        FrontMove move;      ///< that led here
+        Side side;           ///< that moved
+        std::size_t start;   ///< place in FrontStarts::pairs
+        std::array<std::uint64_t, 4>
+            bits;  ///< of the lane's cones; each stands for all cones of the same remainder
+    };
+
+    /// A state that may be kept.
+    struct Candidate {
+        double score;
+        std::size_t parent;
+        FrontMove move;
+        Side side;
+        std::size_t start;
+    };
+
+    /// Keeps the references as long as it runs, and memory from call to call.
+    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options);
+    /// Keeps the best of the next level that has a state, and lets them move. Returns whether there was such
+    /// a level. Where the budget is spent it returns false.
+    bool advance(SearchBudget& budget);
+    /// All levels.
+    void run(SearchBudget& budget);
+
+    [[nodiscard]] const FrontSearchOptions& options() const { return options_; }
+    [[nodiscard]] FrontMap& map() { return map_; }
+    [[nodiscard]] const FrontMap& map() const { return map_; }
+    [[nodiscard]] const Node& node(std::size_t number) const { return nodes_[number]; }
+    /// The states kept on the level before, best first.
+    [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
+    /// Lanes whose both sides have stopped, in the order in which they were found.
+    struct Finished {
+        std::size_t parent;
+        Side side;  ///< that stopped last
+        double score;
+    };
+    [[nodiscard]] std::span<const Finished> finished() const { return finished_; }
+    /// Puts the best `count` of them first, best first.
+    void sort_finished(std::size_t count);
+    /// Whether a state, a move or a start was not followed that might have led to another lane.
+    [[nodiscard]] bool left_out() const { return left_out_; }
+    [[nodiscard]] std::int64_t expanded() const { return expanded_; }
+
+    /// The cones of a state, as FrontMap has them.
+    void cones(std::size_t number, std::array<std::vector<Vertex>, 2>& cones) const;
+    /// Of the last level that held a lane, the best one; kNone where there was none.
+    [[nodiscard]] std::size_t open_lane() const { return open_lane_; }
+
+    // For training, which follows the true lane beside the beam.
+    [[nodiscard]] const FrontStarts& starts() const { return starts_; }
+    /// The level that advance worked on.
+    [[nodiscard]] std::size_t level_number() const { return next_level_ - 1; }
+    /// The level that a start belongs to.
+    [[nodiscard]] std::size_t first_level(const FrontState& state) const { return level_of(state); }
+    /// The level that a state made by a move from `level` belongs to.
+    [[nodiscard]] std::size_t level_after(std::size_t level, const FrontState& state) const {
+        return std::max(level + 1, level_of(state));
+    }
+    /// The number of a new state, which is on no level; kNone where the whole lane forbids the move.
+    std::size_t add(const Candidate& candidate);
+
+  private:
+    [[nodiscard]] std::size_t level_of(const FrontState& state) const;
+    [[nodiscard]] bool is_on_lane(std::size_t number, Vertex cone) const;
+    /// Whether the whole lane leaves room for a segment to that cone.
+    [[nodiscard]] bool is_free(std::size_t number, Side side, Vertex to) const;
+    [[nodiscard]] bool is_kept_front(const FrontState& state) const;
+    void keep_best();
+    void expand(std::size_t number);
+    void push(std::size_t level, const Candidate& candidate);
+
+    FrontCost* cost_ = nullptr;
+    FrontSearchOptions options_;
+    FrontMap map_;
+    FrontStarts starts_;
+    FrontMoves moves_;
+    std::vector<Node> nodes_;
+    std::vector<std::vector<Candidate>> levels_;
+    std::vector<std::uint32_t> order_;
+    std::vector<std::size_t> level_;
+    std::vector<Finished> finished_;
+    std::size_t next_level_ = 0;
+    std::size_t open_lane_ = kNone;
+    std::int64_t expanded_ = 0;
+    bool left_out_ = false;
+};
+
+}  // namespace conelane

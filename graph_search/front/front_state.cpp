@@ -1,0 +1,79 @@
+#include "graph_search/front/front_state.hpp"
+
+#include <algorithm>
+
+namespace conelane {
+namespace {
+
+/// A usual lane, which counts as one width measured.
+constexpr float kUsualWidth_m = 3.6F;
+
+}  // namespace
+
+float FrontState::mean_width_m() const {
+    return (kUsualWidth_m + width_sum_m) / static_cast<float>(1 + widths);
+}
+
+bool FrontState::same_front(const FrontState& other) const {
+    for (const Side side : {kLeft, kRight}) {
+        if (ends[side].cones != other.ends[side].cones || ends[side].stopped != other.ends[side].stopped)
+            return false;
+    }
+    return true;
+}
+
+FrontState start_state(const FrontMap& map, Vertex left, Vertex right) {
+    FrontState state;
+    const std::array<Vertex, 2> cones{left, right};
+    for (const Side side : {kLeft, kRight}) {
+        state.ends[side].cones[0] = cones[side];
+        state.ends[side].count = 1;
+        // How far ahead it begins counts as progress: else lanes that begin later would seem to be behind.
+        state.ends[side].length_m = std::max(0.0, map.position(cones[side]).x());
+    }
+    return state;
+}
+
+Side moving_side(const FrontMap& map, const FrontState& state) {
+    const auto& [left, right] = state.ends;
+    if (left.stopped) return kRight;
+    if (right.stopped) return kLeft;
+    const Point along = left.direction + right.direction;
+    const Point lead = map.position(left.cones[0]) - map.position(right.cones[0]);
+    return lead.dot(along) <= 0.0 ? kLeft : kRight;
+}
+
+FrontState moved(FrontMap& map, const FrontState& state, Side side, const FrontMove& move) {
+    FrontState next = state;
+    FrontEnd& end = next.ends[side];
+    if (move.stops()) {
+        end.stopped = true;
+        return next;
+    }
+    const FrontEdge& edge = map.edges(end.cones[0])[move.edge];
+    if (end.count > 1) {
+        end.turn_rad = static_cast<float>(
+            front_angle(cross(end.direction, edge.direction), end.direction.dot(edge.direction)));
+    }
+    end.cones = {move.to, end.cones[0], end.cones[1]};
+    end.direction = edge.direction;
+    end.segment_m = edge.length_m;
+    end.log_segment = edge.log_length;
+    end.length_m += static_cast<double>(edge.length_m);
+    ++end.count;
+    next.width_sum_m +=
+        static_cast<float>(facing_distance_m(map, state.ends[opposite(side)], map.position(move.to)));
+    ++next.widths;
+    return next;
+}
+
+double facing_distance_m(const FrontMap& map, const FrontEnd& other, const Point& cone) {
+    const Point from_end = cone - map.position(other.cones[0]);
+    if (other.count < 2) return from_end.norm();
+    const double along_m = from_end.dot(other.direction);
+    // The last segment and beyond; what lies behind it is measured from where it begins.
+    const double before_m = std::min(0.0, along_m + static_cast<double>(other.segment_m));
+    return Point(cross(other.direction, from_end), before_m).norm();
+}
+
+}  // namespace conelane
