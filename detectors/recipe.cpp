@@ -2,6 +2,7 @@
 
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
+#include "graph_search/front/front_detector.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -17,6 +18,10 @@ constexpr std::size_t kRldContext = 24;
 
 std::unique_ptr<RldSolver> path_pair() {
     return make_path_pair_solver();
+}
+
+std::unique_ptr<LaneDetector> front() {
+    return make_front_detector(shipped_front_options());
 }
 
 std::unique_ptr<LaneDetector> clc() {
@@ -38,6 +43,10 @@ std::unique_ptr<LaneDetector> delaunay_beam() {
 }
 
 constexpr std::array kRecipes{
+    DetectorRecipe{"front",
+                   "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
+                   "missed cones",
+                   OtherRecipe{front}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
                    "features and consensus of the candidates that it puts first",

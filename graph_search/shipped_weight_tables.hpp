@@ -28,4 +28,20 @@ struct StepScoreTable {
 };
 extern const std::span<const StepScoreTable> kStepScores;
 
+/// A network of `front`, see FrontNetworkWeights.
+struct FrontNetworkTable {
+    std::span<const double> hidden;
+    std::span<const double> hidden_bias;
+    std::span<const double> output;
+    std::span<const double> linear;
+    std::span<const double> output_bias;  ///< one number
+};
+struct FrontTable {
+    std::span<const std::string_view> features;  ///< of the state, a move, a stop, a start
+    FrontNetworkTable extend;
+    FrontNetworkTable stop;
+    FrontNetworkTable start;
+};
+extern const FrontTable kFront;
+
 }  // namespace conelane

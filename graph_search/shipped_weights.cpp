@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace conelane {
 namespace {
@@ -48,6 +50,17 @@ RankNetWeights weights(const RankNetTable& table) {
     return result;
 }
 
+FrontNetworkWeights weights(const FrontNetworkTable& table) {
+    const auto floats = [](std::span<const double> numbers) {
+        std::vector<float> result;
+        for (const double number : numbers) result.push_back(static_cast<float>(number));
+        return result;
+    };
+    require(table.output_bias.size() == 1, "output_bias", "must be one number");
+    return {table.linear.size(),  floats(table.hidden), floats(table.hidden_bias),
+            floats(table.output), floats(table.linear), floats(table.output_bias).front()};
+}
+
 }  // namespace
 
 RankNetWeights paper_rank_net_weights() {
@@ -79,6 +92,21 @@ std::shared_ptr<const StepScores> shipped_step_scores() {
     }
     validate(*scores);
     return scores;
+}
+
+FrontWeights shipped_front_weights() {
+    std::vector<std::string_view> known;
+    const auto add = [&](auto table) {
+        for (const FrontFeature& feature : table) known.push_back(feature.name);
+    };
+    add(state_feature_table());
+    add(extend_feature_table());
+    add(stop_feature_table());
+    add(start_feature_table());
+    require(std::ranges::equal(kFront.features, known), "features", "are not those of the library");
+    FrontWeights result{weights(kFront.extend), weights(kFront.stop), weights(kFront.start)};
+    validate(result);
+    return result;
 }
 
 }  // namespace conelane

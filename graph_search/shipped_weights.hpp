@@ -1,5 +1,6 @@
 #pragma once
 
+#include "graph_search/front/front_cost.hpp"
 #include "graph_search/lane_beam.hpp"
 #include "graph_search/ranking.hpp"
 
@@ -16,5 +17,8 @@ namespace conelane {
 
 /// The scores for LaneBeam that come with the library.
 [[nodiscard]] std::shared_ptr<const StepScores> shipped_step_scores();
+
+/// The weights of `front` that come with the library.
+[[nodiscard]] FrontWeights shipped_front_weights();
 
 }  // namespace conelane

@@ -63,11 +63,33 @@ function(conelane_step_scores result symbol name)
     set(${result} "${text}" PARENT_SCOPE)
 endfunction()
 
+# Sets `result` to the definition of a FrontTable.
+function(conelane_front_weights result symbol name)
+    conelane_weight_file(json ${name})
+    conelane_cut(features "${json}" "\n\"features\": *{([^}]*)}")
+    string(REGEX REPLACE "\"(state|extend|stop|start)\": *\\[" "" features "${features}")
+    string(REPLACE "]" "" features "${features}")
+    set(text "constexpr std::string_view ${symbol}_features[]{${features}};\n")
+    set(networks "")
+    foreach(network extend stop start)
+        set(spans "")
+        foreach(key hidden hidden_bias output linear output_bias)
+            conelane_cut(numbers "${json}" "\n\"${network}_${key}\": *\\[([^]]*)\\]")
+            string(APPEND text "constexpr double ${symbol}_${network}_${key}[]{${numbers}};\n")
+            string(APPEND spans "${symbol}_${network}_${key}, ")
+        endforeach()
+        string(APPEND networks ",\n    {${spans}}")
+    endforeach()
+    string(APPEND text "constinit const FrontTable ${symbol}{${symbol}_features${networks}};\n")
+    set(${result} "${text}" PARENT_SCOPE)
+endfunction()
+
 # Writes `output`, which defines what shipped_weight_tables.hpp declares.
 function(conelane_weights output)
     conelane_rank_net(paper kPaperRankNet rank_net_paper)
     conelane_rank_net(extended kExtendedRankNet rank_net_extended)
     conelane_step_scores(steps kStepScores step_scores)
+    conelane_front_weights(front kFront front)
     file(CONFIGURE OUTPUT ${output} @ONLY CONTENT [[
 #include "graph_search/shipped_weight_tables.hpp"
 
@@ -76,6 +98,7 @@ namespace conelane {
 @paper@
 @extended@
 @steps@
+@front@
 }  // namespace conelane
 ]])
 endfunction()

@@ -1,5 +1,7 @@
 #include "graph_search/front/front_detector.hpp"
 
+#include "graph_search/shipped_weights.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -41,8 +43,9 @@ class FrontDetector final : public LaneDetector {
             answer.status = LaneStatus::found;
             answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
         } else if (!answer.stopped_by) {
-            answer.status = front_.left_out() ? LaneStatus::stopped : LaneStatus::none;
-            if (front_.left_out()) answer.stopped_by = StopReason::iterations;
+            const bool left_out = front_.left_out() || front_.finished().size() > kFinishedLookedAt;
+            answer.status = left_out ? LaneStatus::stopped : LaneStatus::none;
+            if (left_out) answer.stopped_by = StopReason::iterations;
         }
         return answer;
     }
@@ -96,6 +99,10 @@ void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cone
             break;
         }
     }
+}
+
+FrontOptions shipped_front_options() {
+    return {shipped_front_weights(), {}};
 }
 
 std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options) {

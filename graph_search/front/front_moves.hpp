@@ -12,10 +12,10 @@ namespace conelane {
 /// would exclude true lanes in hairpins.
 struct FrontRules {
     double narrowest_m = 2.0;     ///< from a new segment to the other boundary, noise included
-    double widest_alone_m = 6.8;  ///< from a new cone to a boundary that has stopped
-    double largest_turn_rad = 83.0 * std::numbers::pi / 180.0;
-    double largest_long_turn_rad = 80.0 * std::numbers::pi / 180.0;    ///< onto a segment that bridges
-    double largest_first_turn_rad = 103.0 * std::numbers::pi / 180.0;  ///< from the heading
+    double widest_alone_m = 7.5;  ///< from a new cone to a boundary that has stopped
+    double largest_turn_rad = 110.0 * std::numbers::pi / 180.0;
+    double largest_long_turn_rad = 85.0 * std::numbers::pi / 180.0;    ///< onto a segment that bridges
+    double largest_first_turn_rad = 110.0 * std::numbers::pi / 180.0;  ///< from the heading
     std::size_t long_segments = 8;    ///< segments over kShortSegment_m, those that go on straightest
     std::size_t short_segments = 48;  ///< of those up to it, the shortest
     double longest_boundary_m = 300.0;

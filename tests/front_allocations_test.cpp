@@ -1,0 +1,52 @@
+#include "graph_search/front/front_detector.hpp"
+#include "tests/front_fixture.hpp"
+#include "tests/no_time_limit.hpp"
+
+#include <cstdlib>
+#include <new>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+// Every allocation of this program comes through here; the other forms of operator new call this one.
+// Inlined, GCC 12 takes new and free for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+    std::free(memory);
+}
+
+namespace conelane {
+namespace {
+
+TEST(FrontAllocations, OnlyTheAnswersBoundariesOnceMemoryIsWarm) {
+    Scene scene = tests::straight_front_scene(10);
+    boost::random::mt19937_64 random(4);
+    boost::random::uniform_real_distribution<double> ahead(0.0, 45.0);
+    boost::random::uniform_real_distribution<double> left(-20.0, 20.0);
+    for (int i = 0; i < 60; ++i) {
+        const double x = ahead(random);
+        scene.cones.push_back({1000 + i, {x, left(random)}});
+    }
+    const auto detector = make_front_detector(shipped_front_options());
+    const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);
+    ASSERT_EQ(first.status, LaneStatus::found);
+    const std::size_t before = allocations;
+    const LaneAnswer again = detector->detect(scene, tests::kNoTimeLimit);
+    EXPECT_EQ(allocations - before, 2U);
+    EXPECT_EQ(again.lane, first.lane);
+}
+
+}  // namespace
+}  // namespace conelane
