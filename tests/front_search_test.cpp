@@ -36,6 +36,7 @@ FrontSearchOptions exhaustive() {
     FrontSearchOptions options;
     options.beam_width = std::numeric_limits<std::size_t>::max();
     options.drop = std::numeric_limits<double>::infinity();
+    options.finished_drop = std::numeric_limits<double>::infinity();
     options.merge = false;
     return options;
 }
@@ -429,6 +430,7 @@ TEST(FrontDetector, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
     EXPECT_EQ(key_of([](auto& o) { o.search.beam_width = 0; }), "beam_width");
     EXPECT_EQ(key_of([](auto& o) { o.search.drop = 0.0; }), "drop");
+    EXPECT_EQ(key_of([](auto& o) { o.search.finished_drop = -1.0; }), "finished_drop");
     EXPECT_EQ(key_of([](auto& o) { o.search.level_m = 0.0; }), "level_m");
     EXPECT_EQ(key_of([](auto& o) { o.weights.extend.inputs = 3; }), "extend.inputs");
     EXPECT_EQ(key_of([](auto& o) { o.weights.stop.hidden.pop_back(); }), "stop.hidden");

@@ -34,6 +34,8 @@ constexpr double kLeastSpacing = 0.6;  ///< of the course's own
 constexpr double kMostSpacing = 1.5;
 constexpr double kSpacingJitter = 0.2;
 constexpr double kLongestSpacing_m = 5.6;
+constexpr double kOtherCourseShare = 0.35;
+constexpr double kOtherCourseOff_m = 3.4;  ///< from the centre line: outside the lane
 constexpr double kDisturbedShare = 0.68;
 constexpr double kMostNoise_m = 0.2;
 constexpr double kMostMissed = 0.1;
@@ -158,6 +160,32 @@ Pose changed(const Pose& pose, const Warp& warp, bool backwards) {
     return {warp(pose.position), std::atan2(along.y(), along.x())};
 }
 
+/// Lays another course over this one, at any angle and through a place of it, but for the cones that would
+/// stand on its lane. So legs of other parts of a course lie near in every way, and lead astray.
+void add_other_course(Track& track, const std::vector<Pose>& poses, const Track& other, Random& random) {
+    const Warp warp(random, true);
+    const double angle_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
+    const Point turned(std::cos(angle_rad), std::sin(angle_rad));
+    const auto turn = [&](const Point& point) {
+        return Point(turned.x() * point.x() - turned.y() * point.y(),
+                     turned.y() * point.x() + turned.x() * point.y());
+    };
+    const Point through = turn(warp(other.cones[other.left[any_below(random, other.left.size())]].position));
+    const Point aside(uniform(random, -12.0, 12.0), uniform(random, -12.0, 12.0));
+    const Point shift = poses[any_below(random, poses.size())].position + aside - through;
+    for (const std::vector<std::size_t>* side : {&other.left, &other.right}) {
+        for (const std::size_t index : *side) {
+            Cone cone;
+            cone.id = static_cast<ConeId>(track.cones.size());
+            cone.position = turn(warp(other.cones[index].position)) + shift;
+            const auto is_near = [&](const Pose& pose) {
+                return (pose.position - cone.position).squaredNorm() < kOtherCourseOff_m * kOtherCourseOff_m;
+            };
+            if (std::ranges::none_of(poses, is_near)) track.cones.push_back(cone);
+        }
+    }
+}
+
 /// Adds false positives where the cones of the course are not seen so far.
 void add_false_positives(Scene& scene, double rate, double range_m, Random& random) {
     const auto seen = static_cast<double>(scene.cones.size());
@@ -197,11 +225,16 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
     const Warp warp(random, options_.warp);
     const bool backwards = one_in(random, 0.5);
     Track track = changed(course.track, warp, backwards, options_.respace, random);
+    std::vector<Pose> poses;
+    for (const Pose& pose : course.poses) poses.push_back(changed(pose, warp, backwards));
+    if (options_.other_course && one_in(random, kOtherCourseShare)) {
+        add_other_course(track, poses, courses_[any_below(random, courses_.size())].track, random);
+    }
     Drawn drawn;
     drawn.boundaries = boundaries(track);
     for (std::size_t i = 0; i < options_.scenes_per_draw; ++i) {
         track.name = fmt::format("{}/{}", name, i);
-        const Pose pose = changed(course.poses[any_below(random, course.poses.size())], warp, backwards);
+        const Pose pose = poses[any_below(random, poses.size())];
         SceneOptions scenes;
         scenes.seed = seed_;
         const double kind = uniform(random, 0.0, 1.0);

@@ -16,14 +16,16 @@ struct FrontSceneOptions {
     std::size_t scenes_per_draw = 4;  ///< from one changed course
     bool warp = true;                 ///< scale and swirl
     bool respace = true;
-    bool disturb = true;      ///< noise, missed cones and pose error
-    bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
+    bool disturb = true;       ///< noise, missed cones and pose error
+    bool short_sight = true;   ///< true cones seen to a shorter radius than false ones
+    bool other_course = true;  ///< another course beside it, whose cones are false ones
     double highest_rate = 0.55;
 };
 
 /// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,
-/// mirrors it or not, scales it, bends it by a smooth swirl, places its cones anew along its boundaries, and
-/// shows it from a few poses anywhere along it, with fresh false positives at any rate.
+/// mirrors it or not, scales it, bends it by a smooth swirl, places its cones anew along its boundaries, lays
+/// another course beside it, and shows it from a few poses anywhere along it, with fresh false positives at
+/// any rate.
 class FrontScenes {
   public:
     /// Throws InvalidInput where there is no course, or one has no centre line.

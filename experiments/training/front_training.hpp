@@ -20,7 +20,7 @@ struct FrontTrainingOptions {
     FrontLossOptions loss;
     std::size_t draws_per_step = 8;      ///< changed courses to a step of Adam
     std::size_t imitation_steps = 1500;  ///< of teacher forcing
-    std::size_t search_steps = 12000;     ///< through the search, after these
+    std::size_t search_steps = 12000;    ///< through the search, after these
     double imitation_rate = 3e-3;        ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
     std::size_t figures_every = 1000;  ///< steps between two looks at the scenes held out

@@ -29,6 +29,7 @@ bool far_apart(const Segment& a, const Segment& b, double gap_m) {
 void validate(const FrontSearchOptions& options) {
     if (options.beam_width < 1) throw InvalidInput("beam_width", "must be at least 1");
     if (!(options.drop > 0.0)) throw InvalidInput("drop", "must be positive");
+    if (!(options.finished_drop > 0.0)) throw InvalidInput("finished_drop", "must be positive");
     if (!(options.level_m > 0.0 && std::isfinite(options.level_m)))
         throw InvalidInput("level_m", "must be positive");
 }
@@ -39,6 +40,7 @@ void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOp
     map_.build(scene);
     nodes_.clear();
     finished_.clear();
+    best_finished_ = -std::numeric_limits<double>::infinity();
     level_.clear();
     for (std::vector<Candidate>& level : levels_) level.clear();
     next_level_ = 0;
@@ -83,8 +85,10 @@ void FrontSearch::keep_best() {
     });
     for (const std::uint32_t i : order_) {
         const Candidate& candidate = candidates[i];
-        if (level_.size() == options_.beam_width ||
-            (!level_.empty() && candidate.score < nodes_[level_.front()].score - options_.drop)) {
+        const bool is_behind =
+            candidate.score < best_finished_ - options_.finished_drop ||
+            (!level_.empty() && candidate.score < nodes_[level_.front()].score - options_.drop);
+        if (is_behind || level_.size() == options_.beam_width) {
             left_out_ = true;
             break;
         }
@@ -125,6 +129,7 @@ void FrontSearch::expand(std::size_t number) {
         push(level_after(level, from.state), {score, number, {}, side, from.start});
     } else if (from.state.is_lane()) {
         finished_.push_back({number, side, score});
+        best_finished_ = std::max(best_finished_, score);
     }
 }
 

@@ -15,8 +15,9 @@ namespace conelane {
 
 struct FrontSearchOptions {
     FrontRules rules;
-    std::size_t beam_width = 30;  ///< states kept at each level of progress
+    std::size_t beam_width = 20;  ///< states kept at each level of progress
     double drop = 4.0;            ///< those so much behind the best of their level are not kept
+    double finished_drop = 4.0;   ///< nor those so much behind the best lane that has ended
     double level_m = 2.5;         ///< progress, of both boundaries together, from level to level
     bool merge = true;            ///< of the states with the same front only the best is kept
 };
@@ -121,6 +122,7 @@ class FrontSearch {
     std::vector<std::uint32_t> order_;
     std::vector<std::size_t> level_;
     std::vector<Finished> finished_;
+    double best_finished_ = 0.0;  ///< score; minus infinity where none has
     std::size_t next_level_ = 0;
     std::size_t open_lane_ = kNone;
     std::int64_t expanded_ = 0;
