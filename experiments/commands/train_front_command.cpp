@@ -96,7 +96,8 @@ void add_train_front_command(CLI::App& train_command) {
     command.add_flag("!--no-respacing", training.scenes.respace,
                      "cones stay where they are on their boundary");
     command.add_flag("!--no-disturbance", training.scenes.disturb, "no noise, missed cones and pose error");
-    command.add_flag("!--no-other-course", training.scenes.other_course, "no second course beside the first");
+    command.add_flag("--other-course", training.scenes.other_course,
+                     "a second course lies beside the first in a third of the draws");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
     add_threads_option(command, training.threads, "the weights are the same with any number");

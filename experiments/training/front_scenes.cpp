@@ -97,7 +97,7 @@ class Warp {
 
 /// A boundary with its cones placed anew along it, `spacing` times as far apart as they were.
 std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, double spacing, Random& random) {
-    const double last = static_cast<double>(closed ? boundary.size() : boundary.size() - 1);
+    const auto last = static_cast<double>(closed ? boundary.size() : boundary.size() - 1);
     const auto at = [&](double place) {
         const auto index = std::min(static_cast<std::size_t>(place), boundary.size() - 1);
         const double share = place - static_cast<double>(index);

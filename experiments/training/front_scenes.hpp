@@ -16,9 +16,10 @@ struct FrontSceneOptions {
     std::size_t scenes_per_draw = 4;  ///< from one changed course
     bool warp = true;                 ///< scale and swirl
     bool respace = true;
-    bool disturb = true;       ///< noise, missed cones and pose error
-    bool short_sight = true;   ///< true cones seen to a shorter radius than false ones
-    bool other_course = true;  ///< another course beside it, whose cones are false ones
+    bool disturb = true;      ///< noise, missed cones and pose error
+    bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
+    /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
+    bool other_course = false;
     double highest_rate = 0.55;
 };
 

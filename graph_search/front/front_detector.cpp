@@ -61,10 +61,8 @@ class FrontDetector final : public LaneDetector {
             return true;
         }
         const std::size_t count = std::min(kFinishedLookedAt, finished.size());
-        for (const FrontSearch::Finished& lane : finished.first(count)) {
-            if (take(lane.parent)) return true;
-        }
-        return false;
+        return std::ranges::any_of(finished.first(count),
+                                   [&](const FrontSearch::Finished& lane) { return take(lane.parent); });
     }
 
     bool take(std::size_t node) {

@@ -30,8 +30,8 @@ struct FrontRules {
 
 /// The moves of that side that its last cones allow: all segments up to kShortSegment_m and the straightest
 /// of the longer ones that no cone stands on, in the order of their length. What the whole lane forbids is
-/// looked at by FrontSearch. Returns whether short ones were left out. `stops`: whether the side may stop,
-/// which takes two cones.
+/// looked at by FrontSearch. `left_out`: whether there are more short ones. `stops`: whether the side may
+/// stop, which takes two cones.
 struct FrontMoves {
     std::vector<FrontMove> extensions;
     bool stops = false;

@@ -15,11 +15,9 @@ float FrontState::mean_width_m() const {
 }
 
 bool FrontState::same_front(const FrontState& other) const {
-    for (const Side side : {kLeft, kRight}) {
-        if (ends[side].cones != other.ends[side].cones || ends[side].stopped != other.ends[side].stopped)
-            return false;
-    }
-    return true;
+    return std::ranges::equal(ends, other.ends, [](const FrontEnd& a, const FrontEnd& b) {
+        return a.cones == b.cones && a.stopped == b.stopped;
+    });
 }
 
 FrontState start_state(const FrontMap& map, Vertex left, Vertex right) {
