@@ -35,6 +35,7 @@ void score_all(const Options& options) {
     if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(options.lanes.size());
+    RecordScorer scorer(scenes, tracks);
     std::vector<ScoredRecord> scored;
     std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
     for (std::size_t i = 0; i < options.lanes.size(); ++i) {
@@ -47,7 +48,7 @@ void score_all(const Options& options) {
             throw InputError(file, record.line, "method",
                              "lanes of '" + record.method + "' are in " + options.lanes[first] + " too");
         }
-        std::ranges::move(score_records(scenes, tracks, records.back(), file), std::back_inserter(scored));
+        std::ranges::move(scorer.score(records.back(), file), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
     if (!options.json.empty()) {
