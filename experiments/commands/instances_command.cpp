@@ -4,8 +4,11 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -42,8 +45,9 @@ void run(Options& options) {
     instances.parameters = options.parameters.load();
     InstanceCounts counts;
     {
-        Progress progress("instances", count_programs(instances));
-        counts = write_instances(options.out, instances, [&] { progress.advance(); });
+        const std::vector<InstanceScene> scenes = instance_scenes(instances);
+        Progress progress("instances", 2 * scenes.size());
+        counts = write_instances(options.out, scenes, instances, [&] { progress.advance(); });
     }
     fmt::print(
         "{} programs in {}: {} optima and {} infeasible by both path-pair and CBC, {} open; {} left "
@@ -64,7 +68,7 @@ void add_instances_command(CLI::App& program) {
     instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
     instances.scenes.false_positive_rates = {0.1667, 0.5};
     instances.scenes.ranges_m = {30.0};
-    instances.scenes.every_m = 60.0;
+    instances.scenes.every_m = 120.0;
     command.add_option("--out", options->out, "directory; files of the same names are replaced")->required();
     command
         .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")

@@ -108,28 +108,6 @@ std::string name_of(const std::string& id, const std::optional<std::size_t>& nea
     return name;
 }
 
-std::string_view ending_of(Formulation formulation) {
-    return formulation == Formulation::paper ? ".printed" : ".tight";
-}
-
-/// A cone set and its name.
-struct NamedScene {
-    std::string name;
-    Scene scene;
-};
-
-std::vector<NamedScene> cone_sets(const InstanceOptions& options) {
-    std::vector<NamedScene> sets;
-    for (const AnnotatedScene& annotated : make_scene_set(options.tracks, options.scenes).scenes) {
-        const Scene& scene = annotated.scene;
-        for (const std::optional<std::size_t>& nearest : options.nearest) {
-            if (nearest && *nearest >= scene.cones.size()) continue;
-            sets.push_back({name_of(scene.id, nearest), nearest ? nearest_ahead(scene, *nearest) : scene});
-        }
-    }
-    return sets;
-}
-
 void write(const std::filesystem::path& file, const std::string& content) {
     AtomicFile output(file);
     output.stream() << content;
@@ -157,6 +135,22 @@ std::string solution_lines(const Instance& instance) {
 
 }  // namespace
 
+std::vector<InstanceScene> instance_scenes(const InstanceOptions& options) {
+    std::vector<InstanceScene> all;
+    for (const AnnotatedScene& annotated : make_scene_set(options.tracks, options.scenes).scenes) {
+        const Scene& scene = annotated.scene;
+        for (const std::optional<std::size_t>& nearest : options.nearest) {
+            if (nearest && *nearest >= scene.cones.size()) continue;
+            all.push_back({name_of(scene.id, nearest), nearest ? nearest_ahead(scene, *nearest) : scene});
+        }
+    }
+    return all;
+}
+
+std::string_view ending_of(Formulation formulation) {
+    return formulation == Formulation::paper ? ".printed" : ".tight";
+}
+
 std::optional<Instance> make_instance(const Scene& scene, const std::string& name, Formulation formulation,
                                       const InstanceOptions& options) {
     const Deadline no_deadline;
@@ -179,19 +173,15 @@ std::optional<Instance> make_instance(const Scene& scene, const std::string& nam
     return instance;
 }
 
-std::size_t count_programs(const InstanceOptions& options) {
-    return cone_sets(options).size() * kFormulations.size();
-}
-
-InstanceCounts write_instances(const std::filesystem::path& folder, const InstanceOptions& options,
-                               const std::function<void()>& advance) {
+InstanceCounts write_instances(const std::filesystem::path& folder, std::span<const InstanceScene> scenes,
+                               const InstanceOptions& options, const std::function<void()>& advance) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
     InstanceCounts counts;
     std::string list;
     std::string solutions;
-    for (const NamedScene& set : cone_sets(options)) {
+    for (const InstanceScene& set : scenes) {
         for (const Formulation formulation : kFormulations) {
             const std::string name = set.name + std::string(ending_of(formulation));
             const std::optional<Instance> instance = make_instance(set.scene, name, formulation, options);

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace conelane::experiments {
@@ -35,9 +37,21 @@ struct KnownOptimum {
     std::optional<double> bound;  ///< proven lower bound of the program as it stands in its file
 };
 
+/// A cone set that programs are made of, and its name, without blanks and slashes.
+struct InstanceScene {
+    std::string name;
+    Scene scene;
+};
+
+/// Every scene with every size. A size that is not below the scene's number of cones is left out.
+[[nodiscard]] std::vector<InstanceScene> instance_scenes(const InstanceOptions& options);
+
+/// How a formulation's files end, before `.mps.gz`: ".printed" or ".tight".
+[[nodiscard]] std::string_view ending_of(Formulation formulation);
+
 /// A program that stands for itself.
 struct Instance {
-    std::string name;  ///< without blanks and slashes
+    std::string name;
     BinaryProgram program;
     KnownOptimum optimum;
 };
@@ -59,16 +73,14 @@ struct InstanceCounts {
     std::size_t too_large = 0;  ///< programs left out
 };
 
-/// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each scene and size into the folder, then
+/// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each of the scenes into the folder, then
 /// conelane.test, the list of these files, and conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or where the
-/// optimum is open `=best= NAME VALUE` and `=bestdual= NAME VALUE`, each where it is known. A size that a
-/// scene has not more cones than is left out, but for the last: such cones are all that is visible. The same
-/// options give the same files, but for open ones, which depend on the clock. Throws InputError.
+/// optimum is open `=best= NAME VALUE` and `=bestdual= NAME VALUE`, each where it is known. The same scenes
+/// give the same files, but for open ones, which depend on the clock. `advance` is called after each program.
+/// Throws InputError.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,
+                                             std::span<const InstanceScene> scenes,
                                              const InstanceOptions& options,
                                              const std::function<void()>& advance = {});
-
-/// How many programs write_instances would look at.
-[[nodiscard]] std::size_t count_programs(const InstanceOptions& options);
 
 }  // namespace conelane::experiments
