@@ -24,5 +24,6 @@ void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
+void add_tune_method_command(CLI::App& program);
 
 }  // namespace conelane::experiments
