@@ -156,8 +156,7 @@ void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScor
         score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
         line = centre_line_of(record.centre_line, pose);
     } else {
-        score =
-            experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
         if (record.answer.status == LaneStatus::found)
             line = centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
     }
