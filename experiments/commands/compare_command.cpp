@@ -46,7 +46,8 @@ void add_shared_options(CLI::App& command, Options& options) {
     ComparisonOptions& comparison = options.comparison;
     command.add_option(
         "--tracks", comparison.tracks,
-        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
+        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
+        "ones without it");
     command
         .add_option(
             "--methods", options.methods,

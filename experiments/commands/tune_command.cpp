@@ -231,7 +231,8 @@ void add_tune_command(CLI::App& program) {
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;
     command
-        .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        .add_option("--tracks", options->tracks,
+                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
         ->required();
     command
         .add_option_function<std::string>(
