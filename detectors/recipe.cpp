@@ -1,6 +1,7 @@
 #include "detectors/recipe.hpp"
 
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -32,6 +33,10 @@ std::unique_ptr<LaneDetector> paper_clc() {
     return make_clc_detector(paper_clc_options());
 }
 
+std::unique_ptr<LaneDetector> delaunay_beam() {
+    return make_delaunay_beam_detector({});
+}
+
 constexpr std::array kRecipes{
     DetectorRecipe{"clc",
                    "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
@@ -50,6 +55,10 @@ constexpr std::array kRecipes{
                    RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
     DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
                    RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+    DetectorRecipe{"delaunay-beam",
+                   "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
+                   "the lowest cost",
+                   OtherRecipe{delaunay_beam}},
 };
 
 /// Shows its detector the nearest cones only.

@@ -61,6 +61,8 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("scenes --tracks generated:nowhere --out a.scenes.jsonl", {"nowhere"});
     expect_refused("scenes --tracks generated:circle --fp 1.5 --out a.scenes.jsonl", {"fp"});
     expect_refused("scenes --tracks generated:circle --fp nan --out a.scenes.jsonl", {"fp"});
+    expect_refused("scenes --tracks generated:circle --condition car,rain --out a.scenes.jsonl",
+                   {"condition", "rain"});
     expect_refused("scenes --tracks generated:circle --every 0 --out a.scenes.jsonl", {"every"});
     expect_refused("scenes --tracks generated:circle --range -3 --out a.scenes.jsonl", {"range"});
     expect_refused("scenes --tracks generated:circle --nearest 0 --out a.scenes.jsonl", {"--nearest"});
@@ -353,6 +355,9 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
         const auto row = nlohmann::json::parse(line);
         EXPECT_EQ(row.at("mean_iou"), 1.0);
         EXPECT_EQ(row.at("success_share"), 1.0);
+        EXPECT_EQ(row.at("usable_share"), 1.0);
+        EXPECT_LT(row.at("lateral_p95_m").get<double>(), 1e-6);
+        EXPECT_LT(row.at("heading_p95_rad").get<double>(), 1e-6);
         EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << line;
         for (const char* key : {"commit", "compiler", "machine", "run"})
             EXPECT_TRUE(row.contains(key)) << key;

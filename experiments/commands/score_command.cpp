@@ -73,6 +73,7 @@ void score_all(const Options& options) {
     if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
     std::vector<LanesFile> files = read_all(options, scenes);
     OutsideMethods outside;
+    RecordScorer scorer(scenes, tracks);
     std::vector<ScoredRecord> scored;
     std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -84,7 +85,7 @@ void score_all(const Options& options) {
             throw InputError(file, record.line, "method",
                              "lanes of '" + record.method + "' are in " + files[first].file + " too");
         }
-        std::ranges::move(score_records(scenes, tracks, records, file), std::back_inserter(scored));
+        std::ranges::move(scorer.score(records, file), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
     if (!options.json.empty()) {

@@ -73,11 +73,11 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
                             const std::vector<std::string>& lanes_files, const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
+    RecordScorer scorer(set.scenes, set.tracks);
     std::vector<ScoredRecord> scored;
     for (const std::string& name : lanes_files) {
         records.push_back(read_lanes(directory / name));
-        std::ranges::move(score_records(set.scenes, set.tracks, records.back(), directory / name),
-                          std::back_inserter(scored));
+        std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
     const OutsideMethods outside{outside_methods_of_record(run_record),

@@ -1,25 +1,27 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <oneapi/tbb/parallel_for.h>
 
 namespace conelane::experiments {
 namespace {
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
-    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest};
+    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
@@ -30,15 +32,27 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     };
     put_if_known("nearest", record->nearest);
     line["track"] = scene->track;
+    if (!scene->condition.empty()) line["condition"] = scene->condition;
     put_if_known("false_positive_rate", scene->false_positive_rate);
     put_if_known("range", scene->range_m);
     line["status"] = to_string(record->answer.status);
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
-    line["iou"] = score.iou;
+    put_if_known("usable", score.usable());
+    put_if_known("iou", score.iou);
     line["lane_length_m"] = score.lane_length_m;
     line["ground_truth_length_m"] = score.ground_truth_length_m;
     put_if_known("divergence_m", score.divergence_distance_m);
+    if (score.centre_line_error) {
+        const CentreLineError& error = *score.centre_line_error;
+        if (!error.lateral_m.empty()) {
+            const std::vector<double> lateral_m(error.lateral_m.begin(), error.lateral_m.end());
+            line["lateral_median_m"] = median(lateral_m);
+            line["lateral_max_m"] = std::ranges::max(lateral_m);
+        }
+        put_if_known("heading_error_rad", error.heading_rad);
+    }
+    put_if_known("steady", score.steady);
     if (score.accuracy) {
         line["accurate"] = score.accurate();
         line["accuracy"] = {{"cones", score.accuracy->cones},
@@ -106,37 +120,86 @@ std::string note_on_errors(std::span<const ScoredRecord> scored, const std::stri
 
 }  // namespace
 
-std::vector<ScoredRecord> score_records(std::span<const AnnotatedScene> scenes,
-                                        const TrackBoundariesByName& tracks,
-                                        std::span<const LaneRecord> records,
-                                        const std::filesystem::path& lanes_file) {
-    std::unordered_map<std::string, const AnnotatedScene*> scene_of;
-    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene);
-    std::vector<ScoredRecord> scored;
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks)
+    : scene_count_(scenes.size()) {
+    std::vector<Truth> truths(scenes.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
+        const auto track = tracks.find(scenes[i].track);
+        Truth& truth = truths[i];
+        truth.scene = &scenes[i];
+        truth.boundaries = track == tracks.end() ? nullptr : &track->second;
+        truth.counts = counts(scenes[i], truth.boundaries);
+        if (truth.counts && scenes[i].ground_truth) {
+            truth.centre_line =
+                centre_line_of(outline_of(*scenes[i].ground_truth, scenes[i].scene), scenes[i].scene.pose);
+        }
+    });
+    for (Truth& truth : truths) truth_of_.emplace(truth.scene->scene.id, std::move(truth));
+}
+
+const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
+                                                  const std::filesystem::path& file) const {
+    const auto truth = truth_of_.find(record.scene);
+    if (truth == truth_of_.end())
+        throw InputError(file, record.line, "scene", "'" + record.scene + "' is not in the scenes file");
+    return truth->second;
+}
+
+void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line) {
+    const AnnotatedScene& scene = *truth.scene;
+    if (record.points) {
+        const LaneOutline lane{record.points->left, record.points->right, record.answer.lane.closed};
+        score = score_outline(scene, lane, record.latency_ms, truth.boundaries);
+        line = centre_line_of(lane, scene.scene.pose);
+    } else if (!record.centre_line.empty()) {
+        score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
+        line = centre_line_of(record.centre_line, scene.scene.pose);
+    } else {
+        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        if (record.answer.status == LaneStatus::found)
+            line = centre_line_of(outline_of(record.answer.lane, scene.scene), scene.scene.pose);
+    }
+    if (score.usable().value_or(false) && !truth.centre_line.empty())
+        score.centre_line_error = centre_line_error(line, truth.centre_line);
+}
+
+std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> records,
+                                              const std::filesystem::path& lanes_file) {
+    std::vector<const Truth*> truths;
+    truths.reserve(records.size());
     std::map<std::string, std::size_t> answered;  // by method and cone-set size
     for (const LaneRecord& record : records) {
-        const auto scene = scene_of.find(record.scene);
-        if (scene == scene_of.end()) {
-            throw InputError(lanes_file, record.line, "scene",
-                             "'" + record.scene + "' is not in the scenes file");
-        }
-        const AnnotatedScene& annotated = *scene->second;
-        ++answered[key_of(annotated, record).method_label()];
-        if (!counts(annotated)) continue;
-        const auto track = tracks.find(annotated.track);
+        truths.push_back(&truth_of(record, lanes_file));
+        ++answered[key_of(*truths.back()->scene, record).method_label()];
+    }
+    std::vector<SceneScore> scores(records.size());
+    std::vector<CentreLine> lines(records.size());
+    std::vector<std::exception_ptr> failures(records.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
+        if (!truths[i]->counts) return;
         try {
-            scored.push_back({&annotated, &record,
-                              score(annotated, record.answer, record.latency_ms, record.nearest,
-                                    track == tracks.end() ? nullptr : &track->second)});
+            score(*truths[i], records[i], scores[i], lines[i]);
         } catch (const InvalidInput& invalid) {
-            throw InputError(lanes_file, record.line, invalid.key(), invalid.what());
+            failures[i] = std::make_exception_ptr(
+                InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
         }
+    });
+    std::vector<ScoredRecord> scored;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (failures[i]) std::rethrow_exception(failures[i]);
+        if (!truths[i]->counts) continue;
+        if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
+            records[i].nearest == records[i - 1].nearest &&
+            same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
+            scores[i].steady = is_steady(lines[i - 1], lines[i]);
+        }
+        scored.push_back({truths[i]->scene, &records[i], std::move(scores[i])});
     }
     for (const auto& [name, count] : answered) {
-        if (count != scenes.size()) {
+        if (count != scene_count_) {
             throw InputError(lanes_file, 0, "scene",
                              name + " answers " + std::to_string(count) + " of " +
-                                 std::to_string(scenes.size()) + " scenes");
+                                 std::to_string(scene_count_) + " scenes");
         }
     }
     return scored;

@@ -4,12 +4,15 @@
 #include "experiments/files/lane_file.hpp"
 #include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/centre_line_error.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/score_table.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace conelane::experiments {
@@ -21,15 +24,34 @@ struct ScoredRecord {
     SceneScore score;
 };
 
-/// Scores records against their scenes, in the order of the records. Every record's scene must be in
-/// `scenes`, and the records of one method and cone-set size must cover every scene once; a scene without a
-/// ground truth is left out. `lanes_file` is named in errors. Throws InputError.
-[[nodiscard]] std::vector<ScoredRecord> score_records(std::span<const AnnotatedScene> scenes,
-                                                      const TrackBoundariesByName& tracks,
-                                                      std::span<const LaneRecord> records,
-                                                      const std::filesystem::path& lanes_file);
+/// Scores records against the scenes of one set. What all methods are held against is made once.
+class RecordScorer {
+  public:
+    /// Both must outlive it.
+    RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks);
 
-/// A row for each method, cone-set size, rate and range.
+    /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
+    /// records of one method and cone-set size must cover every scene once; a scene that does not count is
+    /// left out. A lane is held steady against the record before where that is of the same method and lap.
+    /// `lanes_file` is named in errors; of several the first one is thrown. Throws InputError.
+    [[nodiscard]] std::vector<ScoredRecord> score(std::span<const LaneRecord> records,
+                                                  const std::filesystem::path& lanes_file);
+
+  private:
+    struct Truth {
+        const AnnotatedScene* scene;
+        const TrackBoundaries* boundaries;  ///< none where the tracks file has none of that name
+        bool counts;
+        CentreLine centre_line;  ///< empty where the truth is a driven path
+    };
+    [[nodiscard]] const Truth& truth_of(const LaneRecord& record, const std::filesystem::path& file) const;
+    static void score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line);
+
+    std::size_t scene_count_;
+    std::unordered_map<std::string, Truth> truth_of_;  // for look-up only
+};
+
+/// A row for each method, cone-set size, condition, rate and range.
 [[nodiscard]] std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored);
 
 /// Writes a line per record with every measure of it.

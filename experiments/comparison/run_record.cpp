@@ -131,25 +131,28 @@ std::string run_record(const ComparisonOptions& options) {
         methods.push_back(json);
     }
     const SceneOptions& scenes = options.scenes;
-    nlohmann::ordered_json record{{"commit", origin.commit},
-                                  {"compiler", origin.compiler},
-                                  {"machine", origin.machine},
-                                  {"tracks", options.tracks},
-                                  {"methods", methods},
-                                  {"fp", scenes.false_positive_rates},
-                                  {"range", scenes.ranges_m},
-                                  {"every", scenes.every_m},
-                                  {"noise", scenes.noise_sigma_m},
-                                  {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
-                                  {"miss", scenes.miss_rate},
-                                  {"color", scenes.with_color},
-                                  {"color_error", scenes.color_error_rate},
-                                  {"confidence", scenes.with_confidence},
-                                  {"seed", scenes.seed},
-                                  {"threads", options.run.threads},
-                                  {"candidates", options.run.limits.keep_candidates}};
+    nlohmann::ordered_json record{
+        {"commit", origin.commit},
+        {"compiler", origin.compiler},
+        {"machine", origin.machine},
+        {"tracks", options.tracks},
+        {"methods", methods},
+        {"fp", scenes.false_positive_rates},
+        {"range", scenes.ranges_m},
+        {"every", scenes.every_m},
+        {"noise", scenes.noise_sigma_m.value_or(0.0)},
+        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
+        {"miss", scenes.miss_rate.value_or(0.0)},
+        {"color", scenes.with_color},
+        {"color_error", scenes.color_error_rate},
+        {"confidence", scenes.with_confidence},
+        {"seed", scenes.seed},
+        {"threads", options.run.threads},
+        {"candidates", options.run.limits.keep_candidates}};
     if (origin.commit == "unknown" || origin.commit.ends_with("-dirty"))
         record["program"] = hash_of("/proc/self/exe");
+    if (!scenes.conditions.empty()) record["condition"] = condition_names(scenes);
+    if (scenes.persistent) record["persist"] = *scenes.persistent;
     if (scenes.nearest) record["nearest"] = *scenes.nearest;
     if (std::isfinite(options.run.limits.time_limit_ms))
         record["time_limit_ms"] = options.run.limits.time_limit_ms;

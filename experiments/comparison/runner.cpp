@@ -128,7 +128,8 @@ MethodMaker maker_of_program(const std::string& name, const std::string& command
 }
 
 bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
-    return a.track == b.track && a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
+    return a.track == b.track && a.condition == b.condition &&
+           a.false_positive_rate == b.false_positive_rate && a.range_m == b.range_m;
 }
 
 std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {

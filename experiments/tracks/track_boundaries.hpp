@@ -14,6 +14,7 @@ struct TrackBoundaries {
     std::vector<Point> left;
     std::vector<Point> right;
     bool closed = true;
+    std::vector<Point> driven = {};  ///< the path of a run without annotated boundaries; else empty
 };
 
 using TrackBoundariesByName = std::map<std::string, TrackBoundaries>;
