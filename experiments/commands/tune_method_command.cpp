@@ -28,7 +28,7 @@ struct Options {
     std::string out;
 };
 
-ordered_json to_json(const MethodFigure& figure) {
+ordered_json describe(const MethodFigure& figure) {
     return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
 }
 
@@ -41,8 +41,8 @@ ordered_json record_of(const Options& options, const TunedMethod& tuned) {
                       {"tracks", options.tracks}};
     json.update(scene_options_json(options.scenes));
     json["evaluations"] = options.tuning.evaluations;
-    json["figure_of_start"] = to_json(tuned.figure_of_start);
-    json["figure"] = to_json(tuned.figure);
+    json["figure_of_start"] = describe(tuned.figure_of_start);
+    json["figure"] = describe(tuned.figure);
     return json;
 }
 
