@@ -9,6 +9,7 @@ namespace conelane::experiments {
 void add_scenes_command(CLI::App& program);
 void add_methods_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
+void add_echo_command(CLI::App& program);
 void add_solvers_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
@@ -19,6 +20,7 @@ void add_drive_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
+void add_cross_validate_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);

@@ -4,6 +4,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/method_tuning.hpp"
 
@@ -32,28 +33,17 @@ ordered_json describe(const MethodFigure& figure) {
 }
 
 ordered_json record_of(const Options& options, const TunedMethod& tuned) {
-    const SceneOptions& scenes = options.scenes;
     const Provenance origin = provenance();
-    ordered_json record{
-        {"method", options.method},
-        {"commit", origin.commit},
-        {"compiler", origin.compiler},
-        {"machine", origin.machine},
-        {"tracks", options.tracks},
-        {"fp", scenes.false_positive_rates},
-        {"range", scenes.ranges_m},
-        {"every", scenes.every_m},
-        {"noise", scenes.noise_sigma_m.value_or(0.0)},
-        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
-        {"miss", scenes.miss_rate.value_or(0.0)},
-        {"color", scenes.with_color},
-        {"color_error", scenes.color_error_rate},
-        {"seed", scenes.seed},
-        {"evaluations", options.tuning.evaluations},
-        {"figure_of_start", describe(tuned.figure_of_start)},
-        {"figure", describe(tuned.figure)}};
-    if (!scenes.conditions.empty()) record["condition"] = condition_names(scenes);
-    return record;
+    ordered_json json{{"method", options.method},
+                      {"commit", origin.commit},
+                      {"compiler", origin.compiler},
+                      {"machine", origin.machine},
+                      {"tracks", options.tracks}};
+    json.update(scene_options_json(options.scenes));
+    json["evaluations"] = options.tuning.evaluations;
+    json["figure_of_start"] = describe(tuned.figure_of_start);
+    json["figure"] = describe(tuned.figure);
+    return json;
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {

@@ -225,8 +225,9 @@ void refuse_lost_inputs(CLI::App& command) {
         std::vector<fs::path> written{output->results().front()};
         if (command.get_name() == "scenes") written.push_back(track_boundaries_path(written.front()));
         for (const CLI::Option* input : options) {
-            if (input == output || names_no_file(*input)) continue;
+            if (input == output) continue;
             for (const std::string& text : input->results()) {
+                if (names_no_file(*input) && !text.starts_with("lanes:")) continue;
                 for (const fs::path& file : files_meant(text))
                     refuse_to_replace(*output, written, *input, file);
             }
