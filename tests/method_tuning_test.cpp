@@ -93,7 +93,7 @@ TEST_F(TuneMethod, WritesParametersAndTheirRecord) {
     EXPECT_THAT(outcome.output, HasSubstr("delaunay-beam on "));
     EXPECT_NO_THROW((void)parse_delaunay_beam_parameters(text_of(path("p.json")), path("p.json")));
     const std::string record = text_of(path("p.record.json"));
-    for (const char* key : {"\"method\": \"delaunay-beam\"", "generated:circle", "\"evaluations\": 3"}) {
+    for (const char* key : {R"("method": "delaunay-beam")", "generated:circle", R"("evaluations": 3)"}) {
         EXPECT_THAT(record, HasSubstr(key));
     }
 }
