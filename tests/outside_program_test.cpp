@@ -268,17 +268,22 @@ TEST(OutsideMethodText, CommasBelongToTheCommand) {
 
 class OutsideMethodFiles : public FileTest {};
 
-TEST_F(OutsideMethodFiles, TheCardLiesBesideTheFileThatTheCommandNamesFirst) {
+TEST_F(OutsideMethodFiles, TheCardLiesBesideAFileThatTheCommandNames) {
     const std::string script = file_with("", "planner.py").string();
     const std::string settings = file_with("", "settings.yaml").string();
+    const std::string lanes = file_with("", "x.y.lanes.jsonl").string();
     const auto place = [&](const std::string& command) {
         return card_path({OutsideMethod::Kind::program, "a", command, {}});
     };
-    EXPECT_EQ(place("python3 -u '" + script + "' --settings " + settings), path("planner.method.json"));
+    EXPECT_EQ(place("python3 " + script), std::nullopt);
+    file_with("{}", "planner.method.json");
+    file_with("{}", "x.y.method.json");
+    EXPECT_EQ(place("/bin/sh -u '" + script + "' --settings " + settings), path("planner.method.json"));
+    EXPECT_EQ(place("planner-on-the-path " + settings), std::nullopt);
+    file_with("{}", "settings.method.json");
     EXPECT_EQ(place("planner-on-the-path " + settings), path("settings.method.json"));
-    EXPECT_EQ(place("planner-on-the-path"), std::nullopt);
-    EXPECT_EQ(card_path({OutsideMethod::Kind::lanes, "a", path("x.y.lanes.jsonl").string(), {}}),
-              path("x.y.method.json"));
+    EXPECT_EQ(place(script + " " + settings), path("planner.method.json"));
+    EXPECT_EQ(card_path({OutsideMethod::Kind::lanes, "a", lanes, {}}), path("x.y.method.json"));
     file_with(R"({"name": "P", "training_courses": "fsg"})", "planner.method.json");
     EXPECT_THAT(error_of([&] { (void)parse_outside_method("exec:a=" + script); }),
                 HasSubstr("planner.method.json: training_courses: must be an array"));
