@@ -147,17 +147,18 @@ const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
 
 void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line) {
     const AnnotatedScene& scene = *truth.scene;
+    const Pose& pose = scene.scene.pose;
     if (record.points) {
-        const LaneOutline lane{record.points->left, record.points->right, record.answer.lane.closed};
-        score = score_outline(scene, lane, record.latency_ms, truth.boundaries);
-        line = centre_line_of(lane, scene.scene.pose);
+        const LaneOutline outline{record.points->left, record.points->right, record.answer.lane.closed};
+        score = score_outline(scene, outline, record.latency_ms, truth.boundaries);
+        line = centre_line_of(outline, pose);
     } else if (!record.centre_line.empty()) {
         score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
-        line = centre_line_of(record.centre_line, scene.scene.pose);
+        line = centre_line_of(record.centre_line, pose);
     } else {
         score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
         if (record.answer.status == LaneStatus::found)
-            line = centre_line_of(outline_of(record.answer.lane, scene.scene), scene.scene.pose);
+            line = centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
     }
     if (score.usable().value_or(false) && !truth.centre_line.empty())
         score.centre_line_error = centre_line_error(line, truth.centre_line);
