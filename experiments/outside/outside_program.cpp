@@ -106,7 +106,7 @@ OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms)
             attempt.fault =
                 record.scene == opaque.id
                     ? experiments::fault_of(record, scene)
-                    : fmt::format("answers scene \"{:.20}\" instead of \"{}\"", record.scene, opaque.id);
+                    : fmt::format(R"(answers scene "{:.20}" instead of "{}")", record.scene, opaque.id);
             if (attempt.fault.empty()) {
                 snap_to_cones(record, scene);
                 record.scene = scene.id;
