@@ -23,7 +23,7 @@ ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
-    const auto& [scene, record, score] = scored;
+    const auto& [scene, record, score, failure] = scored;
     nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->method}};
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) line[key] = *value;
@@ -36,6 +36,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
     put_if_known("usable", score.usable());
+    if (failure) line["cause"] = to_string(*failure);
     put_if_known("iou", score.iou);
     line["lane_length_m"] = score.lane_length_m;
     line["ground_truth_length_m"] = score.ground_truth_length_m;
@@ -101,11 +102,17 @@ const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
     return truth->second;
 }
 
-void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line) {
+void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& line) {
     const AnnotatedScene& scene = *truth.scene;
+    const LaneRecord& record = *scored.record;
+    SceneScore& score = scored.score;
     score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
-    if (record.answer.status == LaneStatus::found)
-        line = centre_line_of(outline_of(record.answer.lane, scene.scene), scene.scene.pose);
+    LaneOutline outline;
+    if (record.answer.status == LaneStatus::found) {
+        outline = outline_of(record.answer.lane, scene.scene);
+        line = centre_line_of(outline, scene.scene.pose);
+    }
+    scored.failure = lane_failure(scene, outline, score, truth.boundaries);
     if (score.usable().value_or(false) && !truth.centre_line.empty())
         score.centre_line_error = centre_line_error(line, truth.centre_line);
 }
@@ -119,13 +126,14 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         truths.push_back(&truth_of(record, lanes_file));
         ++answered[key_of(*truths.back()->scene, record).method_label()];
     }
-    std::vector<SceneScore> scores(records.size());
+    std::vector<ScoredRecord> all(records.size());
     std::vector<CentreLine> lines(records.size());
     std::vector<std::exception_ptr> failures(records.size());
     oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
         if (!truths[i]->counts) return;
         try {
-            score(*truths[i], records[i], scores[i], lines[i]);
+            all[i] = {truths[i]->scene, &records[i], {}};
+            score(*truths[i], all[i], lines[i]);
         } catch (const InvalidInput& invalid) {
             failures[i] = std::make_exception_ptr(
                 InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
@@ -138,9 +146,9 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
             records[i].nearest == records[i - 1].nearest &&
             same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
-            scores[i].steady = is_steady(lines[i - 1], lines[i]);
+            all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
-        scored.push_back({truths[i]->scene, &records[i], std::move(scores[i])});
+        scored.push_back(std::move(all[i]));
     }
     for (const auto& [name, count] : answered) {
         if (count != scene_count_) {

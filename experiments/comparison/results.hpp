@@ -3,11 +3,13 @@
 #include "experiments/files/lane_file.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/centre_line_error.hpp"
+#include "experiments/scoring/lane_failure.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/score_table.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -20,6 +22,7 @@ struct ScoredRecord {
     const AnnotatedScene* scene;
     const LaneRecord* record;
     SceneScore score;
+    std::optional<LaneFailure> failure = {};  ///< why the lane is not usable
 };
 
 /// Scores records against the scenes of one set. What all methods are held against is made once.
@@ -43,7 +46,8 @@ class RecordScorer {
         CentreLine centre_line;  ///< empty where the truth is a driven path
     };
     [[nodiscard]] const Truth& truth_of(const LaneRecord& record, const std::filesystem::path& file) const;
-    static void score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line);
+    /// Fills in score and failure of `scored`.
+    static void score(const Truth& truth, ScoredRecord& scored, CentreLine& line);
 
     std::size_t scene_count_;
     std::unordered_map<std::string, Truth> truth_of_;  // for look-up only
