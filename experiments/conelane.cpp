@@ -81,8 +81,10 @@ int run(int argument_count, char** arguments) {
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);
+    experiments::add_tune_method_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
+    experiments::add_echo_command(program);
     experiments::add_methods_command(program);
     experiments::add_drive_command(program);
     experiments::add_score_command(program);

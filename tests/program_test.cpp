@@ -61,6 +61,8 @@ TEST_F(Program, BadOptionsAreNamed) {
     expect_refused("scenes --tracks generated:nowhere --out a.scenes.jsonl", {"nowhere"});
     expect_refused("scenes --tracks generated:circle --fp 1.5 --out a.scenes.jsonl", {"fp"});
     expect_refused("scenes --tracks generated:circle --fp nan --out a.scenes.jsonl", {"fp"});
+    expect_refused("scenes --tracks generated:circle --condition car,rain --out a.scenes.jsonl",
+                   {"condition", "rain"});
     expect_refused("scenes --tracks generated:circle --every 0 --out a.scenes.jsonl", {"every"});
     expect_refused("scenes --tracks generated:circle --range -3 --out a.scenes.jsonl", {"range"});
     expect_refused("scenes --tracks generated:circle --nearest 0 --out a.scenes.jsonl", {"--nearest"});

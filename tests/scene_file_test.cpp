@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace conelane::experiments {
@@ -87,6 +88,28 @@ TEST_F(SceneFileTest, WritesTheKeysInTheOrderOfTheFormat) {
                                     R"("false_positive_rate":0.3,"range":30.0,"seed":18446744073709551615})"
                                     "\n");
     EXPECT_EQ(read_scenes(path("out")).front().seed, scene.seed);
+}
+
+TEST_F(SceneFileTest, ConditionAndMissedConesAreThereWhereASceneHasThem) {
+    AnnotatedScene made;
+    made.scene = {"a", {{0, 0}, 0}, {{7, {1, 2}}}};
+    made.condition = "car";
+    made.missed = {{9, {3.5, -1.0}}, {4, {5.0, 0.25}}};
+    write_scenes(path("out"), std::vector{made});
+    EXPECT_THAT(text_of(path("out")),
+                testing::EndsWith(R"("condition":"car","missed":[{"id":9,"x":3.5,"y":-1.0},)"
+                                  R"({"id":4,"x":5.0,"y":0.25}]})"
+                                  "\n"));
+    const AnnotatedScene read = read_scenes(path("out")).front();
+    EXPECT_EQ(read.condition, "car");
+    ASSERT_EQ(read.missed.size(), 2u);
+    EXPECT_EQ(read.missed[0].id, 9);
+    EXPECT_EQ(read.missed[1].position, Point(5.0, 0.25));
+    EXPECT_EQ(error_in(scene(cone("1"), R"(, "missed": [{"id": 1, "x": 0, "y": 0}])")),
+              "s.jsonl:1: missed[0]: cone id 1 is there twice");
+    EXPECT_EQ(error_in(scene(cone("1"), R"(, "missed": [{"id": 2, "x": 0}])")),
+              "s.jsonl:1: missed[0].y: is missing");
+    EXPECT_EQ(error_in(scene(cone("1"), R"(, "condition": 2)")), "s.jsonl:1: condition: must be a string");
 }
 
 TEST_F(SceneFileTest, RandomDoublesAndIdsSurviveARoundTripBitByBit) {

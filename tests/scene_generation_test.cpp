@@ -437,6 +437,214 @@ TEST(SceneGeneration, FalsePositivesFillTheHalfDiscAndOnlyIt) {
     EXPECT_GE(scenes_made, 10);
 }
 
+SceneOptions in_conditions(std::vector<std::string> names, double rate = 0.0) {
+    SceneOptions result = options({rate}, {15.0});
+    result.conditions = std::move(names);
+    return result;
+}
+
+TEST(SceneConditions, LapsFollowOneAnotherAndNameTheirCondition) {
+    SceneOptions wanted = options({0.0, 0.3}, {15.0, 20.0});
+    wanted.conditions = {"car", "paper"};
+    std::vector<std::string> ids;
+    std::vector<std::string> conditions;
+    for (const auto& scene : generate(straight(), {{{7.0, 0.0}, 0.0}}, wanted)) {
+        ids.push_back(scene.scene.id);
+        conditions.push_back(scene.condition);
+    }
+    EXPECT_THAT(ids, ElementsAre("toy/pose_0000/fp_0.00/range_15/car", "toy/pose_0000/fp_0.30/range_15/car",
+                                 "toy/pose_0000/fp_0.00/range_20/car", "toy/pose_0000/fp_0.30/range_20/car",
+                                 "toy/pose_0000/fp_0.00/range_15", "toy/pose_0000/fp_0.30/range_15",
+                                 "toy/pose_0000/fp_0.00/range_20", "toy/pose_0000/fp_0.30/range_20"));
+    EXPECT_THAT(conditions, ElementsAre("car", "car", "car", "car", "paper", "paper", "paper", "paper"));
+}
+
+TEST(SceneConditions, PaperIsNotDisturbed) {
+    const std::vector<Pose> poses{{{7.0, 0.0}, 0.0}, {{9.0, 0.0}, 0.1}};
+    auto named = generate(straight(), poses, in_conditions({"paper"}, 0.3));
+    for (AnnotatedScene& scene : named) {
+        EXPECT_EQ(scene.condition, "paper");
+        scene.condition.clear();
+    }
+    EXPECT_EQ(bytes(named), bytes(generate(straight(), poses, options({0.3}, {15.0}))));
+}
+
+TEST(SceneConditions, AnOptionReplacesItsPartAndTheNameSaysSo) {
+    const auto names = [](const std::function<void(SceneOptions&)>& change) {
+        SceneOptions wanted = in_conditions({"paper", "car"});
+        change(wanted);
+        return condition_names(wanted);
+    };
+    EXPECT_THAT(names([](SceneOptions&) {}), ElementsAre("paper", "car"));
+    EXPECT_THAT(names([](SceneOptions& o) { o.noise_sigma_m = 0.1; }), ElementsAre("paper+noise_0.1", "car"));
+    EXPECT_THAT(names([](SceneOptions& o) { o.miss_rate = 0.0; }), ElementsAre("paper", "car+miss_0"));
+    EXPECT_THAT(names([](SceneOptions& o) { o.persistent = false; }), ElementsAre("paper", "car+no_persist"));
+    EXPECT_THAT(names([](SceneOptions& o) { o.persistent = true; }), ElementsAre("paper+persist", "car"));
+    EXPECT_THAT(names([](SceneOptions& o) {
+                    o.pose_noise_lateral_m = 0.5;
+                    o.pose_noise_yaw_rad = 0.0;
+                    o.miss_rate = 0.2;
+                }),
+                ElementsAre("paper+pose_noise_0.5_0+miss_0.2", "car+pose_noise_0.5_0+miss_0.2"));
+    EXPECT_THAT(condition_names(options({0.0}, {15.0})), IsEmpty());
+
+    SceneOptions wanted = in_conditions({"car"});
+    wanted.miss_rate = 0.0;
+    const auto scenes = generate(straight(), {{{7.0, 0.0}, 0.0}}, wanted);
+    ASSERT_THAT(scenes, SizeIs(1));
+    EXPECT_EQ(scenes[0].scene.id, "toy/pose_0000/fp_0.00/range_15/car+miss_0");
+    EXPECT_THAT(scenes[0].missed, IsEmpty());
+}
+
+/// The standard deviations and the share of missed cones that metrics.md states.
+TEST(SceneConditions, CarAndHarshDisturbAsMuchAsTheySay) {
+    struct Expected {
+        const char* name;
+        double noise_m;
+        double lateral_m;
+        double yaw_degrees;
+        double missed;
+    };
+    const std::vector<Pose> poses(4000, Pose{{7.0, 0.0}, 0.0});
+    const Track track = straight();
+    for (const Expected& expected :
+         {Expected{"car", 0.1, 0.3, 5.0, 0.05}, Expected{"harsh", 0.2, 0.5, 8.0, 0.1}}) {
+        SCOPED_TRACE(expected.name);
+        SceneOptions wanted = in_conditions({expected.name});
+        wanted.ranges_m = {40.0};
+        double noise_m2 = 0.0;
+        double lateral_m2 = 0.0;
+        double yaw_rad2 = 0.0;
+        double boundary_cones = 0.0;
+        double seen = 0.0;
+        double missed = 0.0;
+        const auto scenes = generate(track, poses, wanted);
+        ASSERT_GT(scenes.size(), 3990u);  // a few miss all but one cone of a side
+        for (const auto& scene : scenes) {
+            lateral_m2 += std::pow(scene.scene.pose.position.y(), 2);
+            yaw_rad2 += std::pow(scene.scene.pose.yaw_rad, 2);
+            seen += static_cast<double>(scene.scene.cones.size());
+            missed += static_cast<double>(scene.missed.size());
+            for (const ConeId id : scene.ground_truth->left) {
+                const Point position = cone_of(scene, id).position;
+                noise_m2 += std::pow(position.y() - 1.5, 2);  // the spacing is far above the noise
+                noise_m2 += std::pow(position.x() - 5.0 * std::round(position.x() / 5.0), 2);
+                boundary_cones += 1.0;
+            }
+            for (const Cone& cone : scene.missed) {
+                EXPECT_TRUE(std::ranges::any_of(
+                    track.cones, [&](const Cone& other) { return other.position == cone.position; }));
+                EXPECT_TRUE(std::ranges::none_of(scene.scene.cones,
+                                                 [&](const Cone& other) { return other.id == cone.id; }));
+            }
+        }
+        const auto count = static_cast<double>(scenes.size());
+        EXPECT_NEAR(std::sqrt(noise_m2 / (2.0 * boundary_cones)), expected.noise_m, 0.02 * expected.noise_m);
+        EXPECT_NEAR(std::sqrt(lateral_m2 / count), expected.lateral_m, 0.05 * expected.lateral_m);
+        EXPECT_NEAR(std::sqrt(yaw_rad2 / count) * 180.0 / std::numbers::pi, expected.yaw_degrees,
+                    0.05 * expected.yaw_degrees);
+        EXPECT_NEAR(missed / (seen + missed), expected.missed, 0.004);
+    }
+}
+
+TEST(SceneConditions, MissedConesAreKeptOnlyWhereAConditionIsNamed) {
+    SceneOptions wanted = options({0.0}, {40.0});
+    wanted.miss_rate = 0.2;
+    for (const auto& scene : generate(straight(), std::vector<Pose>(20, Pose{{7.0, 0.0}, 0.0}), wanted)) {
+        EXPECT_THAT(scene.missed, IsEmpty());
+    }
+}
+
+/// The false positives of a scene: what is no cone of the track.
+std::vector<Cone> false_positives(const AnnotatedScene& scene, const Track& track) {
+    std::vector<Cone> result;
+    for (const Cone& cone : scene.scene.cones) {
+        if (std::ranges::find(track.cones, cone.position, &Cone::position) == track.cones.end())
+            result.push_back(cone);
+    }
+    return result;
+}
+
+TEST(PersistentFalsePositives, KeepIdAndPlaceAlongALap) {
+    const Track track = circle();
+    SceneOptions wanted = options({0.5}, {15.0});
+    wanted.persistent = true;
+    wanted.with_color = true;
+    const auto scenes = generate_scenes(track, wanted);
+    ASSERT_GT(scenes.size(), 50u);
+    EXPECT_EQ(scenes[3].scene.id, "circle/pose_0003/fp_0.50/range_15/persist");
+    std::map<ConeId, Cone> known;
+    std::map<ConeId, int> views;
+    for (const auto& scene : scenes) {
+        const std::vector<Cone> seen = false_positives(scene, track);
+        for (const Cone& cone : seen) {
+            const auto [first, is_new] = known.try_emplace(cone.id, cone);
+            EXPECT_EQ(first->second.position, cone.position);
+            EXPECT_EQ(first->second.color, cone.color);
+            ++views[cone.id];
+        }
+        // Whatever of them is in view is seen.
+        for (const auto& [id, cone] : known) {
+            const bool in_view = scene.scene.pose.ahead_m(cone.position) >= 0.0 &&
+                                 (cone.position - scene.scene.pose.position).norm() <= 15.0;
+            EXPECT_EQ(in_view, std::ranges::find(seen, id, &Cone::id) != seen.end()) << id;
+        }
+    }
+    EXPECT_GT(known.size(), 20u);
+    EXPECT_TRUE(std::ranges::any_of(views, [](const auto& entry) { return entry.second > 10; }));
+    for (const Cone& cone : scenes[0].scene.cones) EXPECT_THAT(cone.id, AllOf(Ge(0), Lt(10'000)));
+}
+
+TEST(PersistentFalsePositives, AreAsDenseAsFreshOnes) {
+    const Track track = circle();
+    for (const auto& [rate, miss_rate] : {std::pair{0.1, 0.0}, std::pair{0.3, 0.1}, std::pair{0.5, 0.0}}) {
+        SCOPED_TRACE(rate);
+        double fresh = 0.0;
+        double persistent = 0.0;
+        for (std::uint64_t seed = 0; seed < 400; ++seed) {
+            SceneOptions wanted = options({rate}, {15.0});
+            wanted.seed = seed;
+            wanted.miss_rate = miss_rate;
+            for (const auto& scene : generate_scenes(track, wanted))
+                fresh += static_cast<double>(false_positives(scene, track).size());
+            wanted.persistent = true;
+            for (const auto& scene : generate_scenes(track, wanted))
+                persistent += static_cast<double>(false_positives(scene, track).size());
+        }
+        EXPECT_NEAR(persistent / fresh, 1.0, 0.05);
+    }
+}
+
+TEST(PersistentFalsePositives, BytesDependNeitherOnThreadsNorOnOtherScenes) {
+    SceneOptions wanted = in_conditions({"paper", "harsh"}, 0.3);
+    wanted.persistent = true;
+    wanted.ranges_m = {15.0, 20.0};
+    const Track track = circle();
+    const auto scenes = generate_scenes(track, wanted);
+    wanted.threads = 2;
+    EXPECT_EQ(bytes(generate_scenes(track, wanted)), bytes(scenes));
+    // One pose alone, of one lap.
+    wanted.conditions = {"harsh"};
+    wanted.ranges_m = {20.0};
+    wanted.every_m = 2.2;
+    const auto alone = generate_scenes(track, wanted);
+    const auto same = std::ranges::find(scenes, alone.front().scene.id,
+                                        [](const AnnotatedScene& scene) { return scene.scene.id; });
+    ASSERT_NE(same, scenes.end());
+    EXPECT_EQ(bytes({alone.front()}), bytes({*same}));
+}
+
+TEST(PersistentFalsePositives, MoreThanThereAreIdsAreRefused) {
+    SceneOptions wanted = options({0.99}, {30.0});
+    wanted.persistent = true;
+    try {
+        static_cast<void>(generate_scenes(straight(), wanted));
+        FAIL() << "not refused";
+    } catch (const InvalidInput& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("fp: 0.99 gives"));
+    }
+}
+
 TEST(SceneGeneration, IdsAndOrderTellNothing) {
     std::vector<Pose> poses;
     for (double x = 3.0; x < 60.0; x += 1.1) poses.push_back({{x, 0.0}, 0.0});
@@ -550,7 +758,7 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
         }
         return "no error";
     };
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(error([](SceneOptions&) {}), "no error");
     EXPECT_EQ(error([](SceneOptions& o) { o.false_positive_rates = {}; }),
               "fp: must hold at least one value");
@@ -572,6 +780,9 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
     EXPECT_EQ(error([](SceneOptions& o) { o.color_error_rate = 0.1; }),
               "color-error: needs scenes with colour");
     EXPECT_EQ(error([](SceneOptions& o) { o.threads = 0; }), "threads: must be in [1, 1024]");
+    EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"rain"}; }),
+              "condition: 'rain' is none of paper, car, harsh");
+    EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"car", "car"}; }), "condition: car is there twice");
 
     const SceneOptions good = options({0.5}, {30.0});
     EXPECT_THROW(generate(straight(), {{{kNan, 0.0}, 0.0}}, good), InvalidInput);

@@ -9,6 +9,7 @@ namespace conelane::experiments {
 void add_scenes_command(CLI::App& program);
 void add_methods_command(CLI::App& program);
 void add_detect_command(CLI::App& program);
+void add_echo_command(CLI::App& program);
 void add_solvers_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
@@ -23,5 +24,6 @@ void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
 void add_tune_command(CLI::App& program);
+void add_tune_method_command(CLI::App& program);
 
 }  // namespace conelane::experiments

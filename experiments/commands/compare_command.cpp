@@ -47,8 +47,12 @@ void add_shared_options(CLI::App& command, Options& options) {
     command.add_option(
         "--tracks", comparison.tracks,
         "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
-    command.add_option("--methods", options.methods, "see `conelane methods`")
-        ->delimiter(',')
+    command
+        .add_option(
+            "--methods", options.methods,
+            "see `conelane methods`, parted by commas; exec:NAME=COMMAND asks any program and takes the "
+            "rest of its argument, lanes:NAME=FILE scores a finished lanes file "
+            "(docs/methods-from-outside.md)")
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
@@ -86,7 +90,7 @@ void compare_and_print(Options& options) {
     }
     options.parameters.apply_to(comparison.run.method);
     comparison.scenes.threads = comparison.run.threads;
-    fmt::print("{}\n", score_table(compare(comparison, options.directory)));
+    fmt::print("{}\n", compare(comparison, options.directory));
     if (comparison.shard.count == 1) write_page(options.directory);  // merge makes that of all shards
 }
 
@@ -109,8 +113,8 @@ void add_compare_command(CLI::App& program) {
         SceneOptions& chosen = options->comparison.scenes;
         if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
         if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
-        for (const std::string& method : options->methods)
-            options->comparison.entrants.push_back({method, *nearest});
+        for (const std::string& method : split_methods(options->methods))
+            options->comparison.entrants.push_back(parse_entrant(method, *nearest));
         compare_and_print(*options);
     });
 }
@@ -131,8 +135,9 @@ void add_sweep_command(CLI::App& program) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command.callback([options, sizes] {
-        for (const std::string& method : options->methods) {
-            for (const std::size_t size : *sizes) options->comparison.entrants.push_back({method, size});
+        for (const std::string& method : split_methods(options->methods)) {
+            for (const std::size_t size : *sizes)
+                options->comparison.entrants.push_back(parse_entrant(method, size));
         }
         compare_and_print(*options);
     });
@@ -147,7 +152,7 @@ void add_merge_command(CLI::App& program) {
     command.add_option("--out", *directory, "directory of the whole")->required();
     add_overwrite_flag(command, *overwrite);
     command.callback([shards, directory, overwrite] {
-        fmt::print("{}\n", score_table(merge(*shards, *directory, *overwrite)));
+        fmt::print("{}\n", merge(*shards, *directory, *overwrite));
         write_page(*directory);
     });
 }

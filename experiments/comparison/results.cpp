@@ -5,6 +5,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scoring/statistics.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -12,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -19,7 +21,7 @@ namespace conelane::experiments {
 namespace {
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
-    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest};
+    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
@@ -30,6 +32,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     };
     put_if_known("nearest", record->nearest);
     line["track"] = scene->track;
+    if (!scene->condition.empty()) line["condition"] = scene->condition;
     put_if_known("false_positive_rate", scene->false_positive_rate);
     put_if_known("range", scene->range_m);
     line["status"] = to_string(record->answer.status);
@@ -72,7 +75,48 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     }
     line["cones"] = std::min(scene->scene.cones.size(), record->nearest.value_or(scene->scene.cones.size()));
     line["latency_ms"] = score.latency_ms;
+    put_if_known("self_timed_ms", record->self_timed_ms);
     return line;
+}
+
+/// What the methods themselves say that they took, of the records that `is_meant` picks.
+template <typename IsMeant>
+std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
+    std::vector<double> times_ms;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->self_timed_ms && is_meant(record))
+            times_ms.push_back(*record.record->self_timed_ms);
+    }
+    return times_ms;
+}
+
+nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
+    return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
+}
+
+nlohmann::ordered_json outside_part(const OutsideMethod& method, const std::vector<double>& own_ms,
+                                    const EchoFloor& echo) {
+    nlohmann::ordered_json part{{"outside", method.is_program() ? "exec" : "lanes"}};
+    if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
+    if (method.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
+    const auto described = nlohmann::ordered_json::parse(outside_method_json(method));
+    if (described.contains("card")) part["card"] = described["card"];
+    return part;
+}
+
+/// How many answers are errors, and the first of them; empty where none is.
+std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& method) {
+    std::size_t answers = 0;
+    std::size_t errors = 0;
+    std::string first;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->method != method) continue;
+        ++answers;
+        if (record.record->answer.status != LaneStatus::error) continue;
+        if (++errors == 1) first = record.record->scene + ": " + record.record->answer.message;
+    }
+    if (errors == 0) return "";
+    return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, answers, first);
 }
 
 }  // namespace
@@ -106,11 +150,22 @@ void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& l
     const AnnotatedScene& scene = *truth.scene;
     const LaneRecord& record = *scored.record;
     SceneScore& score = scored.score;
-    score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+    const Pose& pose = scene.scene.pose;
     LaneOutline outline;
-    if (record.answer.status == LaneStatus::found) {
-        outline = outline_of(record.answer.lane, scene.scene);
-        line = centre_line_of(outline, scene.scene.pose);
+    if (record.points) {
+        outline = {record.points->left, record.points->right, record.answer.lane.closed};
+        score = score_outline(scene, outline, record.latency_ms, truth.boundaries);
+        line = centre_line_of(outline, pose);
+    } else if (!record.centre_line.empty()) {
+        score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
+        line = centre_line_of(record.centre_line, pose);
+    } else {
+        score =
+            experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        if (record.answer.status == LaneStatus::found) {
+            outline = outline_of(record.answer.lane, scene.scene);
+            line = centre_line_of(outline, pose);
+        }
     }
     scored.failure = lane_failure(scene, outline, score, truth.boundaries);
     if (score.usable().value_or(false) && !truth.centre_line.empty())
@@ -175,11 +230,19 @@ void write_scores(const std::filesystem::path& file, std::span<const ScoredRecor
 }
 
 void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
                    const std::string& run) {
     const Provenance origin = provenance();
     AtomicFile output(file);
     for (const ScoreRow& row : rows) {
         nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
+        const auto method = std::ranges::find(outside.methods, row.key.method, &OutsideMethod::name);
+        if (method != outside.methods.end()) {
+            const auto is_of_row = [&](const ScoredRecord& record) {
+                return key_of(*record.scene, *record.record) == row.key;
+            };
+            line.update(outside_part(*method, self_times_ms(scored, is_of_row), outside.echo));
+        }
         line["commit"] = origin.commit;
         line["compiler"] = origin.compiler;
         line["machine"] = origin.machine;
@@ -187,6 +250,35 @@ void write_results(const std::filesystem::path& file, std::span<const ScoreRow> 
         output.stream() << line.dump() << '\n';
     }
     output.commit();
+}
+
+std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside) {
+    if (outside.methods.empty()) return "";
+    std::string notes = "methods from outside\n";
+    for (const OutsideMethod& method : outside.methods) {
+        const auto is_of_method = [&](const ScoredRecord& record) {
+            return record.record->method == method.name;
+        };
+        const std::vector<double> own_ms = self_times_ms(scored, is_of_method);
+        notes += "  " + method.name + ": ";
+        if (method.is_program()) {
+            notes += "latency is the round trip of a scene and its answer; ";
+            notes += outside.echo.empty()
+                         ? "that of an echo program is unknown"
+                         : fmt::format("that of an echo program is {:.2f} ms (median), {:.2f} (p95)",
+                                       median(outside.echo), quantile(outside.echo, 0.95));
+            if (!own_ms.empty()) {
+                notes += fmt::format("; self-timed {:.2f} ms (median), {:.2f} (p95)", median(own_ms),
+                                     quantile(own_ms, 0.95));
+            }
+        } else {
+            notes += "latency is self-timed, as the lanes file says";
+        }
+        notes += '\n';
+        if (method.card) notes += "    " + method.card->summary() + '\n';
+        notes += note_on_errors(scored, method.name);
+    }
+    return notes;
 }
 
 }  // namespace conelane::experiments

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/lane_file.hpp"
+#include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/centre_line_error.hpp"
 #include "experiments/scoring/lane_failure.hpp"
@@ -59,8 +61,22 @@ class RecordScorer {
 /// Writes a line per record with every measure of it.
 void write_scores(const std::filesystem::path& file, std::span<const ScoredRecord> scored);
 
-/// Writes a line per row: the summary, then commit, compiler and machine of this program, and `run`, a JSON
-/// object with everything that the run depended on (options, parameters, seed).
-void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows, const std::string& run);
+/// The methods from outside among those scored, and what an echo program takes.
+struct OutsideMethods {
+    std::vector<OutsideMethod> methods;
+    EchoFloor echo;
+};
+
+/// Writes a line per row: the summary, of a method from outside also `outside` (exec or lanes),
+/// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
+/// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
+/// seed).
+void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
+                   const std::string& run);
+
+/// What a table says below of methods from outside: what its latencies are, how many scenes they failed on,
+/// and their cards. Empty where there are none.
+[[nodiscard]] std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside);
 
 }  // namespace conelane::experiments

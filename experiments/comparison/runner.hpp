@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace conelane::experiments {
@@ -23,26 +24,28 @@ struct RunOptions {
 };
 
 /// A method that answers scene after scene, each timed in the same way: from the scene in memory to the lane
-/// in memory, on the wall clock. What an RLD method found and the independent checker rejects becomes an
-/// answer of status error (see check_answer; not timed).
+/// in memory, on the wall clock.
 class TimedMethod {
   public:
-    /// The method must outlive it.
-    TimedMethod(const Method& method, const RunOptions& options);
-
-    [[nodiscard]] LaneRecord answer(const Scene& scene);
+    virtual ~TimedMethod() = default;
+    [[nodiscard]] virtual LaneRecord answer(const Scene& scene) = 0;
     /// Answers the scene untimed and forgets it, so that no latency holds the loading of code.
-    void warm_up(const Scene& scene);
+    virtual void warm_up(const Scene& scene) = 0;
     /// What follows is another lap.
-    void reset() { detector_->reset(); }
-
-  private:
-    const Method& method_;
-    DetectionLimits limits_;
-    std::unique_ptr<LaneDetector> detector_;
-    ConeSet cones_;
-    RldParameters parameters_;
+    virtual void reset() = 0;
 };
+
+/// Makes what answers a lap, in any thread.
+using MethodMaker = std::function<std::unique_ptr<TimedMethod>()>;
+
+/// A method of this program. What an RLD method found and the independent checker rejects becomes an answer
+/// of status error (see check_answer; not timed). The method must outlive what is made.
+[[nodiscard]] MethodMaker maker_of(const Method& method, const RunOptions& options);
+
+/// A program from outside, timed by its round trip. It stays from lap to lap, as long as the maker lives; of
+/// the options it knows the cone-set size alone, and has its own limits (see OutsideLimits).
+[[nodiscard]] MethodMaker maker_of_program(const std::string& name, const std::string& command,
+                                           const RunOptions& options);
 
 /// Whether two scenes are of one lap: the same track, rate and range.
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
@@ -56,11 +59,11 @@ using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
 /// Runs a method on every scene, a TimedMethod for each lap. The first scene of a lap is answered once
 /// untimed before. The cut to the cone set is part of the method and of its time.
-void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
-         const LapSink& sink);
+void run(const std::string& name, const MethodMaker& make, std::span<const AnnotatedScene> scenes,
+         const RunOptions& options, const LapSink& sink);
 
 /// The same, all records at once.
-[[nodiscard]] std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
-                                          const RunOptions& options);
+[[nodiscard]] std::vector<LaneRecord> run(const std::string& name, const MethodMaker& make,
+                                          std::span<const AnnotatedScene> scenes, const RunOptions& options);
 
 }  // namespace conelane::experiments

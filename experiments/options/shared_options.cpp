@@ -131,7 +131,17 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->delimiter(',')
         ->capture_default_str();
     command.add_option("--every", options.every_m, "travel between poses [m]")->capture_default_str();
-    command.add_option("--noise", options.noise_sigma_m, "standard deviation of the seen positions [m]");
+    command
+        .add_option(
+            "--condition", options.conditions,
+            "paper, car and harsh, separated by commas: a lap in each. paper: nothing disturbed; "
+            "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
+            "0.5 m and 8 degrees, 0.1, --persist. Where one of these is given beside it, it holds in all "
+            "of them, and their names say so, such as car+no_persist")
+        ->delimiter(',');
+    command.add_option_function<double>(
+        "--noise", [&options](double sigma_m) { options.noise_sigma_m = sigma_m; },
+        "standard deviation of the seen positions [m]");
     command
         .add_option_function<std::vector<double>>(
             "--pose-noise",
@@ -142,7 +152,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
             "standard deviations of the pose: LATERAL [m], YAW [rad]")
         ->delimiter(',')
         ->expected(2);
-    command.add_option("--miss", options.miss_rate, "share of the cones not seen");
+    command.add_option_function<double>(
+        "--miss", [&options](double rate) { options.miss_rate = rate; }, "share of the cones not seen");
+    command.add_flag_function(
+        "--persist,!--no-persist", [&options](std::int64_t count) { options.persistent = count > 0; },
+        "false positives keep id and place along a lap; else they are drawn anew at each pose");
     command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
     command.add_option("--color-error", options.color_error_rate,
                        "with --color: share of the cones seen in the other boundary's colour");
@@ -211,8 +225,9 @@ void refuse_lost_inputs(CLI::App& command) {
         std::vector<fs::path> written{output->results().front()};
         if (command.get_name() == "scenes") written.push_back(track_boundaries_path(written.front()));
         for (const CLI::Option* input : options) {
-            if (input == output || names_no_file(*input)) continue;
+            if (input == output) continue;
             for (const std::string& text : input->results()) {
+                if (names_no_file(*input) && !text.starts_with("lanes:")) continue;
                 for (const fs::path& file : files_meant(text))
                     refuse_to_replace(*output, written, *input, file);
             }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace conelane::experiments {
 
@@ -17,6 +18,10 @@ struct AnnotatedScene {
     std::optional<double> false_positive_rate;
     std::optional<double> range_m;
     std::optional<std::uint64_t> seed;  ///< the base seed
+    std::string condition;              ///< empty where none was named
+    /// Map points in view that the car does not see, in the map's order. Recorded where a condition was named
+    /// or false positives persist.
+    std::vector<Cone> missed;
 };
 
 }  // namespace conelane::experiments

@@ -56,6 +56,20 @@ Lane read_ground_truth(const JsonNode& json, const Scene& scene) {
     return lane;
 }
 
+std::vector<Cone> read_missed(const JsonNode& json, const Scene& scene) {
+    std::unordered_set<ConeId> ids;
+    for (const Cone& cone : scene.cones) ids.insert(cone.id);
+    std::vector<Cone> missed;
+    const std::size_t size = json.array_size();
+    for (std::size_t i = 0; i < size; ++i) {
+        missed.push_back(read_cone(json.element(i)));
+        if (!ids.insert(missed.back().id).second) {
+            json.element(i).fail("cone id " + std::to_string(missed.back().id) + " is there twice");
+        }
+    }
+    return missed;
+}
+
 AnnotatedScene read_scene(const JsonNode& json) {
     AnnotatedScene result;
     Scene& scene = result.scene;
@@ -77,6 +91,8 @@ AnnotatedScene read_scene(const JsonNode& json) {
     }
     if (const auto range = json.find("range")) result.range_m = range->non_negative_number();
     if (const auto seed = json.find("seed")) result.seed = seed->unsigned_integer();
+    if (const auto condition = json.find("condition")) result.condition = condition->string();
+    if (const auto missed = json.find("missed")) result.missed = read_missed(*missed, scene);
     return result;
 }
 
@@ -105,6 +121,12 @@ ordered_json to_json(const AnnotatedScene& annotated, const std::string& key) {
     }
     if (const auto& range_m = annotated.range_m) json["range"] = require_finite(*range_m, key + ".range");
     if (annotated.seed) json["seed"] = *annotated.seed;
+    if (!annotated.condition.empty()) json["condition"] = annotated.condition;
+    for (const Cone& cone : annotated.missed) {
+        json["missed"].push_back({{"id", cone.id},
+                                  {"x", require_finite(cone.position.x(), key + ".missed")},
+                                  {"y", require_finite(cone.position.y(), key + ".missed")}});
+    }
     return json;
 }
 
@@ -165,6 +187,12 @@ void for_each_scene_line(std::istream& stream, const std::function<void(const Sc
         }
         use(line);
     }
+}
+
+std::string scene_line(const Scene& scene) {
+    AnnotatedScene bare;
+    bare.scene = scene;
+    return to_line(to_json(bare, ""));
 }
 
 void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {

@@ -2,6 +2,8 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/scenes/ground_truth.hpp"
+#include "experiments/scenes/half_disc.hpp"
+#include "experiments/scenes/persistent_points.hpp"
 #include "experiments/seeded_random.hpp"
 #include "experiments/tracks/centre_line.hpp"
 #include "model/geometry.hpp"
@@ -23,6 +25,7 @@
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -34,6 +37,7 @@ struct Course {
     TrackBoundaries polylines;
     std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
     std::unordered_set<ConeId> boundary_ids;
+    std::vector<Pose> lap;  ///< along the whole course; empty where no false positives persist
 };
 
 namespace {
@@ -45,6 +49,8 @@ constexpr double kHighestRate = 0.99;
 constexpr std::int64_t kSmallestIdSpace = 10'000;
 constexpr std::int64_t kIdsPerCone = 128;
 constexpr double kFarthest_m = 1e8;
+/// Travel between the poses whose views decide where false positives persist.
+constexpr double kLapStep_m = 1.1;
 
 /// A generator for one purpose, so that a draw for one does not move those for another: FNV-1a over the text,
 /// then the finaliser of splitmix64.
@@ -70,18 +76,6 @@ Point rounded(const Point& point) {
     return {rounded(point.x(), 1e6), rounded(point.y(), 1e6)};
 }
 
-/// The closed half disc ahead of a car.
-struct HalfDisc {
-    Point centre;
-    Point heading;
-    double radius_m;
-
-    [[nodiscard]] bool contains(const Point& point) const {
-        const Point offset = point - centre;
-        return heading.dot(offset) >= 0.0 && offset.squaredNorm() <= radius_m * radius_m;
-    }
-};
-
 std::int64_t id_space(const Track& track) {
     return std::max(kSmallestIdSpace, kIdsPerCone * static_cast<std::int64_t>(track.cones.size()));
 }
@@ -94,7 +88,7 @@ ConeId draw_new_id(Generator& generator, std::int64_t space, std::unordered_set<
 }
 
 Course make_course(const Track& track, const SceneOptions& options) {
-    Course course{track, boundaries(track), track.cones, {}};
+    Course course{track, boundaries(track), track.cones, {}, {}};
     Generator generator = generator_for(fmt::format("{}/{}/ids", track.name, options.seed));
     std::unordered_set<ConeId> used;
     for (Cone& cone : course.cones) {
@@ -148,6 +142,31 @@ Run run_ahead(const Course& course, const std::vector<std::size_t>& side, const 
     return run;
 }
 
+std::string noise_text(const Condition& condition) {
+    return fmt::format("noise_{}", condition.noise_sigma_m);
+}
+std::string pose_noise_text(const Condition& condition) {
+    return fmt::format("pose_noise_{}_{}", condition.pose_noise_lateral_m, condition.pose_noise_yaw_rad);
+}
+std::string miss_text(const Condition& condition) {
+    return fmt::format("miss_{}", condition.miss_rate);
+}
+
+/// The condition that needs no part of its own in the id of a scene.
+constexpr std::string_view kUndisturbed = "paper";
+
+/// What of a condition ids name, in their order.
+std::vector<std::string> disturbances(const Condition& condition) {
+    std::vector<std::string> parts;
+    if (condition.noise_sigma_m > 0.0) parts.push_back(noise_text(condition));
+    if (condition.pose_noise_lateral_m > 0.0 || condition.pose_noise_yaw_rad > 0.0) {
+        parts.push_back(pose_noise_text(condition));
+    }
+    if (condition.miss_rate > 0.0) parts.push_back(miss_text(condition));
+    if (condition.persistent) parts.emplace_back("persist");
+    return parts;
+}
+
 std::string rate_text(double rate) {
     std::string text = fmt::format("{}", rate);
     if (text.find('e') != std::string::npos) return text;
@@ -157,25 +176,93 @@ std::string rate_text(double rate) {
     return text;
 }
 
-/// One scene of a course: which pose, rate and range, and the steps from there to what the car sees.
+constexpr std::array kFalseColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown};
+
+/// Draws id and, with colours, colour of false positives of a course.
+class FalsePositives {
+  public:
+    FalsePositives(const Course& course, bool with_color)
+        : space_(id_space(course.track)), with_color_(with_color) {
+        for (const Cone& cone : course.cones) used_.insert(cone.id);
+    }
+
+    [[nodiscard]] Cone draw(const Point& position, Generator& random) {
+        Cone cone;
+        cone.position = position;
+        cone.id = draw_new_id(random, space_, used_);
+        const ConeColor color = kFalseColors[any_color_(random)];
+        if (with_color_) cone.color = color;
+        return cone;
+    }
+
+  private:
+    std::int64_t space_;
+    bool with_color_;
+    std::unordered_set<ConeId> used_;
+    boost::random::uniform_int_distribution<std::size_t> any_color_{0, kFalseColors.size() - 1};
+};
+
+/// What the scenes of one lap share.
+struct Lap {
+    Condition condition;
+    double rate;
+    double range_m;
+    std::vector<Cone> persistent;  ///< false positives in the world
+};
+
+/// How many false positives there are to so many points seen: k / (seen + k) = rate.
+long false_positives_to(double seen, double rate) {
+    return std::lround(rate * seen / (1.0 - rate));
+}
+
+std::vector<Cone> persistent_false_positives(const Course& course, const SceneOptions& options,
+                                             const Condition& condition, double rate, double range_m) {
+    if (!condition.persistent) return {};
+    std::vector<PersistentView> views;
+    for (const Pose& pose : course.lap) {
+        PersistentView view{{pose.position, pose.heading(), range_m}};
+        const auto in_view = std::ranges::count_if(
+            course.cones, [&](const Cone& cone) { return view.view.contains(cone.position); });
+        const double seen = (1.0 - condition.miss_rate) * static_cast<double>(in_view);
+        view.expected_points = static_cast<double>(false_positives_to(seen, rate));
+        views.push_back(view);
+    }
+    Generator random = generator_for(fmt::format("{}/{}/{}/{}/persistent false positives", course.track.name,
+                                                 rate, range_m, options.seed));
+    const std::vector<Point> points = draw_persistent_points(views, random);
+    const auto ids_left = id_space(course.track) - static_cast<std::int64_t>(course.cones.size());
+    if (static_cast<std::int64_t>(points.size()) > ids_left / 2) {
+        throw InvalidInput("fp",
+                           fmt::format("{} gives {} false positives that persist around {}; there is room "
+                                       "for {}",
+                                       rate, points.size(), course.track.name, ids_left / 2));
+    }
+    FalsePositives false_positives(course, options.with_color);
+    std::vector<Cone> cones;
+    for (const Point& point : points) cones.push_back(false_positives.draw(rounded(point), random));
+    return cones;
+}
+
+/// One scene of a lap, and the steps from its pose to what the car sees.
 class SceneMaker {
   public:
-    SceneMaker(const Course& course, const SceneOptions& options, double rate, double range_m,
-               std::size_t pose_index)
-        : course_(course), options_(options), rate_(rate), range_m_(range_m), pose_index_(pose_index) {}
+    SceneMaker(const Course& course, const SceneOptions& options, const Lap& lap, std::size_t pose_index)
+        : course_(course), options_(options), lap_(lap), pose_index_(pose_index) {}
 
     /// Nothing where a run of the ground truth has fewer than two cones.
     [[nodiscard]] std::optional<AnnotatedScene> make(const Pose& on_course) const {
         AnnotatedScene result;
         result.track = course_.track.name;
-        result.false_positive_rate = rate_;
-        result.range_m = range_m_;
+        result.false_positive_rate = lap_.rate;
+        result.range_m = lap_.range_m;
         result.seed = options_.seed;
+        result.condition = lap_.condition.name;
         Scene& scene = result.scene;
         scene.id = id();
         scene.pose = disturbed(on_course);
-        const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m_};
+        const HalfDisc view{scene.pose.position, scene.pose.heading(), lap_.range_m};
         const std::vector<Sight> sights = look(view);
+        if (!lap_.condition.name.empty() || lap_.condition.persistent) result.missed = missed_cones(sights);
         scene.cones = seen_cones(sights);
         mistake_colors(scene.cones);
         Lane lane = ground_truth(sights, scene);
@@ -195,19 +282,19 @@ class SceneMaker {
 
   private:
     [[nodiscard]] Generator generator(std::string_view purpose) const {
-        return generator_for(fmt::format("{}/{}/{}/{}/{}/{}", course_.track.name, pose_index_, rate_,
-                                         range_m_, options_.seed, purpose));
+        return generator_for(fmt::format("{}/{}/{}/{}/{}/{}", course_.track.name, pose_index_, lap_.rate,
+                                         lap_.range_m, options_.seed, purpose));
     }
 
     [[nodiscard]] std::string id() const {
         std::string id = fmt::format("{}/pose_{:04}/fp_{}/range_{}", course_.track.name, pose_index_,
-                                     rate_text(rate_), range_m_);
-        if (options_.noise_sigma_m > 0.0) id += fmt::format("/noise_{}", options_.noise_sigma_m);
-        if (options_.pose_noise_lateral_m > 0.0 || options_.pose_noise_yaw_rad > 0.0) {
-            id +=
-                fmt::format("/pose_noise_{}_{}", options_.pose_noise_lateral_m, options_.pose_noise_yaw_rad);
+                                     rate_text(lap_.rate), lap_.range_m);
+        const Condition& condition = lap_.condition;
+        if (condition.name.empty()) {
+            for (const std::string& part : disturbances(condition)) id += "/" + part;
+        } else if (condition.name != kUndisturbed) {
+            id += "/" + condition.name;
         }
-        if (options_.miss_rate > 0.0) id += fmt::format("/miss_{}", options_.miss_rate);
         if (options_.color_error_rate > 0.0) id += fmt::format("/color_error_{}", options_.color_error_rate);
         if (options_.with_confidence) id += "/confidence";
         if (options_.nearest) id += fmt::format("/nearest_{}", *options_.nearest);
@@ -215,13 +302,14 @@ class SceneMaker {
     }
 
     [[nodiscard]] Pose disturbed(Pose pose) const {
-        if (options_.pose_noise_lateral_m == 0.0 && options_.pose_noise_yaw_rad == 0.0) return pose;
+        const Condition& condition = lap_.condition;
+        if (condition.pose_noise_lateral_m == 0.0 && condition.pose_noise_yaw_rad == 0.0) return pose;
         Generator random = generator("pose noise");
         boost::random::normal_distribution<double> standard;
-        const double to_left_m = options_.pose_noise_lateral_m * standard(random);
+        const double to_left_m = condition.pose_noise_lateral_m * standard(random);
         const Point heading = pose.heading();
         pose.position = rounded(pose.position + to_left_m * Point(-heading.y(), heading.x()));
-        pose.yaw_rad = rounded(pose.yaw_rad + options_.pose_noise_yaw_rad * standard(random), 1e9);
+        pose.yaw_rad = rounded(pose.yaw_rad + condition.pose_noise_yaw_rad * standard(random), 1e9);
         return pose;
     }
 
@@ -232,10 +320,19 @@ class SceneMaker {
         std::vector<Sight> sights(course_.cones.size(), Sight::out_of_view);
         for (std::size_t i = 0; i < sights.size(); ++i) {
             if (!view.contains(course_.cones[i].position)) continue;
-            const bool missed = options_.miss_rate > 0.0 && uniform(random) < options_.miss_rate;
+            const double miss_rate = lap_.condition.miss_rate;
+            const bool missed = miss_rate > 0.0 && uniform(random) < miss_rate;
             sights[i] = missed ? Sight::missed : Sight::seen;
         }
         return sights;
+    }
+
+    [[nodiscard]] std::vector<Cone> missed_cones(const std::vector<Sight>& sights) const {
+        std::vector<Cone> cones;
+        for (std::size_t i = 0; i < sights.size(); ++i) {
+            if (sights[i] == Sight::missed) cones.push_back(course_.cones[i]);
+        }
+        return cones;
     }
 
     [[nodiscard]] std::vector<Cone> seen_cones(const std::vector<Sight>& sights) const {
@@ -245,9 +342,9 @@ class SceneMaker {
         for (std::size_t i = 0; i < sights.size(); ++i) {
             if (sights[i] != Sight::seen) continue;
             cones.push_back(course_.cones[i]);
-            if (options_.noise_sigma_m > 0.0) {
-                const double x_m = options_.noise_sigma_m * standard(random);
-                const double y_m = options_.noise_sigma_m * standard(random);
+            if (const double sigma_m = lap_.condition.noise_sigma_m; sigma_m > 0.0) {
+                const double x_m = sigma_m * standard(random);
+                const double y_m = sigma_m * standard(random);
                 cones.back().position = rounded(cones.back().position + Point(x_m, y_m));
             }
         }
@@ -288,35 +385,37 @@ class SceneMaker {
         return lane;
     }
 
-    /// The number k solves k / (seen + k) = rate; positions are uniform in the half disc, by rejection.
     void add_false_positives(std::vector<Cone>& cones, const HalfDisc& view) const {
-        const auto count = std::lround(rate_ * static_cast<double>(cones.size()) / (1.0 - rate_));
+        if (lap_.condition.persistent) {
+            std::ranges::copy_if(lap_.persistent, std::back_inserter(cones),
+                                 [&](const Cone& cone) { return view.contains(cone.position); });
+        } else {
+            add_fresh_false_positives(cones, view);
+        }
+    }
+
+    /// Uniform in the half disc, by rejection.
+    void add_fresh_false_positives(std::vector<Cone>& cones, const HalfDisc& view) const {
+        const long count = false_positives_to(static_cast<double>(cones.size()), lap_.rate);
         Generator random = generator("false positives");
         boost::random::uniform_real_distribution<double> ahead_m(0.0, view.radius_m);
         boost::random::uniform_real_distribution<double> left_m(-view.radius_m, view.radius_m);
-        boost::random::uniform_int_distribution<std::size_t> any_color(0, 2);
-        constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown};
         const Point to_left(-view.heading.y(), view.heading.x());
-        std::unordered_set<ConeId> used;
-        for (const Cone& cone : course_.cones) used.insert(cone.id);
+        FalsePositives false_positives(course_, options_.with_color);
         for (long i = 0; i < count; ++i) {
-            Cone cone;
+            Point position;
             do {
                 const double ahead = ahead_m(random);
                 const double left = left_m(random);
-                cone.position = rounded(view.centre + ahead * view.heading + left * to_left);
-            } while (!view.contains(cone.position));
-            cone.id = draw_new_id(random, id_space(course_.track), used);
-            const ConeColor color = kColors[any_color(random)];
-            if (options_.with_color) cone.color = color;
-            cones.push_back(cone);
+                position = rounded(view.centre + ahead * view.heading + left * to_left);
+            } while (!view.contains(position));
+            cones.push_back(false_positives.draw(position, random));
         }
     }
 
     const Course& course_;
     const SceneOptions& options_;
-    double rate_;
-    double range_m_;
+    const Lap& lap_;
     std::size_t pose_index_;
 };
 
@@ -336,6 +435,27 @@ void require_list(const std::vector<double>& values, double lowest, double highe
     }
 }
 
+/// The condition as the options change it.
+Condition adapted(Condition condition, const SceneOptions& options) {
+    const Condition own = condition;
+    condition.noise_sigma_m = options.noise_sigma_m.value_or(own.noise_sigma_m);
+    condition.pose_noise_lateral_m = options.pose_noise_lateral_m.value_or(own.pose_noise_lateral_m);
+    condition.pose_noise_yaw_rad = options.pose_noise_yaw_rad.value_or(own.pose_noise_yaw_rad);
+    condition.miss_rate = options.miss_rate.value_or(own.miss_rate);
+    condition.persistent = options.persistent.value_or(own.persistent);
+    if (own.name.empty()) return condition;
+    if (condition.noise_sigma_m != own.noise_sigma_m) condition.name += "+" + noise_text(condition);
+    if (condition.pose_noise_lateral_m != own.pose_noise_lateral_m ||
+        condition.pose_noise_yaw_rad != own.pose_noise_yaw_rad) {
+        condition.name += "+" + pose_noise_text(condition);
+    }
+    if (condition.miss_rate != own.miss_rate) condition.name += "+" + miss_text(condition);
+    if (condition.persistent != own.persistent) {
+        condition.name += condition.persistent ? "+persist" : "+no_persist";
+    }
+    return condition;
+}
+
 void require_near_origin(const Point& position, const std::string& key) {
     if (!(position.cwiseAbs().maxCoeff() <= kFarthest_m)) {
         throw InvalidInput(key, fmt::format("must be within {} m of the origin on each axis", kFarthest_m));
@@ -350,10 +470,12 @@ void validate(const SceneOptions& options) {
     require_list(options.ranges_m, 0.1, kLargest, "range");
     require_between(options.every_m, 0.01, kLargest, "every");
     if (options.nearest == 0U) throw InvalidInput("nearest", "must be at least 1");
-    require_between(options.noise_sigma_m, 0.0, kLargest, "noise");
-    require_between(options.pose_noise_lateral_m, 0.0, kLargest, "pose-noise");
-    require_between(options.pose_noise_yaw_rad, 0.0, kLargest, "pose-noise");
-    if (!(options.miss_rate >= 0.0 && options.miss_rate < 1.0)) {
+    static_cast<void>(conditions_of(options));
+    require_between(options.noise_sigma_m.value_or(0.0), 0.0, kLargest, "noise");
+    require_between(options.pose_noise_lateral_m.value_or(0.0), 0.0, kLargest, "pose-noise");
+    require_between(options.pose_noise_yaw_rad.value_or(0.0), 0.0, kLargest, "pose-noise");
+    const double miss_rate = options.miss_rate.value_or(0.0);
+    if (!(miss_rate >= 0.0 && miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");
     }
     require_between(options.color_error_rate, 0.0, 1.0, "color-error");
@@ -365,9 +487,35 @@ void validate(const SceneOptions& options) {
     }
 }
 
+std::vector<Condition> conditions_of(const SceneOptions& options) {
+    if (options.conditions.empty()) return {adapted(Condition{}, options)};
+    std::vector<Condition> conditions;
+    for (const std::string& name : options.conditions) {
+        const auto known = std::ranges::find(named_conditions(), name, &Condition::name);
+        if (known == named_conditions().end()) {
+            std::vector<std::string> names;
+            for (const Condition& condition : named_conditions()) names.push_back(condition.name);
+            throw InvalidInput("condition", fmt::format("'{}' is none of {}", name, fmt::join(names, ", ")));
+        }
+        if (std::ranges::count(options.conditions, name) > 1) {
+            throw InvalidInput("condition", fmt::format("{} is there twice", name));
+        }
+        conditions.push_back(adapted(*known, options));
+    }
+    return conditions;
+}
+
+std::vector<std::string> condition_names(const SceneOptions& options) {
+    std::vector<std::string> names;
+    if (options.conditions.empty()) return names;
+    for (const Condition& condition : conditions_of(options)) names.push_back(condition.name);
+    return names;
+}
+
 TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options)
     : poses_(poses), options_(options) {
     validate(options);
+    conditions_ = conditions_of(options);
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
         require_near_origin(track.cones[i].position, fmt::format("{}: cones[{}]", track.name, i));
     }
@@ -377,29 +525,43 @@ TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const Scen
         if (!std::isfinite(poses[i].yaw_rad)) throw InvalidInput(key, "yaw must be a finite number");
     }
     if (track.left.size() < 2 || track.right.size() < 2) return;
-    course_ = std::make_unique<const Course>(make_course(track, options));
+    Course course = make_course(track, options);
+    if (std::ranges::any_of(conditions_, &Condition::persistent)) {
+        course.lap = centre_line_poses(course.polylines, kLapStep_m);
+    }
+    course_ = std::make_unique<const Course>(std::move(course));
 }
 
 TrackLaps::~TrackLaps() = default;
 
 std::size_t TrackLaps::size() const {
-    return options_.ranges_m.size() * options_.false_positive_rates.size();
+    return conditions_.size() * options_.ranges_m.size() * options_.false_positive_rates.size();
 }
 
-std::optional<AnnotatedScene> TrackLaps::scene(std::size_t lap, std::size_t pose) const {
-    const std::size_t rates = options_.false_positive_rates.size();
-    const double rate = options_.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
-    return SceneMaker(*course_, options_, rate, options_.ranges_m[lap / rates], pose).make(poses_[pose]);
+namespace {
+
+Lap lap_of(const Course& course, const SceneOptions& options, const std::vector<Condition>& conditions,
+           std::size_t lap) {
+    const std::size_t rates = options.false_positive_rates.size();
+    const std::size_t ranges = options.ranges_m.size();
+    const double rate = options.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
+    const double range_m = options.ranges_m[lap / rates % ranges];
+    const Condition& condition = conditions[lap / rates / ranges];
+    return {condition, rate, range_m, persistent_false_positives(course, options, condition, rate, range_m)};
 }
+
+}  // namespace
 
 std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
     if (!course_) return {};
+    const Lap shared = lap_of(*course_, options_, conditions_, lap);
     std::vector<std::optional<AnnotatedScene>> made(poses_.size());
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
-        oneapi::tbb::parallel_for(std::size_t{0}, made.size(),
-                                  [&](std::size_t pose) { made[pose] = scene(lap, pose); });
+        oneapi::tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t pose) {
+            made[pose] = SceneMaker(*course_, options_, shared, pose).make(poses_[pose]);
+        });
     });
     std::vector<AnnotatedScene> scenes;
     for (std::optional<AnnotatedScene>& seen : made) {
@@ -410,8 +572,9 @@ std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
 
 bool TrackLaps::is_empty(std::size_t lap) const {
     if (!course_) return true;
+    const Lap shared = lap_of(*course_, options_, conditions_, lap);
     for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
-        if (scene(lap, pose)) return false;
+        if (SceneMaker(*course_, options_, shared, pose).make(poses_[pose])) return false;
     }
     return true;
 }

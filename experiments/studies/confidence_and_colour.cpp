@@ -206,12 +206,17 @@ ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file) {
         scenes.false_positive_rates = numbers_of(json.member("fp"));
         scenes.ranges_m = numbers_of(json.member("range"));
         scenes.every_m = json.member("every").number();
-        scenes.noise_sigma_m = json.member("noise").number();
-        const JsonNode pose_noise = json.member("pose_noise");
-        if (pose_noise.array_size() != 2) pose_noise.fail("must be two numbers");
-        scenes.pose_noise_lateral_m = pose_noise.element(0).number();
-        scenes.pose_noise_yaw_rad = pose_noise.element(1).number();
-        scenes.miss_rate = json.member("miss").number();
+        if (const auto names = json.find("condition")) {
+            scenes.conditions = strings_of(*names);  // hold all that is disturbed
+        } else {
+            scenes.noise_sigma_m = json.member("noise").number();
+            const JsonNode pose_noise = json.member("pose_noise");
+            if (pose_noise.array_size() != 2) pose_noise.fail("must be two numbers");
+            scenes.pose_noise_lateral_m = pose_noise.element(0).number();
+            scenes.pose_noise_yaw_rad = pose_noise.element(1).number();
+            scenes.miss_rate = json.member("miss").number();
+            if (const auto persistent = json.find("persist")) scenes.persistent = persistent->boolean();
+        }
         scenes.seed = json.member("seed").unsigned_integer();
         options.evaluation.time_limit_ms = json.member("time_limit_ms").non_negative_number();
         options.evaluation.most_nodes = json.member("most_nodes").non_negative_integer();

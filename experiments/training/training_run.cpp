@@ -38,13 +38,17 @@ Json describe(const RankingFigures& figures) {
 }
 
 Json describe(const SceneOptions& scenes) {
-    return {{"fp", scenes.false_positive_rates},
-            {"range", scenes.ranges_m},
-            {"every", scenes.every_m},
-            {"noise", scenes.noise_sigma_m},
-            {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
-            {"miss", scenes.miss_rate},
-            {"seed", scenes.seed}};
+    Json json{
+        {"fp", scenes.false_positive_rates},
+        {"range", scenes.ranges_m},
+        {"every", scenes.every_m},
+        {"noise", scenes.noise_sigma_m.value_or(0.0)},
+        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
+        {"miss", scenes.miss_rate.value_or(0.0)},
+        {"seed", scenes.seed}};
+    if (!scenes.conditions.empty()) json["condition"] = condition_names(scenes);
+    if (scenes.persistent) json["persist"] = *scenes.persistent;
+    return json;
 }
 
 Json describe(const RankNetTrainingOptions& training) {
