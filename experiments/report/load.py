@@ -130,14 +130,15 @@ class Results:
         return PAPER_CONDITION if PAPER_CONDITION in self.conditions else self.conditions[0]
 
     def under(self, condition):
-        """What was measured in this condition alone."""
-        if self.conditions == [condition]:
-            return self
-        beside = {folder: [part for part in (sample.at(condition=condition) for sample in samples) if len(part)]
-                  for folder, samples in self.beside.items()}
+        """What was measured in this condition alone; of a comparison beside that names none, all."""
+        def parts(samples):
+            named = any(np.any(sample.condition != "") for sample in samples)
+            wanted = condition if named else ""
+            return [part for part in (sample.at(condition=wanted) for sample in samples) if len(part)]
+
         return dataclasses.replace(
-            self, rows=[row for row in self.rows if row.get("condition", "") == condition], beside=beside,
-            samples=[part for part in (sample.at(condition=condition) for sample in self.samples) if len(part)])
+            self, rows=[row for row in self.rows if row.get("condition", "") == condition],
+            samples=parts(self.samples), beside={folder: parts(samples) for folder, samples in self.beside.items()})
 
     def objective_of(self, sample):
         """What stands for the objective that a method minimises: methods of the same parameters have the same."""
