@@ -77,6 +77,7 @@ int run(int argument_count, char** arguments) {
     program.set_version_flag("--version", version());
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
+    experiments::add_cross_validate_command(program);
     experiments::add_report_command(program);
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);

@@ -19,6 +19,7 @@ void add_drive_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
+void add_cross_validate_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);

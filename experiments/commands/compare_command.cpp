@@ -1,7 +1,7 @@
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/page.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/report/report.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
 #include <charconv>
@@ -46,7 +46,8 @@ void add_shared_options(CLI::App& command, Options& options) {
     ComparisonOptions& comparison = options.comparison;
     command.add_option(
         "--tracks", comparison.tracks,
-        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
+        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
+        "ones without it");
     command
         .add_option(
             "--methods", options.methods,
@@ -69,17 +70,6 @@ void add_shared_options(CLI::App& command, Options& options) {
                     "directory of the results; a run that was stopped there goes on")
         ->required();
     add_overwrite_flag(command, comparison.overwrite);
-}
-
-/// The results are whole without the page, which takes Python and matplotlib.
-void write_page(const std::filesystem::path& directory) {
-    const std::filesystem::path page = directory / "report.html";
-    try {
-        write_report(directory, page);
-        fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
-    } catch (const std::exception& failure) {
-        fmt::print("all of it in {}; no page: {}\n", directory.string(), failure.what());
-    }
 }
 
 void compare_and_print(Options& options) {

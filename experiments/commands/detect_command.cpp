@@ -71,7 +71,7 @@ Answering method_of(const Options& options) {
 /// One scene after the other; nothing is answered untimed before, since no scene is known before.
 void detect_streamed(const Answering& method, const Options& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
-    const std::unique_ptr<TimedMethod> timed = method.make();
+    const std::unique_ptr<TimedMethod> timed = method.make("");
     LaneSink sink(options.out);
     if (options.scenes == kStandardStream) {
         for_each_scene_line(std::cin, [&](const SceneLine& line) {

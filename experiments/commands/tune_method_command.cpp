@@ -4,6 +4,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/method_tuning.hpp"
 
@@ -27,30 +28,22 @@ struct Options {
     std::string out;
 };
 
-ordered_json to_json(const MethodFigure& figure) {
+ordered_json describe(const MethodFigure& figure) {
     return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
 }
 
 ordered_json record_of(const Options& options, const TunedMethod& tuned) {
-    const SceneOptions& scenes = options.scenes;
     const Provenance origin = provenance();
-    return {{"method", options.method},
-            {"commit", origin.commit},
-            {"compiler", origin.compiler},
-            {"machine", origin.machine},
-            {"tracks", options.tracks},
-            {"fp", scenes.false_positive_rates},
-            {"range", scenes.ranges_m},
-            {"every", scenes.every_m},
-            {"noise", scenes.noise_sigma_m},
-            {"pose_noise", {scenes.pose_noise_lateral_m, scenes.pose_noise_yaw_rad}},
-            {"miss", scenes.miss_rate},
-            {"color", scenes.with_color},
-            {"color_error", scenes.color_error_rate},
-            {"seed", scenes.seed},
-            {"evaluations", options.tuning.evaluations},
-            {"figure_of_start", to_json(tuned.figure_of_start)},
-            {"figure", to_json(tuned.figure)}};
+    ordered_json json{{"method", options.method},
+                      {"commit", origin.commit},
+                      {"compiler", origin.compiler},
+                      {"machine", origin.machine},
+                      {"tracks", options.tracks}};
+    json.update(scene_options_json(options.scenes));
+    json["evaluations"] = options.tuning.evaluations;
+    json["figure_of_start"] = describe(tuned.figure_of_start);
+    json["figure"] = describe(tuned.figure);
+    return json;
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -95,8 +88,7 @@ void add_tune_method_command(CLI::App& program) {
         .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     add_scene_options(command, options->scenes);
-    command
-        .add_option("--evaluations", options->tuning.evaluations, "parameters that the search evaluates")
+    command.add_option("--evaluations", options->tuning.evaluations, "parameters that the search evaluates")
         ->check(CLI::Range(1, 1'000'000))
         ->capture_default_str();
     add_threads_option(command, options->tuning.threads, "scenes answered at a time");

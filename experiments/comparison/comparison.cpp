@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 
 MethodMaker maker_of(const Entrant& entrant, const RunOptions& options) {
+    if (entrant.maker) return entrant.maker(options);
     if (entrant.outside) return maker_of_program(entrant.method, entrant.outside->source, options);
     return maker_of(find_method(entrant.method), options);
 }
@@ -77,8 +78,7 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
     std::vector<ScoredRecord> scored;
     for (const std::string& name : lanes_files) {
         records.push_back(read_lanes(directory / name));
-        std::ranges::move(scorer.score(records.back(), directory / name),
-                          std::back_inserter(scored));
+        std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
     const OutsideMethods outside{outside_methods_of_record(run_record),
@@ -108,6 +108,7 @@ std::string compare(const ComparisonOptions& options, const fs::path& directory)
 
     const FolderLock lock = open_run(directory, record, options.overwrite);
     write_scene_set(directory / kScenesFile, set);
+    if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {
         lanes_files.push_back(entrant.lanes_file());

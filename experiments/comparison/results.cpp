@@ -160,8 +160,7 @@ void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& l
         score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
         line = centre_line_of(record.centre_line, pose);
     } else {
-        score =
-            experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
         if (record.answer.status == LaneStatus::found) {
             outline = outline_of(record.answer.lane, scene.scene);
             line = centre_line_of(outline, pose);

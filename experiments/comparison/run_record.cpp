@@ -5,6 +5,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,10 +31,9 @@ constexpr const char* kRunFile = "run.json";
 
 bool is_of_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
-    constexpr std::array<std::string_view, 7> kNames{
-        kRunFile,      "results.jsonl",       "scores.jsonl",
-        "table.txt",   "scenes.scenes.jsonl", "scenes.tracks.json",
-        kEchoFloorFile};
+    constexpr std::array<std::string_view, 8> kNames{
+        kRunFile, "results.jsonl",       "scores.jsonl",       "table.txt",
+        "folds",  "scenes.scenes.jsonl", "scenes.tracks.json", kEchoFloorFile};
     return name.ends_with(".lanes.jsonl") || name.ends_with(".lanes.jsonl.part") ||
            std::ranges::find(kNames, name) != kNames.end();
 }
@@ -130,29 +130,18 @@ std::string run_record(const ComparisonOptions& options) {
         if (method.is_rld()) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
         methods.push_back(json);
     }
-    const SceneOptions& scenes = options.scenes;
-    nlohmann::ordered_json record{
-        {"commit", origin.commit},
-        {"compiler", origin.compiler},
-        {"machine", origin.machine},
-        {"tracks", options.tracks},
-        {"methods", methods},
-        {"fp", scenes.false_positive_rates},
-        {"range", scenes.ranges_m},
-        {"every", scenes.every_m},
-        {"noise", scenes.noise_sigma_m.value_or(0.0)},
-        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
-        {"miss", scenes.miss_rate.value_or(0.0)},
-        {"color", scenes.with_color},
-        {"color_error", scenes.color_error_rate},
-        {"confidence", scenes.with_confidence},
-        {"seed", scenes.seed},
-        {"threads", options.run.threads},
-        {"candidates", options.run.limits.keep_candidates}};
-    if (origin.commit == "unknown" || origin.commit.ends_with("-dirty")) record["program"] = hash_of("/proc/self/exe");
-    if (!scenes.conditions.empty()) record["condition"] = condition_names(scenes);
-    if (scenes.persistent) record["persist"] = *scenes.persistent;
-    if (scenes.nearest) record["nearest"] = *scenes.nearest;
+    nlohmann::ordered_json record{{"commit", origin.commit},
+                                  {"compiler", origin.compiler},
+                                  {"machine", origin.machine},
+                                  {"tracks", options.tracks},
+                                  {"methods", methods}};
+    record.update(scene_options_json(options.scenes));
+    record["threads"] = options.run.threads;
+    record["candidates"] = options.run.limits.keep_candidates;
+    if (!options.cross_validation.empty())
+        record["cross_validation"] = nlohmann::ordered_json::parse(options.cross_validation);
+    if (origin.commit == "unknown" || origin.commit.ends_with("-dirty"))
+        record["program"] = hash_of("/proc/self/exe");
     if (std::isfinite(options.run.limits.time_limit_ms))
         record["time_limit_ms"] = options.run.limits.time_limit_ms;
     if (options.shard.count > 1) record["shard"] = {options.shard.index, options.shard.count};
@@ -178,7 +167,7 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
                          fmt::format("holds {}, but not the {} that belongs to it; --overwrite replaces it",
                                      earlier.front().filename().string(), kRunFile));
     }
-    for (const fs::path& file : earlier) fs::remove(file);
+    for (const fs::path& file : earlier) fs::remove_all(file);
     AtomicFile file(directory / kRunFile);
     file.stream() << record << '\n';
     file.commit();

@@ -7,6 +7,7 @@
 #include "experiments/scenes/scene_set.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Entrant {
     std::string method;  ///< name of a method of this program, or of `outside`
     std::optional<std::size_t> nearest = {};
     std::optional<OutsideMethod> outside = {};
+    /// Another way to make the method, such as from weights that have not seen the course; none: by its name.
+    std::function<MethodMaker(const RunOptions&)> maker = {};
 
     /// Name of its lanes file: METHOD.lanes.jsonl or METHOD.n012.lanes.jsonl.
     [[nodiscard]] std::string lanes_file() const;
@@ -31,6 +34,9 @@ struct ComparisonOptions {
     RunOptions run;
     Shard shard;
     bool overwrite = false;  ///< results of another run in the directory
+    /// What is needed before the entrants can be made; called when the directory is locked and ready.
+    std::function<void()> prepare = {};
+    std::string cross_validation = {};  ///< JSON object, what the folds depend on; empty where there are none
 };
 
 /// The entrant that a text of `--methods` names. Throws InvalidInput where there is no such method and where

@@ -21,22 +21,29 @@
 namespace conelane::experiments {
 namespace {
 
+/// What an RLD detector's lanes are checked against.
+struct CheckedRld {
+    ConeSet cones;
+    RldParameters parameters;
+};
+
 /// A detector of this program.
 class TimedDetector : public TimedMethod {
   public:
-    TimedDetector(const Method& method, const RunOptions& options)
-        : method_(method),
+    TimedDetector(std::string name, std::unique_ptr<LaneDetector> detector, const RunOptions& options,
+                  std::optional<std::size_t> nearest, std::optional<CheckedRld> check = {})
+        : name_(std::move(name)),
           limits_(options.limits),
-          detector_(make_detector(method, options.method)),
-          cones_(cone_set(method, options.method)),
-          parameters_(rld_parameters(method, options.method)) {}
+          detector_(std::move(detector)),
+          nearest_(nearest),
+          check_(std::move(check)) {}
 
     LaneRecord answer(const Scene& scene) override {
         const Stopwatch watch;
         LaneAnswer answer = detector_->detect(scene, limits_);
         const double latency_ms = watch.elapsed_ms();
-        LaneRecord record{scene.id, std::string(method_.name), std::move(answer), latency_ms, cones_.nearest};
-        if (method_.is_rld()) check_answer(record, cones_.seen(scene), parameters_);
+        LaneRecord record{scene.id, name_, std::move(answer), latency_ms, nearest_};
+        if (check_) check_answer(record, check_->cones.seen(scene), check_->parameters);
         return record;
     }
     void warm_up(const Scene& scene) override {
@@ -46,11 +53,11 @@ class TimedDetector : public TimedMethod {
     void reset() override { detector_->reset(); }
 
   private:
-    const Method& method_;
+    std::string name_;
     DetectionLimits limits_;
     std::unique_ptr<LaneDetector> detector_;
-    ConeSet cones_;
-    RldParameters parameters_;
+    std::optional<std::size_t> nearest_;
+    std::optional<CheckedRld> check_;
 };
 
 /// A program from outside, taken from those that run already and given back.
@@ -83,7 +90,7 @@ class TimedProgram : public TimedMethod {
 
 std::vector<LaneRecord> drive_lap(const MethodMaker& make, std::span<const AnnotatedScene> lap,
                                   Progress& progress) {
-    const std::unique_ptr<TimedMethod> timed = make();
+    const std::unique_ptr<TimedMethod> timed = make(lap.front().track);
     timed->warm_up(lap.front().scene);
     std::vector<LaneRecord> records;
     records.reserve(lap.size());
@@ -118,13 +125,25 @@ class InOrder {
 }  // namespace
 
 MethodMaker maker_of(const Method& method, const RunOptions& options) {
-    return [&method, options] { return std::make_unique<TimedDetector>(method, options); };
+    return [&method, options](const std::string& /*track*/) {
+        const ConeSet cones = cone_set(method, options.method);
+        std::optional<CheckedRld> check;
+        if (method.is_rld()) check = CheckedRld{cones, rld_parameters(method, options.method)};
+        return std::make_unique<TimedDetector>(
+            std::string(method.name), make_detector(method, options.method), options, cones.nearest, check);
+    };
+}
+
+MethodMaker maker_of(const std::string& name, std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                     const RunOptions& options) {
+    return [name, make_detector = std::move(make_detector), options](const std::string& /*track*/) {
+        return std::make_unique<TimedDetector>(name, make_detector(), options, std::nullopt);
+    };
 }
 
 MethodMaker maker_of_program(const std::string& name, const std::string& command, const RunOptions& options) {
-    return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.method.nearest] {
-        return std::make_unique<TimedProgram>(pool, nearest);
-    };
+    return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.method.nearest](
+               const std::string& /*track*/) { return std::make_unique<TimedProgram>(pool, nearest); };
 }
 
 bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {

@@ -35,23 +35,29 @@ class TimedMethod {
     virtual void reset() = 0;
 };
 
-/// Makes what answers a lap, in any thread.
-using MethodMaker = std::function<std::unique_ptr<TimedMethod>()>;
+/// Makes what answers a lap of the course of this name, in any thread.
+using MethodMaker = std::function<std::unique_ptr<TimedMethod>(const std::string& track)>;
 
 /// A method of this program. What an RLD method found and the independent checker rejects becomes an answer
 /// of status error (see check_answer; not timed). The method must outlive what is made.
 [[nodiscard]] MethodMaker maker_of(const Method& method, const RunOptions& options);
+
+/// Any detector under a name, on all cones.
+[[nodiscard]] MethodMaker maker_of(const std::string& name,
+                                   std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                                   const RunOptions& options);
 
 /// A program from outside, timed by its round trip. It stays from lap to lap, as long as the maker lives; of
 /// the options it knows the cone-set size alone, and has its own limits (see OutsideLimits).
 [[nodiscard]] MethodMaker maker_of_program(const std::string& name, const std::string& command,
                                            const RunOptions& options);
 
-/// Whether two scenes are of one lap: the same track, rate and range.
+/// Whether two scenes are of one lap: the same track, condition, rate and range.
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
 
-/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track, rate
-/// and range, the unit of work: a detector that carries state sees each lap from its beginning, alone.
+/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track,
+/// condition, rate and range, the unit of work: a detector that carries state sees each lap from its
+/// beginning, alone.
 [[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
 
 /// Gets the records of each lap, in the order of the laps, from one thread at a time.

@@ -242,12 +242,16 @@ std::string ChildProcess::end(double patience_ms) {
 }
 
 std::string ChildProcess::last_words() const {
-    constexpr const char* kBlank = " \t\r\n";
-    const std::size_t last = error_tail_.find_last_not_of(kBlank);
-    if (last == std::string::npos) return "";
-    const std::size_t line_end = error_tail_.find_last_of('\n', last);
-    std::string words = error_tail_.substr(line_end + 1, last - line_end);  // npos + 1 is 0
-    if (words.size() > kLongestWords) words = words.substr(0, kLongestWords) + "...";
+    std::string words;
+    std::size_t end = error_tail_.size();
+    for (int lines = 0; lines < 2 && end > 0;) {
+        const std::size_t begin = error_tail_.find_last_of('\n', end - 1) + 1;  // npos + 1 is 0
+        const std::string line = error_tail_.substr(begin, std::min(end - begin, kLongestWords));
+        end = begin > 0 ? begin - 1 : 0;
+        if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+        words = words.empty() ? line : line + " | " + words;
+        ++lines;
+    }
     return words;
 }
 

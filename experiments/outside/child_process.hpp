@@ -47,8 +47,8 @@ class ChildProcess {
     /// it ended: "exit code 3", "signal 11"; empty where it had to be killed.
     std::string end(double patience_ms);
 
-    /// The last line of its standard error that is not blank, cut to a length that fits a message. Complete
-    /// after `end`.
+    /// The last two lines of its standard error that are not blank, since a shell may add one of its own, cut
+    /// to a length that fits a message. Complete after `end`.
     [[nodiscard]] std::string last_words() const;
 
   private:

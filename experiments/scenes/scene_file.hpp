@@ -45,7 +45,7 @@ void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedSc
 [[nodiscard]] std::filesystem::path track_boundaries_path(const std::filesystem::path& scenes);
 
 /// Throws InputError naming file and key, and the line of what is no JSON. Each boundary has a point at
-/// least.
+/// least, but for those of a track with a driven path.
 [[nodiscard]] TrackBoundariesByName read_track_boundaries(const std::filesystem::path& file);
 
 /// Throws like write_scenes.

@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
+#include "experiments/tracks/run_log.hpp"
 #include "experiments/tracks/track_readers.hpp"
 
 #include <algorithm>
@@ -111,16 +112,18 @@ std::vector<Track> load_tracks(const std::string& spec) {
     const std::size_t colon = spec.find(':');
     const std::string kind = spec.substr(0, colon);
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
-    if (what.empty()) fail(spec, "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE or eufs:FILE");
+    if (what.empty())
+        fail(spec, "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE, eufs:FILE or ftlog:FILE");
     try {
         if (kind == "generated") return generated(spec, what);
         if (kind == "fsd") return fsd(spec, what);
         if (kind == "pacsim") return {read_pacsim_track(what)};
         if (kind == "eufs") return {read_eufs_track(what)};
+        if (kind == "ftlog") return {read_run_log(what)};
     } catch (const fs::filesystem_error& error) {
         fail(spec, error.code().message());
     }
-    fail(spec, fmt::format("'{}' is none of generated, fsd, pacsim and eufs", kind));
+    fail(spec, fmt::format("'{}' is none of generated, fsd, pacsim, eufs and ftlog", kind));
 }
 
 }  // namespace conelane::experiments

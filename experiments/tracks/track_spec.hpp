@@ -11,7 +11,8 @@ namespace conelane::experiments {
 /// - `generated:NAME[@SEED][,NAME[@SEED]...]`, seed 0 unless given;
 /// - `fsd:DIR`, all numbers found there in ascending order, or `fsd:DIR:1,2`;
 /// - `pacsim:FILE`;
-/// - `eufs:FILE`.
+/// - `eufs:FILE`;
+/// - `ftlog:FILE`.
 /// Throws InputError, with the SPEC as key where it is not the fault of a file.
 [[nodiscard]] std::vector<Track> load_tracks(const std::string& spec);
 

@@ -134,8 +134,8 @@ MethodFigure evaluate(const TunableMethod& method, std::span<const double> value
     for (std::size_t i = 0; i < scores.size(); ++i) {
         if (!counts(set.scenes[i])) continue;
         ++figure.scenes;
-        figure.usable += scores[i].usable() ? 1.0 : 0.0;
-        figure.iou += scores[i].iou;
+        figure.usable += scores[i].usable().value_or(false) ? 1.0 : 0.0;
+        figure.iou += scores[i].iou.value_or(0.0);
     }
     if (figure.scenes == 0) throw InvalidInput("--tracks", "no scene has a ground truth");
     figure.usable /= static_cast<double>(figure.scenes);

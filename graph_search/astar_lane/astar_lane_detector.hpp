@@ -28,7 +28,7 @@ struct AstarLaneParameters {
     std::int64_t most_steps = 20'000;  ///< expanded by the search, in [1, 1000000]
 };
 
-/// All numbers of an AstarLaneParameters but most_steps, in the order of files.
+/// The numbers that are tuned, in the order of files.
 [[nodiscard]] std::span<const ParameterField<AstarLaneParameters>> astar_lane_fields();
 
 /// Throws InvalidInput naming the first parameter that is out of its range.
