@@ -114,6 +114,16 @@ def _sections(results, published, data):
     return [section for section in sections if section[3]]
 
 
+def _lead(results):
+    """What kind of comparison this is."""
+    held_out = results.run.get("cross_validation")
+    families = held_out.get("families", {}) if isinstance(held_out, dict) else {}
+    how = (f" Held out: what learns was fitted anew for each of {len(families)} families of courses, without them."
+           if families else "")
+    return ("Every method on the same scenes, scored by the same code, beside what the papers print."
+            f"{how} Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
+
+
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
     data = read_scenes(results, published["conditions"], tracks)
@@ -121,7 +131,6 @@ def render(results, published, tracks=()):
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
                    for name, _, title, content in sections)
-    commit = escape(str(results.run.get("commit", "unknown")))
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark"><title>conelane: lanes between cones, compared</title>
@@ -129,8 +138,7 @@ def render(results, published, tracks=()):
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
 <main><h1>Lanes between cones, compared</h1>
-<p class="lead">Every method on the same scenes, scored by the same code, beside what the papers print.
-Commit <code>{commit}</code>.</p>
+<p class="lead">{_lead(results)}</p>
 {body}</main>
 <script>{_asset("tables.js")}</script>
 <script>{_asset("viewer.js")}</script>

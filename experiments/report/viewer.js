@@ -51,7 +51,7 @@
       context.beginPath();
       context.arc(view.x(0, 0), view.y(0), radius * view.scale, Math.PI, 2 * Math.PI);
       context.stroke();
-      context.fillText(radius / 100 + " m", view.x(0, 0) + 3, view.y(radius) - 3);
+      context.fillText(radius / 100 + " m", view.x(0, -radius) - 28, view.y(0) + 11); // beside the car, where no lane is
     }
   };
 

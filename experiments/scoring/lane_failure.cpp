@@ -137,8 +137,9 @@ std::optional<LaneFailure> lane_failure(const AnnotatedScene& scene, const LaneO
     if (score.usable().value_or(true) || boundaries == nullptr) return std::nullopt;
     if (score.error) return LaneFailure::error;
     if (score.category == Category::none) return LaneFailure::nothing_found;
-    const bool has_truth = scene.ground_truth && !scene.ground_truth->left.empty() &&
-                           !scene.ground_truth->right.empty() && boundaries->driven.empty();
+    const bool has_truth = scene.ground_truth && scene.ground_truth->left.size() >= 2 &&
+                           scene.ground_truth->right.size() >= 2 && !boundaries->left.empty() &&
+                           !boundaries->right.empty();
     if (has_truth && !(lane.left.empty() && lane.right.empty()))
         return failure_beside_boundaries(lane, outline_of(*scene.ground_truth, scene.scene), *boundaries);
     if (!score.divergence_distance_m) return LaneFailure::stopped_early;

@@ -31,4 +31,6 @@ def html(results, published):
     rows = [key_cells(results, row) + [percent(row["share"].get(key), measure=key) for key in CATEGORIES] +
             _checks(part(results, row)) for row in results.rows]
     columns = keys(results) + [Column(_TITLES[key]) for key in CATEGORIES] + [Column("errors"), Column("checker accepts")]
-    return table("categories", "", columns, rows, row_attributes=attributes(results))
+    return table("categories", "", columns, rows, row_attributes=attributes(results),
+                 note="Too short: below 75 % of the ground truth's length. Near: does not diverge and is long enough, but "
+                 "not of the very same cones.")
