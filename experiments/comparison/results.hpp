@@ -5,12 +5,14 @@
 #include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/centre_line_error.hpp"
+#include "experiments/scoring/lane_failure.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/score_table.hpp"
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -24,6 +26,7 @@ struct ScoredRecord {
     const AnnotatedScene* scene;
     const LaneRecord* record;
     SceneScore score;
+    std::optional<LaneFailure> failure = {};  ///< why the lane is not usable
 };
 
 /// Scores records against the scenes of one set. What all methods are held against is made once.
@@ -51,7 +54,8 @@ class RecordScorer {
         CentreLine centre_line;  ///< empty where the truth is a driven path
     };
     [[nodiscard]] const Truth& truth_of(const LaneRecord& record, const std::filesystem::path& file) const;
-    static void score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line);
+    /// Fills in score and failure of `scored`.
+    static void score(const Truth& truth, ScoredRecord& scored, CentreLine& line);
 
     std::size_t scene_count_;
     CoursesOf courses_of_;
