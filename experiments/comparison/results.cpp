@@ -6,6 +6,7 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "experiments/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -38,6 +39,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     line["status"] = to_string(record->answer.status);
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
+    if (score.trained_on) line["trained_on"] = true;
     put_if_known("usable", score.usable());
     if (failure) line["cause"] = to_string(*failure);
     put_if_known("iou", score.iou);
@@ -121,8 +123,16 @@ std::string note_on_errors(std::span<const ScoredRecord> scored, const std::stri
 
 }  // namespace
 
-RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks)
-    : scene_count_(scenes.size()) {
+std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
+    const auto outside = std::ranges::find(methods, method, &OutsideMethod::name);
+    if (outside == methods.end()) return cross_validated ? std::set<std::string>{} : training_courses(method);
+    if (!outside->card || !outside->card->training_courses) return {};
+    return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
+}
+
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                           CoursesOf courses_of)
+    : scene_count_(scenes.size()), courses_of_(std::move(courses_of)) {
     std::vector<Truth> truths(scenes.size());
     oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
         const auto track = tracks.find(scenes[i].track);
@@ -193,6 +203,10 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
                 InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
         }
     });
+    std::map<std::string, std::set<std::string>> courses;  // by method
+    for (const LaneRecord& record : records) {
+        if (!courses.contains(record.method)) courses.emplace(record.method, courses_of_(record.method));
+    }
     std::vector<ScoredRecord> scored;
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (failures[i]) std::rethrow_exception(failures[i]);
@@ -202,6 +216,7 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
             same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
             all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
+        all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
         scored.push_back(std::move(all[i]));
     }
     for (const auto& [name, count] : answered) {

@@ -11,7 +11,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -30,8 +32,12 @@ struct ScoredRecord {
 /// Scores records against the scenes of one set. What all methods are held against is made once.
 class RecordScorer {
   public:
-    /// Both must outlive it.
-    RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks);
+    /// The courses that a method has learned from.
+    using CoursesOf = std::function<std::set<std::string>(const std::string& method)>;
+
+    /// Scenes and tracks must outlive it.
+    RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                 CoursesOf courses_of);
 
     /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
     /// records of one method and cone-set size must cover every scene once; a scene that does not count is
@@ -52,6 +58,7 @@ class RecordScorer {
     static void score(const Truth& truth, ScoredRecord& scored, CentreLine& line);
 
     std::size_t scene_count_;
+    CoursesOf courses_of_;
     std::unordered_map<std::string, Truth> truth_of_;  // for look-up only
 };
 
@@ -65,6 +72,10 @@ void write_scores(const std::filesystem::path& file, std::span<const ScoredRecor
 struct OutsideMethods {
     std::vector<OutsideMethod> methods;
     EchoFloor echo;
+
+    /// The courses that a method has learned from: those of its card where it is one of these, none where it
+    /// was `cross_validated`, else those of training_courses.
+    [[nodiscard]] std::set<std::string> courses_of(const std::string& method, bool cross_validated) const;
 };
 
 /// Writes a line per row: the summary, of a method from outside also `outside` (exec or lanes),

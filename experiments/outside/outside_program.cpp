@@ -64,6 +64,8 @@ LaneRecord OutsideProgram::answer(const Scene& scene) {
     failures_ = 0;
     lost_ms_ = 0.0;
     next_wait_ = 1;
+    if (const std::string tangle = tangle_of(*attempt.record, scene); !tangle.empty())
+        return error(scene, latency_ms, tangle);
     attempt.record->latency_ms = latency_ms;
     return *std::move(attempt.record);
 }
