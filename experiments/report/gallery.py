@@ -51,13 +51,25 @@ class _View:
         return (f"{_number(self.middle - self.half)} {_number(self.top)} {_number(2 * self.half)} "
                 f"{_number(self.height)}")
 
+    def _has(self, point):
+        return abs(point[0] - self.middle) < self.half and self.top < point[1] < self.top + self.height
+
     def inside(self, points):
-        return [(x, y) for x, y in points
-                if abs(x - self.middle) < self.half and self.top < y < self.top + self.height]
+        return [point for point in points if self._has(point)]
+
+    def pieces(self, line):
+        """The stretches of a line that are inside."""
+        found = [[]]
+        for point in line:
+            if self._has(point):
+                found[-1].append(point)
+            elif found[-1]:
+                found.append([])
+        return [piece for piece in found if len(piece) > 1]
 
 
 def _driven(results, frame, track):
-    """The path that was driven, as far as it lies before the car; empty where boundaries are the truth."""
+    """The path that was driven, from above as the car looks; empty where boundaries are the truth."""
     driven = results.tracks.get(track, {}).get("driven", [])
     if not driven:
         return []
@@ -77,9 +89,9 @@ def drawing(results, frame, slot, track):
     band = _path(left, True) + _path(right[::-1], True) if closed else _path(left + right[::-1], True)
     radius = view.half / 60
     parts = [f'<path class="band" d="{band}"/>'] if band else []
-    driven = view.inside(_driven(results, frame, track))
+    driven = "".join(map(_path, view.pieces(_driven(results, frame, track))))
     if driven:
-        parts.append(f'<path class="driven" d="{_path(driven)}"/>')
+        parts.append(f'<path class="driven" d="{driven}"/>')
     cross = _number(2 * radius)
     strays = "".join(f"M{_number(x - radius)} {_number(y - radius)}l{cross} {cross}m0-{cross}l-{cross} {cross}"
                      for x, y in view.inside(cones[split:]))

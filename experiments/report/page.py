@@ -31,9 +31,9 @@ _VIEWER = """
 <th scope="col" class="number">IoU %</th><th scope="col">accurate</th><th scope="col" class="number">latency ms</th>
 </tr></thead><tbody id="view-methods"></tbody></table></div>
 <p class="note">Arrow keys: pose and false positives. Space: play. Digits: methods on and off. Click the small map to go
-there; point at a cone for its place. <span class="key band-key"></span> ground truth
-<span class="key cone-key">●</span> cone <span class="key missed-key">○</span> cone that was missed <span class="key stray-key">×</span> false positive
-<span class="key driven-key">┅</span> path that was driven</p>
+there; point at a cone for its place. <span class="key"><span class="band-key"></span> ground truth</span>
+<span class="key">● cone</span> <span class="key">○ cone that was missed</span> <span class="key">× false positive</span>
+<span class="key"><span class="driven-key">┅</span> path that was driven</span></p>
 </div>"""
 
 

@@ -353,6 +353,8 @@ class ReportPage(unittest.TestCase):
             self.assertIn('class="missed"', text)
             self.assertIn('class="driven"', text)
             self.assertIn("IoU unknown", text)
+            by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
+            self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
             self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
 
     def test_results_of_earlier_versions_still_make_a_page(self):

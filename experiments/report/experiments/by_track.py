@@ -9,13 +9,24 @@ Command: conelane compare --out RESULTS
 import numpy as np
 
 from ..leaders import headline_values
-from ..tables import Column, percent, table, text
+from ..tables import Cell, Column, percent, table, text
+
+
+def _trained_on(results):
+    """The courses that each method from outside was fitted to, as its author says."""
+    said = {row["method"]: row["card"].get("training_courses", ()) for row in results.rows if "card" in row}
+    return {sample.method: said.get(sample.method, ()) for sample in results.samples}
+
+
+def _cell(share, is_trained):
+    cell = percent(share)
+    return Cell(cell.text, cell.value, "trained") if is_trained and share is not None else cell
 
 
 def html(results, published):
     values_of = headline_values(results.samples)
     tracks = sorted(set().union(*(set(sample.track) for sample in results.samples)))
-    rows, attributes = [], []
+    rows, attributes, trained = [], [], _trained_on(results)
     for condition in results.conditions:
         shares = []
         for sample in results.samples:
@@ -27,8 +38,11 @@ def html(results, published):
         for track in tracks:
             if any(track in of_method for of_method in shares):
                 under = [text(condition)] if results.conditions != [""] else []
-                rows.append([text(track)] + under + [percent(of_method.get(track)) for of_method in shares])
+                cells = [_cell(of_method.get(track), track in trained[sample.method])
+                         for sample, of_method in zip(results.samples, shares)]
+                rows.append([text(track)] + under + cells)
                 attributes.append({"condition": condition})
     columns = [Column("track", "text")] + ([Column("condition", "text")] if results.conditions != [""] else [])
     return table("by-track", "", columns + [Column(sample.label + " %") for sample in results.samples], rows,
-                 row_attributes=attributes)
+                 row_attributes=attributes, note="Trained: the method was fitted to this course, as its author says."
+                 if any(trained.values()) else "")
