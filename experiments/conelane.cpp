@@ -94,6 +94,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
+    experiments::add_instances_command(program);
     experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);

@@ -10,7 +10,7 @@
 
 namespace conelane::experiments {
 
-/// All recorded tracks, from the folder that the environment variable CONELANE_DATA names, else from
+/// All recorded courses, from the folder that the environment variable CONELANE_DATA names, else from
 /// ../shared/data beside the sources. None where there is neither.
 inline std::vector<Track> recorded_tracks() {
     namespace fs = std::filesystem;
@@ -18,14 +18,14 @@ inline std::vector<Track> recorded_tracks() {
     const fs::path data =
         given != nullptr ? fs::path(given) : fs::path(CONELANE_SOURCE_DIR).parent_path() / "shared" / "data";
     std::vector<std::string> specs;
-    const auto add_files = [&](const std::string& kind, const std::string& extension) {
-        if (!fs::is_directory(data / kind)) return;
-        for (const fs::directory_entry& entry : fs::directory_iterator(data / kind)) {
+    const auto add_files = [&](const char* folder, const std::string& kind, const std::string& extension) {
+        if (!fs::is_directory(data / folder)) return;
+        for (const fs::directory_entry& entry : fs::directory_iterator(data / folder)) {
             if (entry.path().extension() == extension) specs.push_back(kind + ":" + entry.path().string());
         }
     };
-    add_files("pacsim", ".yaml");
-    add_files("eufs", ".csv");
+    add_files("pacsim", "pacsim", ".yaml");
+    for (const char* const folder : {"eufs", "epfl", "fssim", "fsai_sim"}) add_files(folder, "eufs", ".csv");
     if (const fs::path fsd = data / "fsd_racetrack_dataset"; fs::is_directory(fsd)) {
         specs.push_back("fsd:" + fsd.string());
     }

@@ -15,6 +15,7 @@ void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_certify_command(CLI::App& program);
 void add_exchange_commands(CLI::App& program);  ///< export, import-solution
+void add_instances_command(CLI::App& program);
 void add_drive_command(CLI::App& program);
 void add_study_command(CLI::App& program);
 void add_score_command(CLI::App& program);
