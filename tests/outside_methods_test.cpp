@@ -29,7 +29,7 @@ using testing::Not;
 
 /// Two laps of 6 scenes.
 constexpr const char* kCompare =
-    "compare --tracks generated:circle --every 15 --fp 0,0.3 --time-limit 60000 --out ";
+    "compare --tracks generated:circle --condition paper --every 15 --fp 0,0.3 --time-limit 60000 --out ";
 constexpr const char* kLaps =
     "compare --tracks generated:circle generated:kidney --every 20 --fp 0,0.3 --out ";
 
@@ -453,7 +453,8 @@ TEST_F(OutsideMethods, TheExampleInCppAnswersAsClc) {
 TEST_F(OutsideMethods, TheExampleInPythonFindsStraightLanes) {
     if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
     const std::string table = run_well(
-        "compare --tracks generated:straight --every 15 --fp 0 --out r --methods 'exec:pairs=python3 " +
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:pairs=python3 " +
         std::string(CONELANE_SOURCE_DIR) + "/experiments/examples/nearest_pairs.py'");
     EXPECT_THAT(table, HasSubstr("nearest pairs, an example; "));
     for (const json& row : lines("r/results.jsonl")) {
@@ -506,8 +507,9 @@ TEST_F(OutsideMethods, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
     const std::string adapter = "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=. " + python + " " +
                                 CONELANE_SOURCE_DIR + "/experiments/examples/ft_fsd_adapter.py";
     const std::string table = run_well(
-        "compare --tracks generated:straight --every 15 --fp 0 --out r --methods 'exec:ft-fsd=" + adapter +
-        "' 'exec:ft-fsd-path=" + adapter + " --path'");
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:ft-fsd=" +
+        adapter + "' 'exec:ft-fsd-path=" + adapter + " --path'");
     EXPECT_THAT(table, HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
