@@ -1,7 +1,7 @@
 #include "experiments/scoring/lane_failure.hpp"
 
 #include "experiments/scoring/score.hpp"
-#include "straight_scene.hpp"
+#include "tests/straight_scene.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -448,6 +448,21 @@ TEST_F(TrackFiles, SpecLoadsFilesAndGeneratedTracks) {
     EXPECT_EQ(made[2].name, "circle@2");
 }
 
+TEST_F(TrackFiles, SpecOfAFolderLoadsAllFilesOfItsKindByName) {
+    std::filesystem::create_directory(directory_ / "courses");
+    write("courses/z.csv", eufs_rings(true));
+    write("courses/a.csv", eufs_rings(true));
+    write("courses/b.yaml", pacsim("false", kPacsimRight));
+    write("courses/README.md", "courses");
+    const std::string folder = (directory_ / "courses").string();
+    const std::vector<Track> tracks = load_tracks("eufs:" + folder);
+    ASSERT_EQ(tracks.size(), 2u);
+    EXPECT_EQ(tracks[0].name, "eufs_a");
+    EXPECT_EQ(tracks[1].name, "eufs_z");
+    EXPECT_EQ(load_tracks("pacsim:" + folder).at(0).name, "pacsim_b");
+    EXPECT_THAT(error_of([&] { return load_tracks("ftlog:" + folder); }), HasSubstr("holds no .json file"));
+}
+
 TEST_F(TrackFiles, SpecFaultsNameTheSpec) {
     const auto error = [](const std::string& spec) { return error_of([&] { return load_tracks(spec); }); };
     EXPECT_THAT(error(""), HasSubstr("is not generated:NAME"));
