@@ -1,6 +1,9 @@
 #include "detectors/recipe.hpp"
 
+#include "detectors/baseline_parameters.hpp"
+#include "graph_search/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -32,6 +35,14 @@ std::unique_ptr<LaneDetector> paper_clc() {
     return make_clc_detector(paper_clc_options());
 }
 
+std::unique_ptr<LaneDetector> delaunay_beam() {
+    return make_delaunay_beam_detector(tuned_delaunay_beam_parameters());
+}
+
+std::unique_ptr<LaneDetector> astar_lane() {
+    return make_astar_lane_detector(tuned_astar_lane_parameters());
+}
+
 constexpr std::array kRecipes{
     DetectorRecipe{"clc",
                    "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
@@ -50,6 +61,14 @@ constexpr std::array kRecipes{
                    RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
     DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
                    RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+    DetectorRecipe{"delaunay-beam",
+                   "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
+                   "the lowest cost",
+                   OtherRecipe{delaunay_beam}},
+    DetectorRecipe{
+        "astar-lane",
+        "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
+        OtherRecipe{astar_lane}},
 };
 
 /// Shows its detector the nearest cones only.

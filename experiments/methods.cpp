@@ -1,8 +1,8 @@
 #include "experiments/methods.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/delaunay.hpp"
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_triangulation.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

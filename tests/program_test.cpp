@@ -355,6 +355,9 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
         const auto row = nlohmann::json::parse(line);
         EXPECT_EQ(row.at("mean_iou"), 1.0);
         EXPECT_EQ(row.at("success_share"), 1.0);
+        EXPECT_EQ(row.at("usable_share"), 1.0);
+        EXPECT_LT(row.at("lateral_p95_m").get<double>(), 1e-6);
+        EXPECT_LT(row.at("heading_p95_rad").get<double>(), 1e-6);
         EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << line;
         for (const char* key : {"commit", "compiler", "machine", "run"})
             EXPECT_TRUE(row.contains(key)) << key;

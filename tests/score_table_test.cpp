@@ -52,7 +52,7 @@ TEST(SummariseByKey, GroupsMethodsInOrderOfAppearanceThenRateThenRange) {
                                            ScoreKey{"rld", 0.3, 30}, ScoreKey{"rld", 0.3, 50},
                                            ScoreKey{"clc", 0.1, 30}));
     EXPECT_EQ(rows[3].summary.scenes, 2u);
-    EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou, 0.5);
+    EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou.value(), 0.5);
 }
 
 TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
@@ -63,12 +63,12 @@ TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
     const std::string table = score_table(rows);
     const auto lines = words_of_lines(table);
     ASSERT_EQ(lines.size(), 7u) << table;
-    EXPECT_THAT(lines[1], testing::ElementsAre("clc", "30.0", "30", "2", "0.0", "50.0", "0.0", "0.0", "50.0",
-                                               "0.0", "0.0", "50.0", "55.0", "-", "-", "-", "12.50", "12.50",
-                                               "12.50", "12.50", "12.50"));
-    EXPECT_THAT(lines[3],
-                testing::ElementsAre("CLC", "paper", "30.0", "30+50", "-", "9.3", "85.1", "0.8", "4.1", "0.7",
-                                     "-", "-", "99.3", "93.2", "-", "13.4", "-", "<5", "-", "-", "-", "12"));
+    EXPECT_THAT(lines[1], testing::ElementsAre("clc", "30.0", "30", "2", "50.0", "50.0", "55.0", "-", "0.0",
+                                               "50.0", "0.0", "0.0", "50.0", "0.0", "0.0", "-", "-", "-", "-",
+                                               "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
+    EXPECT_THAT(lines[3], testing::ElementsAre("CLC", "paper", "30.0", "30+50", "-", "-", "99.3", "93.2", "-",
+                                               "9.3", "85.1", "0.8", "4.1", "0.7", "-", "-", "-", "-", "-",
+                                               "-", "13.4", "-", "<5", "-", "-", "-", "12"));
     EXPECT_THAT(table, HasSubstr("96.38"));
     EXPECT_THAT(table, HasSubstr(">90"));
     EXPECT_THAT(lines[6], testing::IsSupersetOf({"n=12", "97.19", "71.79", "155.88"}));
@@ -81,14 +81,30 @@ TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
     EXPECT_EQ(as_long, 5);
 }
 
+TEST(ScoreTable, NamesTheConditionsWhereThereAreAny) {
+    KeyedScore paper = keyed("clc", 0.3, 30, Category::ground_truth, 1.0);
+    EXPECT_THAT(score_table(summarise_by_key(std::vector{paper})), Not(HasSubstr("condition")));
+    paper.key.condition = "paper";
+    KeyedScore car = keyed("clc", 0.1, 30, Category::none, 0.0);
+    car.key.condition = "car";
+    const auto rows = summarise_by_key(std::vector{paper, car});
+    ASSERT_EQ(rows.size(), 2u) << "in the order in which they appear, whatever the rate";
+    EXPECT_EQ(rows[0].key.condition, "paper");
+    EXPECT_EQ(rows[1].key.condition, "car");
+    const auto lines = words_of_lines(score_table(rows));
+    EXPECT_EQ(lines[0][1], "condition");
+    EXPECT_EQ(lines[2][1], "car");
+    EXPECT_EQ(nlohmann::json::parse(summary_json(rows[1])).at("condition"), "car");
+}
+
 TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
     KeyedScore unknown = keyed("clc", {}, {}, Category::near_ground_truth, 0.9);
     unknown.score.divergence_known = false;
     const std::string table = score_table(summarise_by_key(std::vector<KeyedScore>{unknown}));
     const auto lines = words_of_lines(table);
-    EXPECT_THAT(lines[1],
-                testing::ElementsAre("clc", "-", "-", "1", "0.0", "-", "-", "-", "-", "0.0", "0.0", "-",
-                                     "90.0", "-", "-", "-", "12.50", "12.50", "12.50", "12.50", "12.50"));
+    EXPECT_THAT(lines[1], testing::ElementsAre("clc", "-", "-", "1", "-", "-", "90.0", "-", "0.0", "-", "-",
+                                               "-", "-", "0.0", "0.0", "-", "-", "-", "-", "-", "-", "12.50",
+                                               "12.50", "12.50", "12.50", "12.50"));
     EXPECT_THAT(table, HasSubstr("scenes scored without the boundaries of their track: 1\n"));
     EXPECT_THAT(table, HasSubstr("34.5")) << "without a rate of its own, all published ones";
 }
@@ -101,8 +117,8 @@ TEST(ScoreTable, TellsErrorsFromScenesWithoutALane) {
     EXPECT_EQ(rows.front().summary.errors, 1u);
     EXPECT_EQ(nlohmann::json::parse(summary_json(rows.front())).at("errors"), 1);
     const auto words = words_of_lines(score_table(rows))[1];
-    EXPECT_EQ(words[9], "100.0");
-    EXPECT_EQ(words[10], "50.0");
+    EXPECT_EQ(words[13], "100.0");
+    EXPECT_EQ(words[14], "50.0");
 }
 
 TEST(SummaryJson, IsOneLineWithoutUnknownMeasures) {

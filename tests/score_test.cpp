@@ -50,7 +50,7 @@ TEST(Score, ATruncatedLaneIsTooShortBelowThreeQuarters) {
     const SceneScore at_24_m = scored(scene, truncated(scene, 7));
     EXPECT_EQ(at_24_m.category, Category::too_short);
     EXPECT_TRUE(at_24_m.success());
-    EXPECT_NEAR(at_24_m.iou, 24.0 / 36.0, 1e-12);
+    EXPECT_NEAR(at_24_m.iou.value(), 24.0 / 36.0, 1e-12);
     EXPECT_FALSE(at_24_m.accuracy->cones);
     EXPECT_EQ(scored(scene, truncated(scene, 8)).category, Category::near_ground_truth);
 
@@ -68,7 +68,7 @@ TEST(Score, OneFalsePositiveWithinAMetreIsNearGroundTruthAndAccurate) {
     const Lane one = with_inserted(scene, 5, 201);
     const SceneScore result = scored(scene, one);
     EXPECT_EQ(result.category, Category::near_ground_truth);
-    EXPECT_NEAR(result.iou, 126.0 / 127.0, 1e-9) << "a triangle of 4 m by 0.5 m beside 36 m by 3.5 m";
+    EXPECT_NEAR(result.iou.value(), 126.0 / 127.0, 1e-9) << "a triangle of 4 m by 0.5 m beside 36 m by 3.5 m";
     EXPECT_TRUE(result.accurate());
 
     Lane two = one;
@@ -100,6 +100,64 @@ TEST(Score, AFalsePositiveFartherOutDivergesAtTheConeBefore) {
     short_too.left.resize(6);
     short_too.right.resize(6);
     EXPECT_EQ(scored(scene, short_too).category, Category::diverging_below_20) << "before too short";
+}
+
+TEST(Score, UsableIsWhatACarCanDriveBy) {
+    const AnnotatedScene scene = straight_scene();  // a ground truth of 36 m
+    EXPECT_TRUE(scored(scene, *scene.ground_truth).usable().value());
+    EXPECT_TRUE(scored(scene, truncated(scene, 6)).usable().value()) << "20 m, the limit";
+    EXPECT_FALSE(scored(scene, truncated(scene, 5)).usable().value()) << "16 m";
+    const SceneScore stub = scored(scene, truncated(scene, 2));
+    EXPECT_TRUE(stub.success()) << "a stub leaves no track";
+    EXPECT_FALSE(stub.usable().value()) << "and nobody can drive by it";
+    EXPECT_FALSE(score(scene, LaneAnswer{}, kLatency_ms, std::nullopt, &kTrack).usable().value());
+
+    AnnotatedScene astray = scene;
+    add_cone(astray, 201, {18, 3});
+    add_cone(astray, 202, {22, 3});
+    EXPECT_FALSE(scored(astray, with_inserted(astray, 5, 201)).usable().value()) << "wrong from 16 m on";
+    EXPECT_TRUE(scored(astray, with_inserted(astray, 6, 202)).usable().value()) << "wrong from 20 m on";
+
+    EXPECT_FALSE(
+        score(scene, found(*scene.ground_truth), kLatency_ms, std::nullopt, nullptr).usable().has_value())
+        << "unknown without the boundaries of the track";
+}
+
+TEST(Score, OfAShortGroundTruthThreeQuartersAreUsable) {
+    AnnotatedScene scene = straight_scene();
+    scene.ground_truth = truncated(scene, 5);  // 16 m
+    EXPECT_TRUE(scored(scene, truncated(scene, 4)).usable().value()) << "12 m";
+    EXPECT_FALSE(scored(scene, truncated(scene, 3)).usable().value()) << "8 m";
+}
+
+TEST(Score, AnOutlineOfPositionsIsScoredLikeItsCones) {
+    const AnnotatedScene scene = straight_scene();
+    const LaneOutline outline = outline_of(truncated(scene, 8), scene.scene);
+    const SceneScore of_points = score_outline(scene, outline, kLatency_ms, &kTrack);
+    const SceneScore of_cones = scored(scene, truncated(scene, 8));
+    EXPECT_EQ(of_points.category, of_cones.category);
+    EXPECT_EQ(of_points.iou, of_cones.iou);
+    EXPECT_EQ(of_points.lane_length_m, of_cones.lane_length_m);
+    EXPECT_FALSE(of_points.accuracy) << "accuracy counts cones";
+    EXPECT_EQ(score_outline(scene, {}, kLatency_ms, &kTrack).category, Category::none);
+}
+
+TEST(Score, ACentreLineAloneIsUsableWhereItFollowsTheTrueOne) {
+    const AnnotatedScene scene = straight_scene();  // the true one runs along y = 0 from x = 0 to 36
+    const auto scored_line = [&](const std::vector<Point>& line) {
+        return score_centre_line(scene, line, kLatency_ms, &kTrack);
+    };
+    const SceneScore good = scored_line({{-1, 0}, {10, 0.9}, {25, -0.9}});
+    EXPECT_TRUE(good.usable().value());
+    EXPECT_FALSE(good.iou);
+    EXPECT_NEAR(good.lane_length_m, 25.0, 0.6);
+    EXPECT_FALSE(scored_line({{-1, 0}, {10, 0}}).usable().value()) << "too short";
+    const SceneScore off = scored_line({{0, 0}, {8, 0}, {12, 1.2}, {30, 0}});
+    EXPECT_EQ(off.category, Category::diverging_below_20);
+    EXPECT_NEAR(off.divergence_distance_m.value(), 8.0, 0.6);
+    EXPECT_FALSE(scored_line({{-1, 0}, {-30, 0}}).usable().value()) << "backwards it follows nothing";
+    EXPECT_FALSE(scored_line({{-1, 2}, {-1, 30}}).usable().value()) << "sideways";
+    EXPECT_EQ(scored_line({}).category, Category::none);
 }
 
 TEST(Score, WithoutAnnotatedBoundariesDivergenceIsUnknown) {
@@ -157,7 +215,7 @@ TEST(Score, AClosedCircuitInBothDrivingDirections) {
         open.closed = false;
         const SceneScore without_last_stretch = scored_here(open);
         EXPECT_EQ(without_last_stretch.category, Category::near_ground_truth);
-        EXPECT_NEAR(without_last_stretch.iou, 23.0 / 24.0, 1e-6);
+        EXPECT_NEAR(without_last_stretch.iou.value(), 23.0 / 24.0, 1e-6);
 
         Lane swapped = *scene.ground_truth;
         std::swap(swapped.left, swapped.right);
@@ -266,7 +324,7 @@ TEST(Score, DegenerateLanesAreScoredAsTheyStand) {
                                               {{1, 2}, {1, 2}},
                                               {{1}, {1}, true}}) {
         const SceneScore result = scored(scene, lane);
-        EXPECT_LT(result.iou, 0.2);
+        EXPECT_LT(result.iou.value(), 0.2);
         EXPECT_FALSE(result.accurate());
     }
     Lane repeated = *scene.ground_truth;
@@ -297,7 +355,7 @@ TEST(Summary, KeepsFailuresInEveryMean) {
     EXPECT_THAT(summary.category_share, testing::ElementsAre(0.25, 0.5, 0.0, 0.0, 0.25, 0.0));
     EXPECT_DOUBLE_EQ(summary.share(Category::too_short), 0.25);
     EXPECT_DOUBLE_EQ(summary.success_share, 0.75);
-    EXPECT_NEAR(summary.mean_iou, (1.0 + 2.0 / 3.0 + 0.0 + 1.0) / 4.0, 1e-12);
+    EXPECT_NEAR(summary.mean_iou.value(), (1.0 + 2.0 / 3.0 + 0.0 + 1.0) / 4.0, 1e-12);
     EXPECT_EQ(summary.accuracy_scenes, 3u);
     EXPECT_DOUBLE_EQ(summary.accurate_share.value(), 1.0 / 3.0);
     EXPECT_DOUBLE_EQ(summary.solved_share.value(), 0.5);

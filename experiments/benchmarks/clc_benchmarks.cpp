@@ -2,11 +2,11 @@
 // (as time for each of its iterations), the ranking (for each candidate), and a whole detection. Scenes are
 // of generated tracks, three false positives among ten points, 30 m; the scenes take turns.
 
-#include "experiments/delaunay.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 #include "graph_search/candidate_search.hpp"
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_triangulation.hpp"
 #include "graph_search/search_graph.hpp"
 
 #include <cstdint>

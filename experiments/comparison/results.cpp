@@ -1,41 +1,61 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scoring/statistics.hpp"
+#include "experiments/training_courses.hpp"
 
+#include <algorithm>
+#include <exception>
 #include <map>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <oneapi/tbb/parallel_for.h>
 
 namespace conelane::experiments {
 namespace {
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
-    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest};
+    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
-    const auto& [scene, record, score] = scored;
+    const auto& [scene, record, score, failure] = scored;
     nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->method}};
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) line[key] = *value;
     };
     put_if_known("nearest", record->nearest);
     line["track"] = scene->track;
+    if (!scene->condition.empty()) line["condition"] = scene->condition;
     put_if_known("false_positive_rate", scene->false_positive_rate);
     put_if_known("range", scene->range_m);
     line["status"] = to_string(record->answer.status);
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
-    line["iou"] = score.iou;
+    if (score.trained_on) line["trained_on"] = true;
+    put_if_known("usable", score.usable());
+    if (failure) line["cause"] = to_string(*failure);
+    put_if_known("iou", score.iou);
     line["lane_length_m"] = score.lane_length_m;
     line["ground_truth_length_m"] = score.ground_truth_length_m;
     put_if_known("divergence_m", score.divergence_distance_m);
+    if (score.centre_line_error) {
+        const CentreLineError& error = *score.centre_line_error;
+        if (!error.lateral_m.empty()) {
+            const std::vector<double> lateral_m(error.lateral_m.begin(), error.lateral_m.end());
+            line["lateral_median_m"] = median(lateral_m);
+            line["lateral_max_m"] = std::ranges::max(lateral_m);
+        }
+        put_if_known("heading_error_rad", error.heading_rad);
+    }
+    put_if_known("steady", score.steady);
     if (score.accuracy) {
         line["accurate"] = score.accurate();
         line["accuracy"] = {{"cones", score.accuracy->cones},
@@ -57,42 +77,153 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     }
     line["cones"] = std::min(scene->scene.cones.size(), record->nearest.value_or(scene->scene.cones.size()));
     line["latency_ms"] = score.latency_ms;
+    put_if_known("self_timed_ms", record->self_timed_ms);
     return line;
+}
+
+/// What the methods themselves say that they took, of the records that `is_meant` picks.
+template <typename IsMeant>
+std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
+    std::vector<double> times_ms;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->self_timed_ms && is_meant(record))
+            times_ms.push_back(*record.record->self_timed_ms);
+    }
+    return times_ms;
+}
+
+nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
+    return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
+}
+
+nlohmann::ordered_json outside_part(const OutsideMethod& method, const std::vector<double>& own_ms,
+                                    const EchoFloor& echo) {
+    nlohmann::ordered_json part{{"outside", method.is_program() ? "exec" : "lanes"}};
+    if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
+    if (method.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
+    const auto described = nlohmann::ordered_json::parse(outside_method_json(method));
+    if (described.contains("card")) part["card"] = described["card"];
+    return part;
+}
+
+/// How many answers are errors, and the first of them; empty where none is.
+std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& method) {
+    std::size_t answers = 0;
+    std::size_t errors = 0;
+    std::string first;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->method != method) continue;
+        ++answers;
+        if (record.record->answer.status != LaneStatus::error) continue;
+        if (++errors == 1) first = record.record->scene + ": " + record.record->answer.message;
+    }
+    if (errors == 0) return "";
+    return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, answers, first);
 }
 
 }  // namespace
 
-std::vector<ScoredRecord> score_records(std::span<const AnnotatedScene> scenes,
-                                        const TrackBoundariesByName& tracks,
-                                        std::span<const LaneRecord> records,
-                                        const std::filesystem::path& lanes_file) {
-    std::unordered_map<std::string, const AnnotatedScene*> scene_of;
-    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene);
-    std::vector<ScoredRecord> scored;
-    std::map<std::string, std::size_t> answered;  // by method and cone-set size
-    for (const LaneRecord& record : records) {
-        const auto scene = scene_of.find(record.scene);
-        if (scene == scene_of.end()) {
-            throw InputError(lanes_file, record.line, "scene",
-                             "'" + record.scene + "' is not in the scenes file");
+std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
+    const auto outside = std::ranges::find(methods, method, &OutsideMethod::name);
+    if (outside == methods.end()) return cross_validated ? std::set<std::string>{} : training_courses(method);
+    if (!outside->card || !outside->card->training_courses) return {};
+    return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
+}
+
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                           CoursesOf courses_of)
+    : scene_count_(scenes.size()), courses_of_(std::move(courses_of)) {
+    std::vector<Truth> truths(scenes.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
+        const auto track = tracks.find(scenes[i].track);
+        Truth& truth = truths[i];
+        truth.scene = &scenes[i];
+        truth.boundaries = track == tracks.end() ? nullptr : &track->second;
+        truth.counts = counts(scenes[i], truth.boundaries);
+        if (truth.counts && scenes[i].ground_truth) {
+            truth.centre_line =
+                centre_line_of(outline_of(*scenes[i].ground_truth, scenes[i].scene), scenes[i].scene.pose);
         }
-        const AnnotatedScene& annotated = *scene->second;
-        ++answered[key_of(annotated, record).method_label()];
-        if (!counts(annotated)) continue;
-        const auto track = tracks.find(annotated.track);
-        try {
-            scored.push_back({&annotated, &record,
-                              score(annotated, record.answer, record.latency_ms, record.nearest,
-                                    track == tracks.end() ? nullptr : &track->second)});
-        } catch (const InvalidInput& invalid) {
-            throw InputError(lanes_file, record.line, invalid.key(), invalid.what());
+    });
+    for (Truth& truth : truths) truth_of_.emplace(truth.scene->scene.id, std::move(truth));
+}
+
+const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
+                                                  const std::filesystem::path& file) const {
+    const auto truth = truth_of_.find(record.scene);
+    if (truth == truth_of_.end())
+        throw InputError(file, record.line, "scene", "'" + record.scene + "' is not in the scenes file");
+    return truth->second;
+}
+
+void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& line) {
+    const AnnotatedScene& scene = *truth.scene;
+    const LaneRecord& record = *scored.record;
+    SceneScore& score = scored.score;
+    const Pose& pose = scene.scene.pose;
+    LaneOutline outline;
+    if (record.points) {
+        outline = {record.points->left, record.points->right, record.answer.lane.closed};
+        score = score_outline(scene, outline, record.latency_ms, truth.boundaries);
+        line = centre_line_of(outline, pose);
+    } else if (!record.centre_line.empty()) {
+        score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
+        line = centre_line_of(record.centre_line, pose);
+    } else {
+        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        if (record.answer.status == LaneStatus::found) {
+            outline = outline_of(record.answer.lane, scene.scene);
+            line = centre_line_of(outline, pose);
         }
     }
+    scored.failure = lane_failure(scene, outline, score, truth.boundaries);
+    if (score.usable().value_or(false) && !truth.centre_line.empty())
+        score.centre_line_error = centre_line_error(line, truth.centre_line);
+}
+
+std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> records,
+                                              const std::filesystem::path& lanes_file) {
+    std::vector<const Truth*> truths;
+    truths.reserve(records.size());
+    std::map<std::string, std::size_t> answered;  // by method and cone-set size
+    for (const LaneRecord& record : records) {
+        truths.push_back(&truth_of(record, lanes_file));
+        ++answered[key_of(*truths.back()->scene, record).method_label()];
+    }
+    std::vector<ScoredRecord> all(records.size());
+    std::vector<CentreLine> lines(records.size());
+    std::vector<std::exception_ptr> failures(records.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
+        if (!truths[i]->counts) return;
+        try {
+            all[i] = {truths[i]->scene, &records[i], {}};
+            score(*truths[i], all[i], lines[i]);
+        } catch (const InvalidInput& invalid) {
+            failures[i] = std::make_exception_ptr(
+                InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
+        }
+    });
+    std::map<std::string, std::set<std::string>> courses;  // by method
+    for (const LaneRecord& record : records) {
+        if (!courses.contains(record.method)) courses.emplace(record.method, courses_of_(record.method));
+    }
+    std::vector<ScoredRecord> scored;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (failures[i]) std::rethrow_exception(failures[i]);
+        if (!truths[i]->counts) continue;
+        if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
+            records[i].nearest == records[i - 1].nearest &&
+            same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
+            all[i].score.steady = is_steady(lines[i - 1], lines[i]);
+        }
+        all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
+        scored.push_back(std::move(all[i]));
+    }
     for (const auto& [name, count] : answered) {
-        if (count != scenes.size()) {
+        if (count != scene_count_) {
             throw InputError(lanes_file, 0, "scene",
                              name + " answers " + std::to_string(count) + " of " +
-                                 std::to_string(scenes.size()) + " scenes");
+                                 std::to_string(scene_count_) + " scenes");
         }
     }
     return scored;
@@ -113,11 +244,19 @@ void write_scores(const std::filesystem::path& file, std::span<const ScoredRecor
 }
 
 void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
                    const std::string& run) {
     const Provenance origin = provenance();
     AtomicFile output(file);
     for (const ScoreRow& row : rows) {
         nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
+        const auto method = std::ranges::find(outside.methods, row.key.method, &OutsideMethod::name);
+        if (method != outside.methods.end()) {
+            const auto is_of_row = [&](const ScoredRecord& record) {
+                return key_of(*record.scene, *record.record) == row.key;
+            };
+            line.update(outside_part(*method, self_times_ms(scored, is_of_row), outside.echo));
+        }
         line["commit"] = origin.commit;
         line["compiler"] = origin.compiler;
         line["machine"] = origin.machine;
@@ -125,6 +264,35 @@ void write_results(const std::filesystem::path& file, std::span<const ScoreRow> 
         output.stream() << line.dump() << '\n';
     }
     output.commit();
+}
+
+std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside) {
+    if (outside.methods.empty()) return "";
+    std::string notes = "methods from outside\n";
+    for (const OutsideMethod& method : outside.methods) {
+        const auto is_of_method = [&](const ScoredRecord& record) {
+            return record.record->method == method.name;
+        };
+        const std::vector<double> own_ms = self_times_ms(scored, is_of_method);
+        notes += "  " + method.name + ": ";
+        if (method.is_program()) {
+            notes += "latency is the round trip of a scene and its answer; ";
+            notes += outside.echo.empty()
+                         ? "that of an echo program is unknown"
+                         : fmt::format("that of an echo program is {:.2f} ms (median), {:.2f} (p95)",
+                                       median(outside.echo), quantile(outside.echo, 0.95));
+            if (!own_ms.empty()) {
+                notes += fmt::format("; self-timed {:.2f} ms (median), {:.2f} (p95)", median(own_ms),
+                                     quantile(own_ms, 0.95));
+            }
+        } else {
+            notes += "latency is self-timed, as the lanes file says";
+        }
+        notes += '\n';
+        if (method.card) notes += "    " + method.card->summary() + '\n';
+        notes += note_on_errors(scored, method.name);
+    }
+    return notes;
 }
 
 }  // namespace conelane::experiments

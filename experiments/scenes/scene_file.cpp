@@ -195,6 +195,12 @@ void for_each_scene_line(std::istream& stream, const std::function<void(const Sc
     }
 }
 
+std::string scene_line(const Scene& scene) {
+    AnnotatedScene bare;
+    bare.scene = scene;
+    return to_line(to_json(bare, ""));
+}
+
 void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {
     AtomicFile output(file);
     for (std::size_t i = 0; i < scenes.size(); ++i) {

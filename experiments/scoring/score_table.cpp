@@ -19,9 +19,14 @@ namespace {
 struct Column {
     enum Index : std::size_t {
         method,
+        condition,
         rate,
         range,
         scenes,
+        usable,
+        success,
+        iou,
+        accurate,
         ground_truth,
         near_ground_truth,
         too_short,
@@ -29,9 +34,10 @@ struct Column {
         diverging_below_20,
         none,
         error,
-        success,
-        iou,
-        accurate,
+        lateral_median,
+        lateral_p95,
+        heading_p95,
+        unsteady,
         complete,
         solved,
         median,
@@ -43,9 +49,10 @@ struct Column {
     };
 };
 constexpr std::array<std::string_view, Column::count> kHeader{
-    "method",     "fp %",     "range m",   "scenes",  "GT %",      "near GT %", "too short %",
-    "div>=20 %",  "div<20 %", "none %",    "error %", "success %", "IoU %",     "accurate %",
-    "complete %", "solved %", "median ms", "mean ms", "p95 ms",    "p99 ms",    "max ms"};
+    "method",   "condition",  "fp %",     "range m",   "scenes",          "usable %",   "success %",
+    "IoU %",    "accurate %", "GT %",     "near GT %", "too short %",     "div>=20 %",  "div<20 %",
+    "none %",   "error %",    "centre m", "p95 m",     "heading p95 rad", "unsteady %", "complete %",
+    "solved %", "median ms",  "mean ms",  "p95 ms",    "p99 ms",          "max ms"};
 using Line = std::array<std::string, Column::count>;
 constexpr std::string_view kUnknown = "-";
 
@@ -67,9 +74,10 @@ Line line_of(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     Line line = empty_line();
     line[Column::method] = row.key.method_label();
+    if (!row.key.condition.empty()) line[Column::condition] = row.key.condition;
     line[Column::rate] = percent(row.key.false_positive_rate);
     line[Column::range] = number(row.key.range_m, 0);
-    line[Column::scenes] = fmt::format("{}", summary.scenes);
+    line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
     line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
     line[Column::none] = percent(summary.share(Category::none));
     line[Column::error] = percent(static_cast<double>(summary.errors) / static_cast<double>(summary.scenes));
@@ -81,6 +89,11 @@ Line line_of(const ScoreRow& row) {
         line[Column::diverging_below_20] = percent(summary.share(Category::diverging_below_20));
         line[Column::success] = percent(summary.success_share);
     }
+    line[Column::usable] = percent(summary.usable_share);
+    line[Column::lateral_median] = number(summary.lateral_median_m, 2);
+    line[Column::lateral_p95] = number(summary.lateral_p95_m, 2);
+    line[Column::heading_p95] = number(summary.heading_p95_rad, 3);
+    line[Column::unsteady] = percent(summary.unsteady_share);
     line[Column::iou] = percent(summary.mean_iou);
     line[Column::accurate] = percent(summary.accurate_share);
     line[Column::complete] = percent(summary.complete_share);
@@ -143,13 +156,16 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
 
 std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
     std::map<std::string, std::size_t> method_rank;
-    using Order = std::tuple<std::size_t, std::optional<double>, std::optional<double>>;
+    std::map<std::string, std::size_t> condition_rank;
+    using Order = std::tuple<std::size_t, std::size_t, std::optional<double>, std::optional<double>>;
     std::map<Order, std::vector<SceneScore>> groups;
     std::map<Order, ScoreKey> keys;
     for (const KeyedScore& keyed : scores) {
         const std::size_t rank =
             method_rank.emplace(keyed.key.method_label(), method_rank.size()).first->second;
-        const Order order{rank, keyed.key.false_positive_rate, keyed.key.range_m};
+        const std::size_t condition =
+            condition_rank.emplace(keyed.key.condition, condition_rank.size()).first->second;
+        const Order order{rank, condition, keyed.key.false_positive_rate, keyed.key.range_m};
         groups[order].push_back(keyed.score);
         keys.emplace(order, keyed.key);
     }
@@ -174,10 +190,15 @@ std::string score_table(std::span<const ScoreRow> rows) {
     std::ranges::for_each(own, widen);
     std::ranges::for_each(published, widen);
 
+    const bool is_condition_named =
+        std::ranges::any_of(rows, [](const ScoreRow& row) { return !row.key.condition.empty(); });
     std::string table;
     const auto write = [&](const Line& line) {
         table += fmt::format("{:<{}}", line[Column::method], widths[Column::method]);
-        for (std::size_t i = 1; i < line.size(); ++i) table += fmt::format("  {:>{}}", line[i], widths[i]);
+        for (std::size_t i = 1; i < line.size(); ++i) {
+            if (i == Column::condition && !is_condition_named) continue;
+            table += fmt::format("  {:>{}}", line[i], widths[i]);
+        }
         table += '\n';
     };
     write(header);
@@ -188,6 +209,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
         table += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
                              unknown);
     }
+    if (std::ranges::any_of(rows, [](const ScoreRow& row) { return row.summary.trained_on > 0; }))
+        table += "* with courses that the method has learned from: no held-out figure\n";
     table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
     std::ranges::for_each(published, write);
     return table;
@@ -205,16 +228,24 @@ std::string summary_json(const ScoreRow& row) {
     };
     json["method"] = row.key.method;
     put_if_known("nearest", row.key.nearest);
+    if (!row.key.condition.empty()) json["condition"] = row.key.condition;
     put_if_known("false_positive_rate", row.key.false_positive_rate);
     put_if_known("range", row.key.range_m);
     json["scenes"] = summary.scenes;
     json["errors"] = summary.errors;
     json["divergence_unknown"] = summary.divergence_unknown;
+    if (summary.trained_on > 0) json["trained_on"] = summary.trained_on;
     for (std::size_t i = 0; i < kCategoryCount; ++i) {
         json["share"][std::string(to_string(static_cast<Category>(i)))] = summary.category_share[i];
     }
+    put_if_known("usable_share", summary.usable_share);
     json["success_share"] = summary.success_share;
-    json["mean_iou"] = summary.mean_iou;
+    put_if_known("mean_iou", summary.mean_iou);
+    put_if_known("lateral_median_m", summary.lateral_median_m);
+    put_if_known("lateral_p95_m", summary.lateral_p95_m);
+    put_if_known("heading_median_rad", summary.heading_median_rad);
+    put_if_known("heading_p95_rad", summary.heading_p95_rad);
+    put_if_known("unsteady_share", summary.unsteady_share);
     json["accuracy_scenes"] = summary.accuracy_scenes;
     put_if_known("accurate_share", summary.accurate_share);
     put_if_known("solved_share", summary.solved_share);

@@ -117,7 +117,7 @@ class Lap {
         answer.lane = lane;
         const SceneScore result = score(annotated, answer, 0.0, options_.nearest,
                                         track == tracks_.end() ? nullptr : &track->second);
-        return {{}, result.category, result.iou};
+        return {{}, result.category, result.iou.value_or(0.0)};
     }
 
     static void require_accepted(const CheckReport& report, const std::string& scene, const char* what) {

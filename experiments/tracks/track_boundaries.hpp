@@ -15,7 +15,7 @@ struct TrackBoundaries {
     std::vector<Point> right;
     bool closed = true;
     /// The path that was driven, where a run has no annotated boundaries; these are empty then.
-    std::vector<Point> driven{};
+    std::vector<Point> driven = {};
 };
 
 using TrackBoundariesByName = std::map<std::string, TrackBoundaries>;

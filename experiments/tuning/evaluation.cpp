@@ -74,7 +74,9 @@ double value_of(const LaneAnswer& answer, const AnnotatedScene& scene, const Tra
         case TuningObjective::accuracy:
             return result.accurate() ? 1.0 : 0.0;
         case TuningObjective::iou:
-            return result.iou;
+            return result.iou.value_or(0.0);
+        case TuningObjective::usable:
+            return result.usable().value_or(false) ? 1.0 : 0.0;
         case TuningObjective::success:
             break;
     }
@@ -87,6 +89,8 @@ std::string_view to_string(TuningObjective objective) {
             return "accuracy";
         case TuningObjective::iou:
             return "iou";
+        case TuningObjective::usable:
+            return "usable";
         case TuningObjective::success:
             break;
     }

@@ -20,6 +20,7 @@ enum class TuningObjective {
     accuracy,  ///< share accurate (RLD paper, IV-B)
     iou,       ///< mean intersection over union (CLC paper)
     success,   ///< share successful (CLC paper, Table I)
+    usable,    ///< share that can be driven by
 };
 [[nodiscard]] std::string_view to_string(TuningObjective objective);
 
