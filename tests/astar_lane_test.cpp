@@ -92,6 +92,15 @@ TEST(AstarLane, SaysThatItsLimitEndedTheSearch) {
     EXPECT_EQ(answer.stopped_by, StopReason::iterations);
 }
 
+TEST(AstarLane, KeepsNothingOfTheSceneBefore) {
+    const auto detector = make_astar_lane_detector({});
+    ASSERT_EQ(detector->detect(bend(15.0, 6), tests::kNoTimeLimit).status, LaneStatus::found);
+    const LaneAnswer stopped = detector->detect(bend(15.0, 2), {.time_limit_ms = 0.0});
+    EXPECT_EQ(stopped.status, LaneStatus::stopped);
+    EXPECT_EQ(stopped.lane, Lane{});
+    EXPECT_EQ(detector->detect(Scene{}, tests::kNoTimeLimit).status, LaneStatus::none);
+}
+
 TEST(AstarLane, RefusesParametersOutOfTheirRange) {
     AstarLaneParameters parameters;
     parameters.least_radius_m = 0.0;

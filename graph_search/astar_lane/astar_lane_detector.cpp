@@ -101,6 +101,7 @@ class AstarLaneDetector : public LaneDetector {
         SearchBudget budget;
         budget.deadline = Deadline(limits.time_limit_ms);
         budget.iteration_limit = parameters_.most_steps;
+        boundaries_.reset();
         LaneAnswer answer;
         bool complete = false;
         if (!budget.read_clock()) {
@@ -123,7 +124,6 @@ class AstarLaneDetector : public LaneDetector {
     void keep_near_cones(const Scene& scene) {
         points_.clear();
         cones_.clear();
-        boundaries_.reset();
         const double reach_m = (last_step_ + 1) * kStep_m + radius_m_;
         for (std::uint32_t i = 0; i < scene.cones.size(); ++i) {
             const Point& position = scene.cones[i].position;

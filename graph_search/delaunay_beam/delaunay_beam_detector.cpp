@@ -204,8 +204,8 @@ class DelaunayBeamDetector : public LaneDetector {
     void add_children(std::size_t parent, const Scene& scene) {
         const HalfEdge ahead = tree_[parent].ahead;
         if (ahead == DelaunayTriangulation::kNone) return;
-        const HalfEdge from_right = triangulation_.next(ahead);
-        const HalfEdge to_left = triangulation_.next(from_right);
+        const HalfEdge from_right = DelaunayTriangulation::next(ahead);
+        const HalfEdge to_left = DelaunayTriangulation::next(from_right);
         const Vertex third = triangulation_.origin(to_left);
         if (is_on_path(third, parent)) return;
         add_child(parent, kLeft, third, triangulation_.twin(from_right), scene);
