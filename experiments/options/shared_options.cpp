@@ -138,7 +138,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
             "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
             "0.5 m and 8 degrees, 0.1, --persist. Where one of these is given beside it, it holds in all "
             "of them, and their names say so, such as car+no_persist")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->capture_default_str();
     command.add_option_function<double>(
         "--noise", [&options](double sigma_m) { options.noise_sigma_m = sigma_m; },
         "standard deviation of the seen positions [m]");

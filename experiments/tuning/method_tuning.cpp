@@ -1,10 +1,11 @@
 #include "experiments/tuning/method_tuning.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "detectors/baseline_parameters.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/seeded_random.hpp"
+#include "graph_search/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,18 +31,17 @@ constexpr double kLastStep = 0.025;
 constexpr double kMovedShare = 0.4;
 
 template <typename Parameters>
-TunableMethod tunable(std::string_view name, const Parameters& shipped,
-                      std::span<const ParameterField<Parameters>> fields,
+TunableMethod tunable(std::string_view name, std::span<const ParameterField<Parameters>> fields,
                       std::unique_ptr<LaneDetector> (*make)(const Parameters&)) {
-    TunableMethod method{name, {}, [shipped, fields, make](std::span<const double> values) {
-                             Parameters parameters = shipped;
+    TunableMethod method{name, {}, [fields, make](std::span<const double> values) {
+                             Parameters parameters;
                              for (std::size_t i = 0; i < fields.size(); ++i)
                                  parameters.*fields[i].value = values[i];
                              return make(parameters);
                          }};
     for (const ParameterField<Parameters>& field : fields) {
         method.parameters.push_back(
-            {field.key, field.lowest, field.highest, field.logarithmic, shipped.*field.value});
+            {field.key, field.lowest, field.highest, field.logarithmic, Parameters{}.*field.value});
     }
     return method;
 }
@@ -95,9 +95,8 @@ std::vector<double> nearby(const TunableMethod& method, std::vector<double> valu
 
 const std::vector<TunableMethod>& tunable_methods() {
     static const std::vector<TunableMethod> kMethods{
-        tunable("delaunay-beam", tuned_delaunay_beam_parameters(), delaunay_beam_fields(),
-                make_delaunay_beam_detector),
-        tunable("astar-lane", tuned_astar_lane_parameters(), astar_lane_fields(), make_astar_lane_detector)};
+        tunable("delaunay-beam", delaunay_beam_fields(), make_delaunay_beam_detector),
+        tunable("astar-lane", astar_lane_fields(), make_astar_lane_detector)};
     return kMethods;
 }
 

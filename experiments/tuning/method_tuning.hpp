@@ -20,7 +20,7 @@ struct TunableParameter {
     double lowest;
     double highest;
     bool logarithmic;  ///< equal steps are equal ratios
-    double start;      ///< what the library ships
+    double start;      ///< set by hand, so that it has seen no course that a tuning holds out
 };
 
 /// A detector whose parameters can be tuned without knowing what they mean.

@@ -31,6 +31,7 @@ constexpr std::array kFields{
     ParameterField<P>{"w_steer", &P::w_steer, "1", 0.001, 10.0, true, "weight of its change"},
     ParameterField<P>{"clearance_m", &P::clearance_m, "m", 0.8, 2.5, false, "kept from cones"},
     ParameterField<P>{"w_clearance", &P::w_clearance, "1", 0.1, 100.0, true, "weight of missing clearance"},
+    ParameterField<P>{"w_hit", &P::w_hit, "1", 1.0, 1000.0, true, "of a metre too near to a cone"},
     ParameterField<P>{"window_m", &P::window_m, "m", 1.0, 5.0, false, "reach of `beside` along the path"},
     ParameterField<P>{"widest_side_m", &P::widest_side_m, "m", 2.0, 6.5, false, "reach of `beside` across"},
     ParameterField<P>{"expected_width_m", &P::expected_width_m, "m", 2.5, 6.5, false, "of the lane"},
@@ -43,7 +44,7 @@ constexpr std::int64_t kMostSteps = 1'000'000;
 /// Of an arc, and of a cell of the lattice [m].
 constexpr double kStep_m = 1.5;
 constexpr double kCell_m = 0.5;
-/// Half the width of a car [m]: no path comes nearer to a cone.
+/// Half the width of a car [m]: nearer cones are hit.
 constexpr double kCarHalfWidth_m = 0.75;
 /// Curvatures are -2 to 2 times half the largest; after a step the heading has turned by as many units.
 constexpr int kHardestTurn = 2;
@@ -225,9 +226,7 @@ class AstarLaneDetector : public LaneDetector {
         const Node& from = nodes_[static_cast<std::size_t>(parent)];
         double sample_costs = 0.0;
         for (const double along_m : {0.5 * kStep_m, kStep_m}) {
-            const std::optional<double> cost = cost_at(on_arc(from, turn, along_m), budget);
-            if (!cost) return;
-            sample_costs += 0.5 * *cost;
+            sample_costs += 0.5 * cost_at(on_arc(from, turn, along_m), budget);
         }
         const auto squared_share = [](int change) {
             return static_cast<double>(change * change) / (kHardestTurn * kHardestTurn);
@@ -245,8 +244,8 @@ class AstarLaneDetector : public LaneDetector {
         put({estimate(to), static_cast<std::int32_t>(nodes_.size() - 1), false});
     }
 
-    /// Of a metre at a place, or nothing where a car would hit a cone.
-    [[nodiscard]] std::optional<double> cost_at(const PathSample& place, SearchBudget& budget) const {
+    /// Of a metre at a place.
+    [[nodiscard]] double cost_at(const PathSample& place, SearchBudget& budget) const {
         constexpr double kNowhere = std::numeric_limits<double>::infinity();
         std::array<double, 2> side_m{kNowhere, kNowhere};
         double nearest = kNowhere;
@@ -260,9 +259,8 @@ class AstarLaneDetector : public LaneDetector {
         });
         (void)budget.spend(8 + visited / 4);
         const double nearest_m = std::sqrt(nearest);
-        if (nearest_m < kCarHalfWidth_m) return std::nullopt;
         const auto squared = [](double value) { return value * value; };
-        double cost = 0.0;
+        double cost = nearest_m < kCarHalfWidth_m ? parameters_.w_hit : 0.0;
         if (nearest_m < parameters_.clearance_m)
             cost += parameters_.w_clearance * squared(1.0 - nearest_m / parameters_.clearance_m);
         const bool left = side_m[kLeft] <= parameters_.widest_side_m;
@@ -290,8 +288,8 @@ class AstarLaneDetector : public LaneDetector {
             const int samples = static_cast<int>(std::lround(kStep_m / kSample_m));
             for (int s = 1; s <= samples; ++s) path.push_back(on_arc(from, turn, kStep_m * s / samples));
         }
-        PathBoundaries read =
-            boundaries_along(path, points_, {parameters_.widest_side_m, parameters_.w_slope}, budget);
+        PathBoundaries read = boundaries_along(
+            path, points_, {kCarHalfWidth_m, parameters_.widest_side_m, parameters_.w_slope}, budget);
         if (read[kLeft].size() < 2 || read[kRight].size() < 2) return false;
         boundaries_ = std::move(read);
         return true;

@@ -19,13 +19,14 @@ struct AstarLaneParameters {
     double w_steer = 0.1;              ///< weight of the squared change of curvature between two steps
     double clearance_m = 1.6;          ///< distance from cones that a path keeps where it can
     double w_clearance = 4.0;          ///< weight of the squared share of the clearance that is missing
+    double w_hit = 5.0;                ///< cost of a metre that is nearer to a cone than half a car
     double window_m = 2.8;             ///< a cone so far before or behind stands beside the path
     double widest_side_m = 4.0;        ///< a cone farther to one side does not
     double expected_width_m = 4.0;     ///< between the nearest cones on both sides
     double w_width = 0.3;              ///< weight of the squared error of this width [1/m^2]
     double w_slope = 4.0;              ///< of a boundary's squared slope against the path, relative to a cone
     double heuristic = 0.2;            ///< estimated cost of a metre ahead
-    std::int64_t most_steps = 20'000;  ///< expanded by the search, in [1, 1000000]
+    std::int64_t most_steps = 10'000;  ///< expanded by the search, in [1, 1000000]
 };
 
 /// The numbers that are tuned, in the order of files.
@@ -37,9 +38,10 @@ void validate(const AstarLaneParameters& parameters);
 /// Lane detection by path planning, after Tanzmeister, Friedl, Lawitzky, Wollherr and Buss, "Road course
 /// estimation in unknown, structured environments" (2013), reference [2] of the CLC paper: not the boundaries
 /// are searched but a path inside of them, by A* over arcs of bounded curvature from the car's pose on
-/// (a lattice of positions, headings and lengths). Cones are obstacles that a path keeps away from; a metre
-/// with cones on both sides, about a lane apart, costs least. The boundaries are then read off the path: on
-/// each side the chain of cones that runs along it most evenly.
+/// (a lattice of positions, headings and lengths). Cones are obstacles that a path keeps away from; to hit
+/// one costs much but is not forbidden, for it may be a false detection. A metre with cones on both sides,
+/// about a lane apart, costs least. The boundaries are then read off the path: on each side the chain of
+/// cones that runs along it most evenly.
 ///
 /// The cheapest path counts whose boundaries have two cones at least; paths are taken in the order of their
 /// costs, exactly where `heuristic` underestimates. LaneAnswer::status: `none` where fewer than four places

@@ -21,14 +21,14 @@ struct Beside {
 };
 
 std::array<std::vector<Beside>, 2> sides_of(std::span<const PathSample> path, std::span<const Point> points,
-                                            double widest_side_m) {
+                                            const BoundaryReading& reading) {
     std::array<std::vector<Beside>, 2> sides;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         const auto nearest = std::ranges::min_element(
             path, {}, [&](const PathSample& sample) { return (sample.position - points[i]).squaredNorm(); });
         const Point offset = points[i] - nearest->position;
         const double ahead_m = nearest->direction.dot(offset);
-        if (offset.norm() > widest_side_m) continue;
+        if (offset.norm() < reading.nearest_m || offset.norm() > reading.widest_side_m) continue;
         const bool is_before = nearest == path.begin() && ahead_m < 0.0;
         const bool is_beyond = nearest + 1 == path.end() && ahead_m > 0.0;
         if (is_before || is_beyond) continue;
@@ -73,7 +73,7 @@ std::vector<std::uint32_t> best_chain(const std::vector<Beside>& side, double w_
 PathBoundaries boundaries_along(std::span<const PathSample> path, std::span<const Point> points,
                                 const BoundaryReading& reading, SearchBudget& budget) {
     if (budget.spend(points.size() * path.size() / 4)) return {};
-    const std::array<std::vector<Beside>, 2> sides = sides_of(path, points, reading.widest_side_m);
+    const std::array<std::vector<Beside>, 2> sides = sides_of(path, points, reading);
     return {best_chain(sides[kLeft], reading.w_slope, budget),
             best_chain(sides[kRight], reading.w_slope, budget)};
 }

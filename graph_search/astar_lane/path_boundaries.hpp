@@ -19,7 +19,8 @@ struct PathSample {
 
 /// How boundaries are read off a path.
 struct BoundaryReading {
-    double widest_side_m;  ///< a cone farther from the path is on no boundary
+    double nearest_m;      ///< a cone nearer to the path is in its way and on no boundary
+    double widest_side_m;  ///< a cone farther from it is on none either
     double w_slope;        ///< weight of the squared slope against the path; each cone earns 1
 };
 
