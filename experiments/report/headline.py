@@ -9,7 +9,8 @@ from . import measures
 from .experiments import optimality
 from .figures import percent_label
 from .leaders import REAL_TIME_BUDGET_MS, headline_values, leaders_of, usable_values
-from .tables import Cell, Column, block_table, method_cell, milliseconds, percent
+from .rows import note_on_training, scenes_cell
+from .tables import Column, block_table, method_cell, milliseconds, percent
 
 _IN_TIME_SHARE = 0.99  # of the scenes
 _NBSP = "\u00a0"
@@ -141,7 +142,7 @@ def _block(results, condition, rate):
                      percent(part.success.mean(), **({} if part.has("usable") else marks)), percent(part.mean_iou),
                      percent(float(np.mean(part.category == "ground_truth"))),
                      milliseconds(measures.quantile(part.latency, 0.99)), milliseconds(part.latency.max()),
-                     Cell(str(len(part)), len(part))])
+                     scenes_cell(len(part), part.has("trained_on"))])
         attributes.append({"method": part.label, "condition": condition, "rate": rate})
     where = f"{percent_label(rate)} % false positives"
     return (f"{condition}: {where}" if condition else where), rows, attributes
@@ -156,7 +157,7 @@ def _table(results):
         note="All ranges together. Usable: the lane is right for the first 20 m and long enough to drive by. Success: "
         "the CLC paper's, which a stub of two metres has too. Exact: the very cones of the ground truth. Small: 95 % "
         "interval, tracks resampled. Bold: ahead, or not told from the method ahead by its paired difference, tracks "
-        "resampled.")
+        f"resampled.{note_on_training(results)}")
 
 
 def html(results):

@@ -32,7 +32,7 @@ _NUMBERS = {
     "lateral_most": "lateral_max_m", "heading": "heading_error_rad", "steady": "steady", "accurate": "accurate",
     "solved": "solved", "objective": "objective", "optimal": "optimal", "iterations": "iterations",
     "complete": "complete", "checked": "checked", "best_candidate_iou": "best_candidate_iou",
-    "first_near_iteration": "first_near_iteration", "cones": "cones", "latency": "latency_ms"}
+    "first_near_iteration": "first_near_iteration", "trained_on": "trained_on", "cones": "cones", "latency": "latency_ms"}
 _REQUIRED = ("rate", "range", "lane_length", "ground_truth_length", "cones", "latency")
 
 

@@ -4,6 +4,19 @@ from .load import label_of
 from .tables import Cell, Column, method_cell, percent, text
 
 
+TRAINED = " *: with courses that the method has learned from, no held-out figure."
+
+
+def scenes_cell(count, trained_on):
+    """A number of scenes, marked where some of them are of courses that the method has learned from."""
+    return Cell(f"{count}{'*' if trained_on else ''}", count)
+
+
+def note_on_training(results):
+    """What a table says of the mark, where it has one."""
+    return TRAINED if any(sample.has("trained_on") for sample in results.samples) else ""
+
+
 def keys(results):
     condition = [Column("condition", "text")] if results.conditions != [""] else []
     return [Column("method", "text")] + condition + [Column("false positives %"), Column("range m"), Column("scenes")]
@@ -14,7 +27,7 @@ def key_cells(results, row):
     condition = [text(row.get("condition", ""))] if results.conditions != [""] else []
     return [method_cell(results.methods, row["method"], label)] + condition + [
         percent(row["false_positive_rate"]), Cell(f"{row['range']:g}", row["range"]),
-        Cell(str(row["scenes"]), row["scenes"])]
+        scenes_cell(row["scenes"], row.get("trained_on", 0))]
 
 
 def attributes(results):

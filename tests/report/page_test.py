@@ -339,7 +339,8 @@ class ReportPage(unittest.TestCase):
                     "echo_floor_ms": {"median": 0.04, "p95": 0.06},
                     "card": {"name": "Points", "licence": "MIT", "colour_used": False, "training_courses": ["one"]}}
             text, data = self.made_of(folder, Setup(methods=("ids", "points", "line"), points=("points",),
-                                                    centre_lines=("line",), runs=("run",), outside={"points": card}))
+                                                    centre_lines=("line",), runs=("run",), outside={"points": card},
+                                                    trained_on={"points": ("one",)}))
             run = next(lap for lap in data["laps"] if lap["track"] == "run")
             frame = data["frames"][run["scenes"][1]]
             self.assertEqual(frame["g"], [[], [], 0])
@@ -355,6 +356,8 @@ class ReportPage(unittest.TestCase):
             self.assertIn("IoU unknown", text)
             by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
             self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
+            headline = re.search(r'<div class="table" id="headline">.*?</table>', text, flags=re.S)[0]
+            self.assertEqual(headline.count("*</td>"), 4)  # two conditions, two rates
             self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
 
     def test_results_of_earlier_versions_still_make_a_page(self):

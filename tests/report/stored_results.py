@@ -27,6 +27,7 @@ class Setup:
     centre_lines: tuple = ()  # methods that answer with a centre line alone
     old: bool = False  # as stored before there was anything but success
     seed: int = 1
+    trained_on: dict = field(default_factory=dict)  # method -> tracks
     outside: dict = field(default_factory=dict)  # method -> what its rows say of it
 
 
@@ -80,6 +81,8 @@ def _score(setup, method, scene, rng):
     score |= {"lane_length_m": 24.0, "ground_truth_length_m": 28.0}
     if not setup.old and usable:
         score |= {"lateral_median_m": 0.1, "lateral_max_m": 0.3, "heading_error_rad": 0.01, "steady": True}
+    if scene["track"] in setup.trained_on.get(method, ()):
+        score["trained_on"] = True
     score |= {"cones": len(scene["cones"]), "latency_ms": round(0.1 + rng.random(), 6)}
     return score
 

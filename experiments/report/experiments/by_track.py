@@ -12,12 +12,6 @@ from ..leaders import headline_values
 from ..tables import Cell, Column, percent, table, text
 
 
-def _trained_on(results):
-    """The courses that each method from outside was fitted to, as its author says."""
-    said = {row["method"]: row["card"].get("training_courses", ()) for row in results.rows if "card" in row}
-    return {sample.method: said.get(sample.method, ()) for sample in results.samples}
-
-
 def _cell(share, is_trained):
     cell = percent(share)
     return Cell(cell.text, cell.value, "trained") if is_trained and share is not None else cell
@@ -26,7 +20,8 @@ def _cell(share, is_trained):
 def html(results, published):
     values_of = headline_values(results.samples)
     tracks = sorted(set().union(*(set(sample.track) for sample in results.samples)))
-    rows, attributes, trained = [], [], _trained_on(results)
+    trained = {sample.label: set(sample.track[sample.trained_on == 1.0]) for sample in results.samples}
+    rows, attributes = [], []
     for condition in results.conditions:
         shares = []
         for sample in results.samples:
@@ -38,11 +33,11 @@ def html(results, published):
         for track in tracks:
             if any(track in of_method for of_method in shares):
                 under = [text(condition)] if results.conditions != [""] else []
-                cells = [_cell(of_method.get(track), track in trained[sample.method])
+                cells = [_cell(of_method.get(track), track in trained[sample.label])
                          for sample, of_method in zip(results.samples, shares)]
                 rows.append([text(track)] + under + cells)
                 attributes.append({"condition": condition})
     columns = [Column("track", "text")] + ([Column("condition", "text")] if results.conditions != [""] else [])
     return table("by-track", "", columns + [Column(sample.label + " %") for sample in results.samples], rows,
-                 row_attributes=attributes, note="Trained: the method was fitted to this course, as its author says."
+                 row_attributes=attributes, note="Trained: the method has learned from this course: no held-out figure."
                  if any(trained.values()) else "")

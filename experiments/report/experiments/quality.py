@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import measures
 from ..figures import drawn, group, in_condition, percent_label, variants
-from ..rows import attributes, key_cells, keys, part
+from ..rows import attributes, key_cells, keys, note_on_training, part
 from ..tables import Column, percent, table
 from ..theme import legend, method_style, new_figure, percent_axis
 
@@ -41,7 +41,7 @@ def quality_table(results):
                                Column("complete %")]
     return table("quality", "", columns, rows, row_attributes=attributes(results),
                  note="Small: 95 % interval. Solved: proven optimal within 0.4 s. Complete: the enumeration came to "
-                 "its end.")
+                 f"its end.{note_on_training(results)}")
 
 
 def _by_rate(results, what, values_of):
