@@ -13,8 +13,8 @@ import numpy as np
 from .load import CATEGORIES, CAUSES, InputError, label_of, read_lines, require
 
 MOST_BYTES = 9_000_000  # of all frames as JSON
-_BYTES_PER_CONE = 11
-_BYTES_PER_ANSWER = 95
+_BYTES_PER_CONE = 10
+_BYTES_PER_ANSWER = 78
 _BYTES_PER_SCENE = 150
 _SAME_PLACE_M = 0.01
 _NOISE_FACTOR = 4.0  # a seen position is this many standard deviations off at most, nearly always
