@@ -29,7 +29,7 @@ using testing::Not;
 
 /// Two laps of 6 scenes.
 constexpr const char* kCompare =
-    "compare --tracks generated:circle --every 15 --fp 0,0.3 --time-limit 60000 --out ";
+    "compare --tracks generated:circle --condition paper --every 15 --fp 0,0.3 --time-limit 60000 --out ";
 constexpr const char* kLaps =
     "compare --tracks generated:circle generated:kidney --every 20 --fp 0,0.3 --out ";
 
@@ -453,13 +453,73 @@ TEST_F(OutsideMethods, TheExampleInCppAnswersAsClc) {
 TEST_F(OutsideMethods, TheExampleInPythonFindsStraightLanes) {
     if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
     const std::string table = run_well(
-        "compare --tracks generated:straight --every 15 --fp 0 --out r --methods 'exec:pairs=python3 " +
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:pairs=python3 " +
         std::string(CONELANE_SOURCE_DIR) + "/experiments/examples/nearest_pairs.py'");
     EXPECT_THAT(table, HasSubstr("nearest pairs, an example; "));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
         EXPECT_EQ(row["usable_share"], 1.0);
     }
+}
+
+/// The interface of ft-fsd-path-planning that the adapter uses, with a sorting that finds straight lanes:
+/// what is tested is the adapter, not the package.
+constexpr const char* kStandIn = R"(import enum
+import sys
+import types
+import numpy as np
+ConeTypes = enum.IntEnum('ConeTypes', 'UNKNOWN RIGHT LEFT START_FINISH_AREA START_FINISH_LINE', start=0)
+MissionTypes = enum.Enum('MissionTypes', 'trackdrive')
+class ConeSortingInput:
+    def __init__(self, cones, position, direction):
+        self.cones, self.position, self.direction = cones, position, direction
+class ConeSorting:
+    def set_new_input(self, given):
+        self.given = given
+    def run_cone_sorting(self):
+        cones, (x, y) = self.given.cones[ConeTypes.UNKNOWN], self.given.direction
+        ahead = (cones - self.given.position) @ np.array([[x, -y], [y, x]])
+        sides = []
+        for is_side in (ahead[:, 1] > 0, ahead[:, 1] <= 0):
+            sides.append(cones[is_side][np.argsort(ahead[is_side, 0])])
+        return sides
+class PathPlanner:
+    def __init__(self, mission):
+        self.cone_sorting = ConeSorting()
+    def calculate_path_in_global_frame(self, cones, position, direction):
+        return np.array([[s, *(position + s * direction), 0.0] for s in range(30)])
+core = types.ModuleType('fsd_path_planning.sorting_cones.core_cone_sorting')
+core.ConeSortingInput = ConeSortingInput
+sys.modules['fsd_path_planning.sorting_cones'] = types.ModuleType('fsd_path_planning.sorting_cones')
+sys.modules['fsd_path_planning.sorting_cones.core_cone_sorting'] = core
+)";
+
+TEST_F(OutsideMethods, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
+    std::string python;
+    for (const char* candidate : {"python3", "/usr/bin/python3"}) {
+        if (std::system((std::string(candidate) + " -c 'import numpy' 2>/dev/null").c_str()) == 0)
+            python = candidate;
+    }
+    if (python.empty()) GTEST_SKIP() << "no python3 with numpy";
+    std::filesystem::create_directory(path("fsd_path_planning"));
+    file_with(kStandIn, "fsd_path_planning/__init__.py");
+    const std::string adapter = "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=. " + python + " " +
+                                CONELANE_SOURCE_DIR + "/experiments/examples/ft_fsd_adapter.py";
+    const std::string table = run_well(
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:ft-fsd=" +
+        adapter + "' 'exec:ft-fsd-path=" + adapter + " --path'");
+    EXPECT_THAT(table, HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
+    for (const json& row : lines("r/results.jsonl")) {
+        EXPECT_EQ(row["errors"], 0);
+        EXPECT_EQ(row["usable_share"], 1.0);
+        EXPECT_EQ(row["self_timed_ms"].size(), 2U);
+    }
+    for (const LaneRecord& record : lanes("r/ft-fsd")) EXPECT_GE(record.answer.lane.left.size(), 2U);
+    for (const LaneRecord& record : lanes("r/ft-fsd-path")) EXPECT_EQ(record.centre_line.size(), 30U);
+    EXPECT_EQ(std::system(("cd " + path("").string() + " && " + adapter + " --warm-up >warm").c_str()), 0);
+    EXPECT_EQ(json::parse(text_of(path("warm")))[0]["left_points"].size(), 8U);
 }
 
 }  // namespace

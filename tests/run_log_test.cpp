@@ -3,10 +3,13 @@
 #include "experiments/tracks/run_log.hpp"
 
 #include "experiments/scenes/scene_generation.hpp"
+#include "tests/boundary_checks.hpp"
 #include "tests/file_test.hpp"
+#include "tests/recorded_tracks.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <set>
 #include <string>
@@ -258,6 +261,42 @@ TEST_F(RunLog, FaultsNameFileAndKey) {
     EXPECT_EQ(error_in(with("[0, 0]", "[1, 0]", "[[], [], [], [], []]")),
               "run.json: slam_cones: no frame has a cone");
     EXPECT_THAT(error_of([&] { (void)read_run_log(path("nowhere.json")); }), HasSubstr("nowhere.json"));
+}
+
+/// The recorded runs: two laps of a coloured course, a car that leaves its lane, and a skidpad.
+TEST(RecordedRuns, GiveBoundariesWhereTheyHaveColoursAndOneLane) {
+    const std::filesystem::path folder = recorded_data() / "ft_fsd";
+    if (!std::filesystem::is_directory(folder)) {
+        GTEST_SKIP() << "no ft_fsd in CONELANE_DATA or in ../shared/data";
+    }
+    const Track laps = read_run_log(folder / "fsg_19_2_laps.json");
+    EXPECT_TRUE(laps.closed);
+    EXPECT_THAT(laps.warnings, IsEmpty());
+    const TrackBoundaries both = boundaries(laps);
+    EXPECT_TRUE(is_simple(both.left, true));
+    EXPECT_TRUE(is_simple(both.right, true));
+    EXPECT_EQ(laps.left.size() + laps.right.size(), laps.cones.size()) << "every cone bounds the lane";
+    for (const double left_m : left_offsets_m(both.left, both.right, true)) {
+        EXPECT_GT(left_m, 2.0);
+        EXPECT_LT(left_m, 6.5);
+    }
+    EXPECT_NEAR(polyline_length_m(both.left, true), 267.0, 1.0);
+    EXPECT_NEAR(laps.frames.back().travelled_m, 500.0, 1.0) << "two laps";
+    std::set<ConeId> ids;
+    for (const AnnotatedScene& scene : generate_scenes(laps, plain())) {
+        ASSERT_TRUE(scene.ground_truth.has_value());
+        for (const Cone& cone : scene.scene.cones) ids.insert(cone.id);
+    }
+    EXPECT_EQ(ids.size(), laps.cones.size()) << "one id for each cone in both laps";
+
+    const Track turn = read_run_log(folder / "one_turn.json");
+    EXPECT_THAT(turn.left, IsEmpty());
+    EXPECT_THAT(turn.warnings, ElementsAre(HasSubstr("runs over a cone after 9.8 m")));
+    EXPECT_THAT(generate_scenes(turn, plain()), SizeIs(9));
+
+    const Track skidpad = read_run_log(folder / "skidpad.json");
+    EXPECT_THAT(skidpad.warnings, ElementsAre(HasSubstr("bound no lane")));
+    EXPECT_EQ(skidpad.driven.size(), skidpad.frames.size());
 }
 
 }  // namespace

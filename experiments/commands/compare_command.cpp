@@ -2,6 +2,7 @@
 #include "experiments/commands/page.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
 #include <charconv>
@@ -44,10 +45,9 @@ void add_overwrite_flag(CLI::App& command, bool& overwrite) {
 
 void add_shared_options(CLI::App& command, Options& options) {
     ComparisonOptions& comparison = options.comparison;
-    command.add_option(
-        "--tracks", comparison.tracks,
-        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
-        "ones without it");
+    command.add_option("--tracks", comparison.tracks,
+                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
+                       "ones without it");
     command
         .add_option(
             "--methods", options.methods,
@@ -91,18 +91,29 @@ void add_compare_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
-    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
+    options->methods = {"rld-cbc",   "rld-pair",      "rld-shape", "clc",
+                        "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
-    scenes.every_m = 4.4;
+    scenes.every_m = 11.0;
+    scenes.conditions = {"paper", "car"};
     add_shared_options(command, *options);
-    command.add_flag("--full", *full, "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m");
+    command.add_flag("--full", *full,
+                     "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
+                     "car, 50 ms");
     add_nearest_option(command, *nearest, "the same cone-set size for every method");
     command.callback([options, nearest, full, &command] {
         SceneOptions& chosen = options->comparison.scenes;
         if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
         if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
+        if (*full && command.count("--time-limit") == 0)
+            options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
+        // Disturbances that are asked for one by one are a condition of their own.
+        const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
+                                      command.count("--miss") + command.count("--persist") >
+                                  0;
+        if (is_disturbed && command.count("--condition") == 0) chosen.conditions.clear();
         for (const std::string& method : split_methods(options->methods))
             options->comparison.entrants.push_back(parse_entrant(method, *nearest));
         compare_and_print(*options);

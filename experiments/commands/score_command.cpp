@@ -71,9 +71,10 @@ void score_all(const Options& options) {
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     TrackBoundariesByName tracks;
     if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
-    RecordScorer scorer(scenes, tracks);
     std::vector<LanesFile> files = read_all(options, scenes);
     OutsideMethods outside;
+    RecordScorer scorer(scenes, tracks,
+                        [&](const std::string& method) { return outside.courses_of(method, false); });
     std::vector<ScoredRecord> scored;
     std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
     for (std::size_t i = 0; i < files.size(); ++i) {

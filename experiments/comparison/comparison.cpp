@@ -16,6 +16,8 @@
 #include <system_error>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 namespace conelane::experiments {
 namespace {
 
@@ -74,15 +76,18 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
                             const std::vector<std::string>& lanes_files, const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
-    RecordScorer scorer(set.scenes, set.tracks);
+    const OutsideMethods outside{outside_methods_of_record(run_record),
+                                 read_echo_floor(directory / kEchoFloorFile)};
+    const bool is_cross_validated = nlohmann::json::parse(run_record).contains("cross_validation");
+    RecordScorer scorer(set.scenes, set.tracks, [&](const std::string& method) {
+        return outside.courses_of(method, is_cross_validated);
+    });
     std::vector<ScoredRecord> scored;
     for (const std::string& name : lanes_files) {
         records.push_back(read_lanes(directory / name));
         std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
-    const OutsideMethods outside{outside_methods_of_record(run_record),
-                                 read_echo_floor(directory / kEchoFloorFile)};
     write_scores(directory / "scores.jsonl", scored);
     write_results(directory / "results.jsonl", rows, scored, outside, run_record);
     const std::string table = score_table(rows) + outside_notes(scored, outside);

@@ -6,6 +6,7 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "experiments/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -25,7 +26,7 @@ ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
-    const auto& [scene, record, score] = scored;
+    const auto& [scene, record, score, failure] = scored;
     nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->method}};
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) line[key] = *value;
@@ -38,7 +39,9 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     line["status"] = to_string(record->answer.status);
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
+    if (score.trained_on) line["trained_on"] = true;
     put_if_known("usable", score.usable());
+    if (failure) line["cause"] = to_string(*failure);
     put_if_known("iou", score.iou);
     line["lane_length_m"] = score.lane_length_m;
     line["ground_truth_length_m"] = score.ground_truth_length_m;
@@ -120,8 +123,16 @@ std::string note_on_errors(std::span<const ScoredRecord> scored, const std::stri
 
 }  // namespace
 
-RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks)
-    : scene_count_(scenes.size()) {
+std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
+    const auto outside = std::ranges::find(methods, method, &OutsideMethod::name);
+    if (outside == methods.end()) return cross_validated ? std::set<std::string>{} : training_courses(method);
+    if (!outside->card || !outside->card->training_courses) return {};
+    return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
+}
+
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                           CoursesOf courses_of)
+    : scene_count_(scenes.size()), courses_of_(std::move(courses_of)) {
     std::vector<Truth> truths(scenes.size());
     oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
         const auto track = tracks.find(scenes[i].track);
@@ -145,11 +156,14 @@ const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
     return truth->second;
 }
 
-void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line) {
+void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& line) {
     const AnnotatedScene& scene = *truth.scene;
+    const LaneRecord& record = *scored.record;
+    SceneScore& score = scored.score;
     const Pose& pose = scene.scene.pose;
+    LaneOutline outline;
     if (record.points) {
-        const LaneOutline outline{record.points->left, record.points->right, record.answer.lane.closed};
+        outline = {record.points->left, record.points->right, record.answer.lane.closed};
         score = score_outline(scene, outline, record.latency_ms, truth.boundaries);
         line = centre_line_of(outline, pose);
     } else if (!record.centre_line.empty()) {
@@ -157,9 +171,12 @@ void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScor
         line = centre_line_of(record.centre_line, pose);
     } else {
         score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
-        if (record.answer.status == LaneStatus::found)
-            line = centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
+        if (record.answer.status == LaneStatus::found) {
+            outline = outline_of(record.answer.lane, scene.scene);
+            line = centre_line_of(outline, pose);
+        }
     }
+    scored.failure = lane_failure(scene, outline, score, truth.boundaries);
     if (score.usable().value_or(false) && !truth.centre_line.empty())
         score.centre_line_error = centre_line_error(line, truth.centre_line);
 }
@@ -173,18 +190,23 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         truths.push_back(&truth_of(record, lanes_file));
         ++answered[key_of(*truths.back()->scene, record).method_label()];
     }
-    std::vector<SceneScore> scores(records.size());
+    std::vector<ScoredRecord> all(records.size());
     std::vector<CentreLine> lines(records.size());
     std::vector<std::exception_ptr> failures(records.size());
     oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
         if (!truths[i]->counts) return;
         try {
-            score(*truths[i], records[i], scores[i], lines[i]);
+            all[i] = {truths[i]->scene, &records[i], {}};
+            score(*truths[i], all[i], lines[i]);
         } catch (const InvalidInput& invalid) {
             failures[i] = std::make_exception_ptr(
                 InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
         }
     });
+    std::map<std::string, std::set<std::string>> courses;  // by method
+    for (const LaneRecord& record : records) {
+        if (!courses.contains(record.method)) courses.emplace(record.method, courses_of_(record.method));
+    }
     std::vector<ScoredRecord> scored;
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (failures[i]) std::rethrow_exception(failures[i]);
@@ -192,9 +214,10 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
             records[i].nearest == records[i - 1].nearest &&
             same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
-            scores[i].steady = is_steady(lines[i - 1], lines[i]);
+            all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
-        scored.push_back({truths[i]->scene, &records[i], std::move(scores[i])});
+        all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
+        scored.push_back(std::move(all[i]));
     }
     for (const auto& [name, count] : answered) {
         if (count != scene_count_) {

@@ -142,12 +142,21 @@ MethodMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
         "clc-paper", [clc] { return make_clc_detector(clc); }, options);
 }
 
+// What is tuned has a dozen numbers at most: every fourth pose tells enough of them.
+
+SceneSet scenes_to_tune_on(const LearningOptions& options) {
+    constexpr double kPoses = 4.0;
+    SceneOptions scenes = options.scenes;
+    scenes.every_m *= kPoses;
+    return make_scene_set(options.tracks, scenes);
+}
+
 // The baselines, by random search over their parameters.
 
 void learn_parameters(std::string_view method, const LearningOptions& options, const fs::path& file) {
     if (fs::exists(file)) return;
     const TunableMethod& tunable = find_tunable_method(method);
-    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    const SceneSet set = scenes_to_tune_on(options);
     const TunedMethod tuned =
         tune_method(tunable, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
     write(file, to_json_text(tunable, tuned.values));
@@ -189,7 +198,7 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
     EvaluationOptions solved;
     solved.objective = TuningObjective::usable;
     solved.threads = options.scenes.threads;
-    const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), solved);
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
     const Tuned tuned =
         tune([&](const RldParameters& parameters) { return evaluation(parameters); },
              with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed});

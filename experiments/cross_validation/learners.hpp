@@ -17,7 +17,7 @@ struct LearningOptions {
     std::vector<std::string> tracks;  ///< SPECs of load_tracks
     SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
     std::size_t variants = 1;         ///< of each track, for networks
-    std::size_t evaluations = 60;     ///< of parameters that are tuned
+    std::size_t evaluations = 60;     ///< of parameters that are tuned, on every fourth pose
 };
 
 /// A method whose weights or parameters come from courses, by the recipe of those that are shipped.

@@ -249,7 +249,8 @@ std::string ChildProcess::last_words() const {
         const std::string line = error_tail_.substr(begin, std::min(end - begin, kLongestWords));
         end = begin > 0 ? begin - 1 : 0;
         if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-        words = words.empty() ? line : line + " | " + words;
+        if (!words.empty()) words.insert(0, " | ");
+        words.insert(0, line);
         ++lines;
     }
     return words;

@@ -32,6 +32,8 @@ std::vector<LaneRecord> read_finished_lanes(const OutsideMethod& method,
         LaneRecord& record = *found->second;
         if (const std::string fault = fault_of(record, scene); !fault.empty())
             throw InputError(method.source, record.line, "", fault);
+        if (const std::string tangle = tangle_of(record, scene); !tangle.empty())
+            throw InputError(method.source, record.line, "", tangle);
         snap_to_cones(record, scene);
         record.method = method.name;
         record.latency_ms = record.self_timed_ms.value_or(0.0);

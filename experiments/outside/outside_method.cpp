@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -37,14 +38,13 @@ bool is_file(const fs::path& file) {
     return fs::is_regular_file(file, ignored);
 }
 
-/// The first word of a shell command that names a file, quotes left out.
-std::optional<fs::path> program_file(const std::string& command) {
-    std::istringstream words(command);
-    for (std::string word; words >> word;) {
-        std::erase_if(word, [](char c) { return c == '\'' || c == '"'; });
-        if (is_file(word)) return word;
-    }
-    return std::nullopt;
+/// X.method.json beside X.lanes.jsonl or X.ANYTHING.
+fs::path card_beside(const fs::path& file) {
+    constexpr std::string_view kLanesEnding = ".lanes.jsonl";
+    std::string name = file.filename().string();
+    name = name.ends_with(kLanesEnding) ? name.substr(0, name.size() - kLanesEnding.size())
+                                        : file.stem().string();
+    return file.parent_path() / (name + ".method.json");
 }
 
 std::optional<std::string> find_string(const JsonNode& json, std::string_view key) {
@@ -129,8 +129,7 @@ std::optional<OutsideMethod> parse_outside_method(std::string_view text) {
     if (std::ranges::find(methods(), method.name, &Method::name) != methods().end())
         throw InvalidInput("method",
                            fmt::format("'{}' is the name of a method of this program", method.name));
-    const auto card = card_path(method);
-    if (card && is_file(*card)) method.card = read_method_card(*card);
+    if (const auto card = card_path(method)) method.card = read_method_card(*card);
     return method;
 }
 
@@ -149,18 +148,17 @@ std::vector<std::string> split_methods(const std::vector<std::string>& texts) {
 }
 
 std::optional<fs::path> card_path(const OutsideMethod& method) {
-    constexpr std::string_view kLanesEnding = ".lanes.jsonl";
-    std::optional<fs::path> file;
+    // A lanes file may lie in a path with blanks; a word of a command is taken without its quotes.
+    std::vector<std::string> files{method.source};
     if (method.is_program()) {
-        file = program_file(method.source);
-        if (!file) return std::nullopt;
-    } else {
-        file = method.source;
+        std::istringstream words(method.source);
+        files.assign(std::istream_iterator<std::string>(words), {});
     }
-    std::string name = file->filename().string();
-    name = name.ends_with(kLanesEnding) ? name.substr(0, name.size() - kLanesEnding.size())
-                                        : file->stem().string();
-    return file->parent_path() / (name + ".method.json");
+    for (std::string& file : files) {
+        if (method.is_program()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
+        if (is_file(file) && is_file(card_beside(file))) return card_beside(file);
+    }
+    return std::nullopt;
 }
 
 MethodCard read_method_card(const fs::path& file) {

@@ -44,8 +44,8 @@ struct OutsideMethod {
 /// may hold commas.
 [[nodiscard]] std::vector<std::string> split_methods(const std::vector<std::string>& texts);
 
-/// Where the card of a method is looked for: X.method.json beside the lanes file X.lanes.jsonl, or beside the
-/// file X.ANYTHING that the first word of the command names which names a file. Nothing where no word does.
+/// The card of a method: X.method.json beside the lanes file X.lanes.jsonl, or beside a file X.ANYTHING that
+/// a word of the command names, the first where there is one. Nothing where there is none.
 [[nodiscard]] std::optional<std::filesystem::path> card_path(const OutsideMethod& method);
 
 /// Throws InputError naming file and key.

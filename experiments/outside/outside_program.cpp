@@ -64,6 +64,8 @@ LaneRecord OutsideProgram::answer(const Scene& scene) {
     failures_ = 0;
     lost_ms_ = 0.0;
     next_wait_ = 1;
+    if (const std::string tangle = tangle_of(*attempt.record, scene); !tangle.empty())
+        return error(scene, latency_ms, tangle);
     attempt.record->latency_ms = latency_ms;
     return *std::move(attempt.record);
 }
@@ -104,7 +106,7 @@ OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms)
             attempt.fault =
                 record.scene == opaque.id
                     ? experiments::fault_of(record, scene)
-                    : fmt::format("answers scene \"{:.20}\" instead of \"{}\"", record.scene, opaque.id);
+                    : fmt::format(R"(answers scene "{:.20}" instead of "{}")", record.scene, opaque.id);
             if (attempt.fault.empty()) {
                 snap_to_cones(record, scene);
                 record.scene = scene.id;

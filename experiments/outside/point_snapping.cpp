@@ -1,5 +1,8 @@
 #include "experiments/outside/point_snapping.hpp"
 
+#include "experiments/scenes/cone_index.hpp"
+#include "model/geometry.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -53,6 +56,30 @@ std::string fault_of_points(const char* key, const std::vector<Point>& points) {
     return "";
 }
 
+struct Edge {
+    Segment segment;
+    bool of_left;
+};
+
+/// The edges of both boundaries that have a length.
+std::vector<Edge> edges_of(const LaneRecord& record, const Scene& scene) {
+    std::vector<Edge> edges;
+    const auto add = [&edges](const std::vector<Point>& vertices, bool of_left) {
+        for (std::size_t i = 1; i < vertices.size(); ++i) {
+            if (vertices[i - 1] != vertices[i]) edges.push_back({{vertices[i - 1], vertices[i]}, of_left});
+        }
+    };
+    const auto positions = [&, index_of = index_by_id(scene)](const std::vector<ConeId>& ids) {
+        std::vector<Point> all;
+        for (const ConeId id : ids) all.push_back(scene.cones[index_of.at(id)].position);
+        return all;
+    };
+    const Lane& lane = record.answer.lane;
+    add(record.points ? record.points->left : positions(lane.left), true);
+    add(record.points ? record.points->right : positions(lane.right), false);
+    return edges;
+}
+
 }  // namespace
 
 void snap_to_cones(LaneRecord& record, const Scene& scene) {
@@ -76,6 +103,20 @@ std::string fault_of(const LaneRecord& record, const Scene& scene) {
                               fault_of_points("right_points", record.points ? record.points->right : kNone),
                               fault_of_points("centre_line", record.centre_line)}) {
         if (!fault.empty()) return fault;
+    }
+    return "";
+}
+
+std::string tangle_of(const LaneRecord& record, const Scene& scene) {
+    const std::vector<Edge> edges = edges_of(record, scene);
+    std::size_t meetings = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        for (std::size_t j = i + 1; j < edges.size(); ++j) {
+            const bool are_neighbours = j == i + 1 && edges[i].of_left == edges[j].of_left;
+            if (are_neighbours || !segments_intersect(edges[i].segment, edges[j].segment)) continue;
+            if (++meetings > kMostMeetings)
+                return fmt::format("its boundaries cross more than {} times", kMostMeetings);
+        }
     }
     return "";
 }

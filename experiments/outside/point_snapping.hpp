@@ -3,6 +3,9 @@
 #include "conelane/scene.hpp"
 #include "experiments/files/lane_file.hpp"
 
+#include <cstddef>
+#include <string>
+
 namespace conelane::experiments {
 
 /// A point this near to a cone stands for the cone [m].
@@ -16,8 +19,13 @@ void snap_to_cones(LaneRecord& record, const Scene& scene);
 
 /// What makes an answer from outside no answer to the scene: a cone that is not there, one that is twice in a
 /// boundary, more than kMostPoints points, a point beyond kFarthest_m. Empty where nothing does.
-inline constexpr std::size_t kMostPoints = 5000;
+inline constexpr std::size_t kMostPoints = 1000;
 inline constexpr double kFarthest_m = 1e7;
 [[nodiscard]] std::string fault_of(const LaneRecord& record, const Scene& scene);
+
+/// That the edges of the boundaries meet more than kMostMeetings times, neighbours not counted; empty where
+/// they do not. Such a tangle is no lane, and its area takes minutes. Precondition: fault_of finds nothing.
+inline constexpr std::size_t kMostMeetings = 500;
+[[nodiscard]] std::string tangle_of(const LaneRecord& record, const Scene& scene);
 
 }  // namespace conelane::experiments

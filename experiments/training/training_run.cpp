@@ -78,6 +78,7 @@ std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
 void add_variants(const TrainingRunOptions& options, SceneSet& set) {
     for (const std::string& spec : options.tracks) {
         for (const Track& track : load_tracks(spec)) {
+            if (!track.frames.empty()) continue;  // the maps of a run are as they were recorded
             for (std::size_t number = 1; number <= options.variants; ++number) {
                 const Track variant = track_variant(track, number, options.scenes.seed);
                 set.tracks.emplace(variant.name, boundaries(variant));
