@@ -207,11 +207,11 @@ void start_nearest_ahead(Boundary& boundary, const std::vector<Cone>& cones, con
 
 /// Starts a closed course at its first pair: the first left cone of the file and the right one nearest to it.
 void start_at_first_pair(Track& track) {
-    std::ranges::rotate(track.left, std::ranges::min_element(track.left));
+    std::rotate(track.left.begin(), std::ranges::min_element(track.left), track.left.end());
     const Point first = track.cones[track.left.front()].position;
-    std::ranges::rotate(track.right, std::ranges::min_element(track.right, {}, [&](std::size_t index) {
-                            return (track.cones[index].position - first).norm();
-                        }));
+    const auto nearest = std::ranges::min_element(
+        track.right, {}, [&](std::size_t index) { return (track.cones[index].position - first).norm(); });
+    std::rotate(track.right.begin(), nearest, track.right.end());
 }
 
 /// Turns the boundary of an open course around where most of the other one's cones lie on the wrong side of

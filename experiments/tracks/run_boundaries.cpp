@@ -52,7 +52,7 @@ DrivenLap first_lap(std::span<const Point> path) {
             return (place - end).norm() >= kEndDirection_m;
         });
         const Point along = end - (before == lap.path.rend() ? lap.path.front() : *before);
-        lap.path.push_back(end + kBeyondPath_m * along.normalized());
+        lap.path.emplace_back(end + kBeyondPath_m * along.normalized());
     }
     return lap;
 }

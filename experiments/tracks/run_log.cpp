@@ -67,7 +67,7 @@ std::vector<MapPlace> recognise(const std::vector<Cone>& map, std::vector<Cone>&
         }
     }
     std::ranges::sort(pairs);
-    constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    constexpr auto kNone = static_cast<std::size_t>(-1);
     std::vector<std::size_t> known_of(map.size(), kNone);
     std::vector<bool> taken(known.size(), false);
     for (const auto& [distance_m, i, j] : pairs) {
