@@ -8,6 +8,7 @@
 #include "experiments/outside/point_snapping.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/seeded_random.hpp"
+#include "experiments/training_courses.hpp"
 #include "tests/file_test.hpp"
 #include "tests/random_scenes.hpp"
 
@@ -157,7 +158,7 @@ TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
             records.push_back(std::move(record));
         }
         const std::vector<ScoredRecord> scored =
-            RecordScorer(set.scenes, set.tracks).score(records, "theirs.lanes.jsonl");
+            RecordScorer(set.scenes, set.tracks, training_courses).score(records, "theirs.lanes.jsonl");
         ASSERT_EQ(scored.size(), set.scenes.size());
         for (const ScoreRow& row : summarise(scored)) EXPECT_GE(row.summary.usable_share.value(), 0.0);
     }
