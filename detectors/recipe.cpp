@@ -1,5 +1,7 @@
 #include "detectors/recipe.hpp"
 
+#include "detectors/baseline_parameters.hpp"
+#include "graph_search/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
@@ -39,7 +41,11 @@ std::unique_ptr<LaneDetector> paper_clc() {
 }
 
 std::unique_ptr<LaneDetector> delaunay_beam() {
-    return make_delaunay_beam_detector({});
+    return make_delaunay_beam_detector(tuned_delaunay_beam_parameters());
+}
+
+std::unique_ptr<LaneDetector> astar_lane() {
+    return make_astar_lane_detector(tuned_astar_lane_parameters());
 }
 
 constexpr std::array kRecipes{
@@ -68,6 +74,10 @@ constexpr std::array kRecipes{
                    "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
                    "the lowest cost",
                    OtherRecipe{delaunay_beam}},
+    DetectorRecipe{
+        "astar-lane",
+        "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
+        OtherRecipe{astar_lane}},
 };
 
 /// Shows its detector the nearest cones only.

@@ -77,12 +77,15 @@ int run(int argument_count, char** arguments) {
     program.set_version_flag("--version", version());
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
+    experiments::add_cross_validate_command(program);
     experiments::add_report_command(program);
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);
+    experiments::add_tune_method_command(program);
     experiments::add_scenes_command(program);
     experiments::add_detect_command(program);
+    experiments::add_echo_command(program);
     experiments::add_methods_command(program);
     experiments::add_drive_command(program);
     experiments::add_score_command(program);
@@ -91,6 +94,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
+    experiments::add_instances_command(program);
     experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);

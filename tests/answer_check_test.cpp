@@ -129,7 +129,7 @@ TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
         SCOPED_TRACE(method);
         const Method& entry = find_method(method);
         std::size_t found = 0;
-        for (const LaneRecord& record : run(entry, set.scenes, {})) {
+        for (const LaneRecord& record : run(std::string(method), maker_of(entry, {}), set.scenes, {})) {
             EXPECT_NE(record.answer.status, LaneStatus::error) << record.answer.message;
             EXPECT_EQ(record.checked, entry.is_rld() && record.answer.status == LaneStatus::found);
             if (record.answer.status == LaneStatus::found) ++found;

@@ -120,7 +120,7 @@ TEST(DelaunayTriangulation, TwinsAreOneEdgeAndTheHullIsConvex) {
     for (DelaunayTriangulation::HalfEdge side = 0; side < triangulation.half_edge_count(); ++side) {
         const Point& from = points[triangulation.origin(side)];
         const Point& to = points[triangulation.target(side)];
-        const Point& third = points[triangulation.target(triangulation.next(side))];
+        const Point& third = points[triangulation.target(DelaunayTriangulation::next(side))];
         EXPECT_GT(cross(to - from, third - from), 0.0) << "counter-clockwise";
         const DelaunayTriangulation::HalfEdge twin = triangulation.twin(side);
         if (twin == DelaunayTriangulation::kNone) {

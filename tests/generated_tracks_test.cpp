@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 
@@ -17,6 +19,25 @@ namespace {
 using ::testing::Contains;
 
 constexpr std::uint64_t kSeeds = 5;
+
+/// What holds for the tracks of a layout; the fixed ones keep to the rules of Formula Student.
+struct Limits {
+    double shortest_gap_m = 1.0;  ///< between cones of one boundary
+    double longest_gap_m = 5.0;
+    double narrowest_m = 2.7;  ///< of the lane, across chords
+    double widest_m = 5.3;  ///< at the ends of an open track and across chords a little more than the width
+    double least_swell_m = 0.8;
+    double least_wall_m = 3.5;  ///< between two legs of one boundary
+};
+
+Limits limits_of(const std::string& track) {
+    const std::string layout = track.substr(0, track.find('@'));
+    if (layout == "legs") return {1.2, 4.2, 2.7, 5.3, 0.3, 3.0};
+    if (layout == "tight_hairpins") return {0.9, 2.6, 2.5, 3.6, 0.1, 2.4};
+    if (layout == "gates") return {0.3, 6.4, 2.5, 5.0, 0.8, 3.5};
+    if (layout == "wide") return {2.4, 6.4, 4.2, 6.3, 0.6, 3.5};
+    return {};
+}
 
 template <typename Check>
 void for_every_track(const Check& check) {
@@ -115,7 +136,8 @@ TEST(GeneratedTracks, HaveSimpleBoundariesApartFromEachOtherAndFromThemselves) {
     for_every_track([](const Track& track, const TrackBoundaries& both) {
         EXPECT_TRUE(is_simple(both.left, track.closed));
         EXPECT_TRUE(is_simple(both.right, track.closed));
-        EXPECT_GT(clearance_m(both.left, both.right, track.closed), 2.7);  // chords cut into bends
+        const Limits limits = limits_of(track.name);
+        EXPECT_GT(clearance_m(both.left, both.right, track.closed), limits.narrowest_m);
         for (const auto* const boundary : {&both.left, &both.right}) {
             const std::vector<Segment> all = segments(*boundary, track.closed);
             const double length_m = polyline_length_m(*boundary, track.closed);
@@ -126,7 +148,8 @@ TEST(GeneratedTracks, HaveSimpleBoundariesApartFromEachOtherAndFromThemselves) {
                     double apart_m = start_j_m - start_i_m;
                     if (track.closed) apart_m = std::min(apart_m, length_m - apart_m);
                     if (apart_m > 18) {
-                        ASSERT_GT(segment_distance(all[i], all[j]).distance_m, 3.5) << i << " " << j;
+                        ASSERT_GT(segment_distance(all[i], all[j]).distance_m, limits.least_wall_m)
+                            << i << " " << j;
                     }
                     start_j_m += (all[j].to - all[j].from).norm();
                 }
@@ -138,13 +161,14 @@ TEST(GeneratedTracks, HaveSimpleBoundariesApartFromEachOtherAndFromThemselves) {
 
 TEST(GeneratedTracks, SpaceConesUnevenlyOneToFiveMetresApart) {
     for_every_track([](const Track& track, const TrackBoundaries& both) {
+        const Limits limits = limits_of(track.name);
         for (const auto* const boundary : {&both.left, &both.right}) {
-            double shortest_m = 5;
-            double longest_m = 1;
+            double shortest_m = 10;
+            double longest_m = 0;
             for (const Segment& segment : segments(*boundary, track.closed)) {
                 const double gap_m = (segment.to - segment.from).norm();
-                EXPECT_GE(gap_m, 1.0);
-                EXPECT_LE(gap_m, 5.0);
+                EXPECT_GE(gap_m, limits.shortest_gap_m);
+                EXPECT_LE(gap_m, limits.longest_gap_m);
                 shortest_m = std::min(shortest_m, gap_m);
                 longest_m = std::max(longest_m, gap_m);
             }
@@ -187,12 +211,12 @@ TEST(GeneratedTracks, HaveLanesThreeToFiveMetresWideWithTheLeftBoundaryOnTheLeft
             narrowest_m = std::min(narrowest_m, left_m);
             widest_m = std::max(widest_m, left_m);
         }
-        EXPECT_GE(narrowest_m, 2.7);
-        EXPECT_LE(widest_m,
-                  5.3);  // at the ends of an open track and across chords a little more than the width
-        EXPECT_GE(widest_m - narrowest_m, 0.8);
+        const Limits limits = limits_of(track.name);
+        EXPECT_GE(narrowest_m, limits.narrowest_m);
+        EXPECT_LE(widest_m, limits.widest_m);
+        EXPECT_GE(widest_m - narrowest_m, limits.least_swell_m);
         for (const double left_m : left_offsets_m(both.right, both.left, track.closed))
-            EXPECT_LT(left_m, -2.7);
+            EXPECT_LT(left_m, -limits.narrowest_m);
     });
 }
 
@@ -205,9 +229,75 @@ TEST(GeneratedTracks, AreWrittenInTenthsOfMillimetresWithDistinctIds) {
                 EXPECT_NEAR(value_m * 1e4, std::round(value_m * 1e4), 1e-6);
             }
         }
-        for (const std::size_t index : track.left) EXPECT_EQ(track.cones[index].color, ConeColor::blue);
-        for (const std::size_t index : track.right) EXPECT_EQ(track.cones[index].color, ConeColor::yellow);
+        const bool gates = track.name.starts_with("gates");
+        for (const auto& [side, color] :
+             {std::pair{&track.left, ConeColor::blue}, std::pair{&track.right, ConeColor::yellow}}) {
+            std::size_t orange = 0;
+            for (const std::size_t index : *side) {
+                if (track.cones[index].color == ConeColor::orange) {
+                    ++orange;
+                } else {
+                    EXPECT_EQ(track.cones[index].color, color);
+                }
+            }
+            EXPECT_EQ(orange, gates ? 4u : 0u) << "two at each of two gates";
+        }
     });
+}
+
+/// The gap of a gate: from the pair of orange cones to the boundary's own cones on both sides.
+TEST(GeneratedTracks, GatesStandInWideGaps) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+        const Track track = generate_track("gates", seed);
+        SCOPED_TRACE(track.name);
+        for (const std::vector<std::size_t>* const side : {&track.left, &track.right}) {
+            std::size_t wide = 0;
+            for (std::size_t i = 0; i < side->size(); ++i) {
+                const Cone& here = track.cones[(*side)[i]];
+                const Cone& next = track.cones[(*side)[(i + 1) % side->size()]];
+                const double gap_m = (next.position - here.position).norm();
+                if ((here.color == ConeColor::orange) == (next.color == ConeColor::orange)) continue;
+                EXPECT_GT(gap_m, 3.8);
+                ++wide;
+            }
+            EXPECT_EQ(wide, 4u);
+        }
+    }
+}
+
+/// Distance of each vertex of a boundary to the next leg of the same boundary.
+double nearest_leg_m(const std::vector<Point>& boundary) {
+    const std::vector<Segment> all = segments(boundary, true);
+    double nearest_m = 1e9;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = 0; j < all.size(); ++j) {
+            const Point along = all[i].to - all[i].from;
+            const Point other = all[j].to - all[j].from;
+            const bool against = along.dot(other) < -0.97 * along.norm() * other.norm();
+            if (against) nearest_m = std::min(nearest_m, segment_distance(all[i], all[j]).distance_m);
+        }
+    }
+    return nearest_m;
+}
+
+TEST(GeneratedTracks, LegsLieThreeToSixMetresApartAndEachSeedDrawsOthers) {
+    std::set<std::size_t> cones;
+    bool left_handed = false;
+    bool right_handed = false;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const Track track = generate_track("legs", seed);
+        SCOPED_TRACE(track.name);
+        const TrackBoundaries both = boundaries(track);
+        for (const auto* const boundary : {&both.left, &both.right}) {
+            EXPECT_GT(nearest_leg_m(*boundary), 3.0);
+            EXPECT_LT(nearest_leg_m(*boundary), 6.2);
+        }
+        cones.insert(track.cones.size());
+        const bool left_is_inner = polyline_length_m(both.left, true) < polyline_length_m(both.right, true);
+        (left_is_inner ? left_handed : right_handed) = true;
+    }
+    EXPECT_GE(cones.size(), 8u);
+    EXPECT_TRUE(left_handed && right_handed);
 }
 
 TEST(GeneratedTracks, StrayConesLieOutsideTheLaneNearTheTrack) {

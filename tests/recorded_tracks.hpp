@@ -10,22 +10,27 @@
 
 namespace conelane::experiments {
 
-/// All recorded tracks, from the folder that the environment variable CONELANE_DATA names, else from
-/// ../shared/data beside the sources. None where there is neither.
+/// The folder that the environment variable CONELANE_DATA names, else ../shared/data beside the sources;
+/// there may be neither.
+inline std::filesystem::path recorded_data() {
+    const char* const given = std::getenv("CONELANE_DATA");
+    if (given != nullptr) return given;
+    return std::filesystem::path(CONELANE_SOURCE_DIR).parent_path() / "shared" / "data";
+}
+
+/// All recorded courses. None where there is no data.
 inline std::vector<Track> recorded_tracks() {
     namespace fs = std::filesystem;
-    const char* const given = std::getenv("CONELANE_DATA");
-    const fs::path data =
-        given != nullptr ? fs::path(given) : fs::path(CONELANE_SOURCE_DIR).parent_path() / "shared" / "data";
+    const fs::path data = recorded_data();
     std::vector<std::string> specs;
-    const auto add_files = [&](const std::string& kind, const std::string& extension) {
-        if (!fs::is_directory(data / kind)) return;
-        for (const fs::directory_entry& entry : fs::directory_iterator(data / kind)) {
+    const auto add_files = [&](const char* folder, const std::string& kind, const std::string& extension) {
+        if (!fs::is_directory(data / folder)) return;
+        for (const fs::directory_entry& entry : fs::directory_iterator(data / folder)) {
             if (entry.path().extension() == extension) specs.push_back(kind + ":" + entry.path().string());
         }
     };
-    add_files("pacsim", ".yaml");
-    add_files("eufs", ".csv");
+    add_files("pacsim", "pacsim", ".yaml");
+    for (const char* const folder : {"eufs", "epfl", "fssim", "fsai_sim"}) add_files(folder, "eufs", ".csv");
     if (const fs::path fsd = data / "fsd_racetrack_dataset"; fs::is_directory(fsd)) {
         specs.push_back("fsd:" + fsd.string());
     }

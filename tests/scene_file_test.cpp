@@ -260,6 +260,11 @@ TEST_F(SceneFileTest, TrackBoundariesLieBesideTheScenes) {
     EXPECT_EQ(text_of(path("t")), R"({"a":{"left":[[0.0,1.0]],"right":[[0.0,-1.0]],"closed":true},)"
                                   R"("b":{"left":[[0.5,1.0],[2.0,1.0]],"right":[[0.0,-1.0]],"closed":false}})"
                                   "\n");
+    write_track_boundaries(path("run"), {{"r", {{}, {}, false, {{0, 0}, {1, 0.5}}}}});
+    EXPECT_EQ(text_of(path("run")),
+              R"({"r":{"left":[],"right":[],"closed":false,"driven":[[0.0,0.0],[1.0,0.5]]}})"
+              "\n");
+    EXPECT_EQ(read_track_boundaries(path("run")).at("r").driven, (std::vector<Point>{{0, 0}, {1, 0.5}}));
     const TrackBoundariesByName read = read_track_boundaries(path("t"));
     ASSERT_EQ(read.size(), 2u);
     EXPECT_EQ(read.at("b").left, tracks.at("b").left);

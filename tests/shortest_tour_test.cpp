@@ -54,5 +54,23 @@ TEST(ShortestTour, VisitsEveryPointOnceAndDoesNotCrossItself) {
     }
 }
 
+TEST(ShortestPath, FindsTheOrderOfPointsAlongABow) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        boost::random::mt19937_64 generator(seed);
+        std::vector<double> angles;
+        for (int k = 0; k < 40; ++k) {
+            angles.push_back(boost::random::uniform_real_distribution<double>(0.0, 4.5)(generator));
+        }
+        std::vector<Point> points;
+        for (const double angle : angles) points.emplace_back(30 * std::cos(angle), 30 * std::sin(angle));
+        std::vector<double> ordered;
+        for (const std::size_t index : shortest_path(points)) ordered.push_back(angles[index]);
+        if (ordered.front() > ordered.back()) std::ranges::reverse(ordered);
+        EXPECT_EQ(ordered.size(), angles.size());
+        EXPECT_TRUE(std::ranges::is_sorted(ordered));
+    }
+}
+
 }  // namespace
 }  // namespace conelane::experiments

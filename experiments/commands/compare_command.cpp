@@ -1,7 +1,8 @@
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/page.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/report/report.hpp"
+#include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
 #include <charconv>
@@ -44,11 +45,15 @@ void add_overwrite_flag(CLI::App& command, bool& overwrite) {
 
 void add_shared_options(CLI::App& command, Options& options) {
     ComparisonOptions& comparison = options.comparison;
-    command.add_option(
-        "--tracks", comparison.tracks,
-        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE; all generated ones without it");
-    command.add_option("--methods", options.methods, "see `conelane methods`")
-        ->delimiter(',')
+    command.add_option("--tracks", comparison.tracks,
+                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
+                       "ones without it");
+    command
+        .add_option(
+            "--methods", options.methods,
+            "see `conelane methods`, parted by commas; exec:NAME=COMMAND asks any program and takes the "
+            "rest of its argument, lanes:NAME=FILE scores a finished lanes file "
+            "(docs/methods-from-outside.md)")
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
@@ -67,17 +72,6 @@ void add_shared_options(CLI::App& command, Options& options) {
     add_overwrite_flag(command, comparison.overwrite);
 }
 
-/// The results are whole without the page, which takes Python and matplotlib.
-void write_page(const std::filesystem::path& directory) {
-    const std::filesystem::path page = directory / "report.html";
-    try {
-        write_report(directory, page);
-        fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
-    } catch (const std::exception& failure) {
-        fmt::print("all of it in {}; no page: {}\n", directory.string(), failure.what());
-    }
-}
-
 void compare_and_print(Options& options) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
@@ -86,7 +80,7 @@ void compare_and_print(Options& options) {
     }
     options.parameters.apply_to(comparison.run.method);
     comparison.scenes.threads = comparison.run.threads;
-    fmt::print("{}\n", score_table(compare(comparison, options.directory)));
+    fmt::print("{}\n", compare(comparison, options.directory));
     if (comparison.shard.count == 1) write_page(options.directory);  // merge makes that of all shards
 }
 
@@ -97,20 +91,31 @@ void add_compare_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
-    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
+    options->methods = {"rld-cbc",   "rld-pair",      "rld-shape", "clc",
+                        "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
-    scenes.every_m = 4.4;
+    scenes.every_m = 11.0;
+    scenes.conditions = {"paper", "car"};
     add_shared_options(command, *options);
-    command.add_flag("--full", *full, "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m");
+    command.add_flag("--full", *full,
+                     "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
+                     "car, 50 ms");
     add_nearest_option(command, *nearest, "the same cone-set size for every method");
     command.callback([options, nearest, full, &command] {
         SceneOptions& chosen = options->comparison.scenes;
         if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
         if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
-        for (const std::string& method : options->methods)
-            options->comparison.entrants.push_back({method, *nearest});
+        if (*full && command.count("--time-limit") == 0)
+            options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
+        // Disturbances that are asked for one by one are a condition of their own.
+        const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
+                                      command.count("--miss") + command.count("--persist") >
+                                  0;
+        if (is_disturbed && command.count("--condition") == 0) chosen.conditions.clear();
+        for (const std::string& method : split_methods(options->methods))
+            options->comparison.entrants.push_back(parse_entrant(method, *nearest));
         compare_and_print(*options);
     });
 }
@@ -131,8 +136,9 @@ void add_sweep_command(CLI::App& program) {
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
     command.callback([options, sizes] {
-        for (const std::string& method : options->methods) {
-            for (const std::size_t size : *sizes) options->comparison.entrants.push_back({method, size});
+        for (const std::string& method : split_methods(options->methods)) {
+            for (const std::size_t size : *sizes)
+                options->comparison.entrants.push_back(parse_entrant(method, size));
         }
         compare_and_print(*options);
     });
@@ -147,7 +153,7 @@ void add_merge_command(CLI::App& program) {
     command.add_option("--out", *directory, "directory of the whole")->required();
     add_overwrite_flag(command, *overwrite);
     command.callback([shards, directory, overwrite] {
-        fmt::print("{}\n", score_table(merge(*shards, *directory, *overwrite)));
+        fmt::print("{}\n", merge(*shards, *directory, *overwrite));
         write_page(*directory);
     });
 }

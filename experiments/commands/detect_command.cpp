@@ -6,6 +6,7 @@
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/scene_file.hpp"
 
 #include <cstddef>
@@ -51,19 +52,35 @@ class LaneSink {
     std::optional<AtomicFile> file_;
 };
 
+/// A method and the name that its answers bear.
+struct Answering {
+    std::string name;
+    MethodMaker make;
+};
+Answering method_of(const Options& options) {
+    const auto outside = parse_outside_method(options.method);
+    if (!outside) {
+        const Method& method = find_method(options.method);
+        return {std::string(method.name), maker_of(method, options.run)};
+    }
+    if (!outside->is_program())
+        throw InvalidInput("--method", "'" + options.method + "' holds lanes already, none can be detected");
+    return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
+}
+
 /// One scene after the other; nothing is answered untimed before, since no scene is known before.
-void detect_streamed(const Method& method, const Options& options) {
+void detect_streamed(const Answering& method, const Options& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
-    TimedMethod timed(method, options.run);
+    const std::unique_ptr<TimedMethod> timed = method.make("");
     LaneSink sink(options.out);
     if (options.scenes == kStandardStream) {
         for_each_scene_line(std::cin, [&](const SceneLine& line) {
             if (line.reset) {
-                timed.reset();
+                timed->reset();
             } else if (line.scene) {
-                sink.put(timed.answer(line.scene->scene));
+                sink.put(timed->answer(line.scene->scene));
             } else {
-                LaneRecord wrong{std::to_string(line.number), std::string(method.name), {}, 0.0, {}};
+                LaneRecord wrong{std::to_string(line.number), method.name, {}, 0.0, {}};
                 wrong.answer.status = LaneStatus::error;
                 wrong.answer.message = line.fault;
                 sink.put(wrong);
@@ -72,22 +89,22 @@ void detect_streamed(const Method& method, const Options& options) {
     } else {
         const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
         for (std::size_t i = 0; i < scenes.size(); ++i) {
-            if (i > 0 && !same_lap(scenes[i - 1], scenes[i])) timed.reset();
-            sink.put(timed.answer(scenes[i].scene));
+            if (i > 0 && !same_lap(scenes[i - 1], scenes[i])) timed->reset();
+            sink.put(timed->answer(scenes[i].scene));
         }
     }
     sink.commit();
 }
 
 void detect(Options& options) {
-    const Method& method = find_method(options.method);
     options.parameters.apply_to(options.run.method);
+    const Answering method = method_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
         detect_streamed(method, options);
         return;
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    write_lanes(options.out, run(method, scenes, options.run));
+    write_lanes(options.out, run(method.name, method.make, scenes, options.run));
 }
 
 }  // namespace
@@ -115,7 +132,11 @@ void add_detect_command(CLI::App& program) {
         "an answer of status error");
     auto options = std::make_shared<Options>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
-    command.add_option("--method", options->method, "see `conelane methods`")->required();
+    command
+        .add_option(
+            "--method", options->method,
+            "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/methods-from-outside.md)")
+        ->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
         ->required();
     add_output_option(command, "--out", options->out,

@@ -4,6 +4,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -13,11 +17,13 @@ struct Options {
     std::string page;
     std::string pictures;
     std::string python;
+    std::vector<std::string> viewer;
 };
 
 void make_report(const Options& options) {
     try {
-        write_report(options.results, options.page, options.pictures, options.python);
+        write_report(options.results, options.page, options.pictures, options.python,
+                     fmt::format("{}", fmt::join(options.viewer, ",")));
     } catch (const ReportRefused&) {
         throw CLI::RuntimeError(2);  // it has said why
     }
@@ -32,6 +38,11 @@ void add_report_command(CLI::App& program) {
     add_output_option(command, "--out", options->page, "PAGE.html")->required();
     command.add_option("--png", options->pictures, "folder for the main figures as PNG too");
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
+    command
+        .add_option("--viewer", options->viewer,
+                    "tracks whose laps the scene viewer shall have; without it as many laps as fit, those on "
+                    "which the methods fail most first")
+        ->delimiter(',');
     command.callback([options] { make_report(*options); });
 }
 

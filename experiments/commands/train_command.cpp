@@ -132,7 +132,7 @@ void add_number_option(CLI::App& command, const std::string& name, double& numbe
 /// What is trained on, and what only measured on.
 CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command.add_option("--tracks", run.tracks,
-                       "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE");
+                       "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
     command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,

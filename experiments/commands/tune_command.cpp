@@ -7,6 +7,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
@@ -45,30 +46,17 @@ struct Options {
 
 /// All that the figures of parameters depend on, `start` for what tuning does not move.
 ordered_json conditions(const Options& options, const RldParameters& start) {
-    const SceneOptions& scenes = options.scenes;
-    ordered_json json{
-        {"commit", provenance().commit},
-        {"tracks", options.tracks},
-        {"objective", to_string(options.evaluation.objective)},
-        {"fp", scenes.false_positive_rates},
-        {"range", scenes.ranges_m},
-        {"every", scenes.every_m},
-        {"noise", scenes.noise_sigma_m.value_or(0.0)},
-        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
-        {"miss", scenes.miss_rate.value_or(0.0)},
-        {"color", scenes.with_color},
-        {"color_error", scenes.color_error_rate},
-        {"confidence", scenes.with_confidence},
-        {"seed", scenes.seed},
-        {"time_limit_ms", options.evaluation.time_limit_ms},
-        {"most_nodes", options.evaluation.most_nodes},
-        {"pairing", to_string(start.pairing)},
-        {"w_color", start.w_color},
-        {"shape", has_shape_costs(start)},
-        {"use_confidence", start.use_confidence},
-        {"forbid_crossing", start.forbid_crossing}};
-    if (!scenes.conditions.empty()) json["condition"] = condition_names(scenes);
-    if (scenes.persistent) json["persist"] = *scenes.persistent;
+    ordered_json json{{"commit", provenance().commit},
+                      {"tracks", options.tracks},
+                      {"objective", to_string(options.evaluation.objective)}};
+    json.update(scene_options_json(options.scenes));
+    json.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
+                             {"most_nodes", options.evaluation.most_nodes},
+                             {"pairing", to_string(start.pairing)},
+                             {"w_color", start.w_color},
+                             {"shape", has_shape_costs(start)},
+                             {"use_confidence", start.use_confidence},
+                             {"forbid_crossing", start.forbid_crossing}});
     if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
     if (options.evaluation.context) json["context"] = *options.evaluation.context;
     return json;
@@ -243,7 +231,8 @@ void add_tune_command(CLI::App& program) {
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;
     command
-        .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        .add_option("--tracks", options->tracks,
+                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
         ->required();
     command
         .add_option_function<std::string>(

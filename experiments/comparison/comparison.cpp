@@ -1,15 +1,22 @@
 #include "experiments/comparison/comparison.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/outside/finished_lanes.hpp"
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
+#include <span>
+#include <system_error>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
@@ -17,6 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kScenesFile = "scenes.scenes.jsonl";
+
+MethodMaker maker_of(const Entrant& entrant, const RunOptions& options) {
+    if (entrant.maker) return entrant.maker(options);
+    if (entrant.outside) return maker_of_program(entrant.method, entrant.outside->source, options);
+    return maker_of(find_method(entrant.method), options);
+}
 
 /// Runs an entrant on the scenes that its lanes file does not answer yet.
 void answer_scenes(const Entrant& entrant, std::span<const AnnotatedScene> scenes, RunOptions options,
@@ -29,9 +42,26 @@ void answer_scenes(const Entrant& entrant, std::span<const AnnotatedScene> scene
     const std::size_t stored = std::min(log.stored(), scenes.size());
     const std::size_t done = *std::prev(std::ranges::upper_bound(starts, stored));
     log.keep(done);
-    run(find_method(entrant.method), scenes.subspan(done), options,
+    run(entrant.method, maker_of(entrant, options), scenes.subspan(done), options,
         [&](std::span<const LaneRecord> lap) { log.append(lap); });
     log.finish();
+}
+
+/// The answers of the lanes files among the entrants, by name. Read before anything is written: a file that
+/// is wrong must not stop a run that has begun.
+std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOptions& options,
+                                                              std::span<const AnnotatedScene> scenes,
+                                                              const fs::path& directory) {
+    std::map<std::string, std::vector<LaneRecord>> lanes;
+    for (const Entrant& entrant : options.entrants) {
+        if (!entrant.outside || entrant.outside->is_program()) continue;
+        const fs::path file = entrant.outside->source;
+        std::error_code ignored;
+        if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))
+            throw InputError(file, 0, "", "lies in the directory of the results, which are written there");
+        lanes.emplace(entrant.method, read_finished_lanes(*entrant.outside, scenes));
+    }
+    return lanes;
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -42,45 +72,61 @@ void write_text(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-std::vector<ScoreRow> score_directory(const fs::path& directory, const SceneSet& set,
-                                      const std::vector<std::string>& lanes_files,
-                                      const std::string& run_record) {
+std::string score_directory(const fs::path& directory, const SceneSet& set,
+                            const std::vector<std::string>& lanes_files, const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
-    RecordScorer scorer(set.scenes, set.tracks);
+    const OutsideMethods outside{outside_methods_of_record(run_record),
+                                 read_echo_floor(directory / kEchoFloorFile)};
+    const bool is_cross_validated = nlohmann::json::parse(run_record).contains("cross_validation");
+    RecordScorer scorer(set.scenes, set.tracks, [&](const std::string& method) {
+        return outside.courses_of(method, is_cross_validated);
+    });
     std::vector<ScoredRecord> scored;
     for (const std::string& name : lanes_files) {
         records.push_back(read_lanes(directory / name));
-        std::ranges::move(scorer.score(records.back(), directory / name),
-                          std::back_inserter(scored));
+        std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
     }
-    std::vector<ScoreRow> rows = summarise(scored);
+    const std::vector<ScoreRow> rows = summarise(scored);
     write_scores(directory / "scores.jsonl", scored);
-    write_results(directory / "results.jsonl", rows, run_record);
-    write_text(directory / "table.txt", score_table(rows));
-    return rows;
+    write_results(directory / "results.jsonl", rows, scored, outside, run_record);
+    const std::string table = score_table(rows) + outside_notes(scored, outside);
+    write_text(directory / "table.txt", table);
+    return table;
 }
 
-std::vector<ScoreRow> compare(const ComparisonOptions& options, const fs::path& directory) {
+std::string compare(const ComparisonOptions& options, const fs::path& directory) {
     std::set<std::string> lanes_of_entrants;
+    bool any_program = false;
     for (const Entrant& entrant : options.entrants) {
-        (void)find_method(entrant.method);
+        if (!entrant.outside) (void)find_method(entrant.method);
+        any_program = any_program || (entrant.outside && entrant.outside->is_program());
         if (lanes_of_entrants.insert(entrant.lanes_file()).second) continue;
         const std::string cones = entrant.nearest ? " of " + std::to_string(*entrant.nearest) + " cones" : "";
         throw InvalidInput("method", "'" + entrant.method + "'" + cones + " is named twice");
     }
+    const std::string record = run_record(options);
     const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard);
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
+    const auto finished = finished_lanes(options, set.scenes, directory);
 
-    const std::string record = run_record(options);
     const FolderLock lock = open_run(directory, record, options.overwrite);
     write_scene_set(directory / kScenesFile, set);
+    if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {
         lanes_files.push_back(entrant.lanes_file());
-        answer_scenes(entrant, set.scenes, options.run, directory / lanes_files.back());
+        const fs::path file = directory / lanes_files.back();
+        const auto lanes = finished.find(entrant.method);
+        if (lanes != finished.end()) {
+            write_lanes(file, lanes->second);
+        } else {
+            answer_scenes(entrant, set.scenes, options.run, file);
+        }
     }
+    const fs::path echo_file = directory / kEchoFloorFile;
+    if (any_program && !fs::exists(echo_file)) write_echo_floor(echo_file, measure_echo_floor(set.scenes));
     return score_directory(directory, set, lanes_files, record);
 }
 

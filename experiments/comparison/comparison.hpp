@@ -2,9 +2,9 @@
 
 #include "experiments/comparison/run_record.hpp"
 #include "experiments/scenes/scene_set.hpp"
-#include "experiments/scoring/score_table.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace conelane::experiments {
@@ -15,25 +15,25 @@ namespace conelane::experiments {
 ///   scenes.scenes.jsonl    what the methods saw
 ///   scenes.tracks.json     the boundaries they are scored against
 ///   METHOD.lanes.jsonl     what they answered; METHOD.lanes.jsonl.part until it is whole
+///   echo_floor.json                          what an echo program takes, where a program from outside ran
 ///   scores.jsonl           a line per scene and method
 ///   results.jsonl          a line per method, rate and range, with provenance
 ///   table.txt              the same for reading
 ///
-/// A run that was stopped goes on after its last whole lap. Returns the rows of the table. Throws InputError
-/// or InvalidInput, so where the directory holds another run (see open_run).
-[[nodiscard]] std::vector<ScoreRow> compare(const ComparisonOptions& options,
-                                            const std::filesystem::path& directory);
+/// A run that was stopped goes on after its last whole lap. Returns the table. Throws InputError or
+/// InvalidInput, so where the directory holds another run (see open_run).
+[[nodiscard]] std::string compare(const ComparisonOptions& options, const std::filesystem::path& directory);
 
 /// Joins the shards of one run into what the whole run would have written, but for the times. Throws
 /// InputError where they are not all shards of one run: other commit, compiler or options, one missing, one
 /// twice; where the directory is one of them, or holds another run that may not be overwritten.
-[[nodiscard]] std::vector<ScoreRow> merge(const std::vector<std::filesystem::path>& shards,
-                                          const std::filesystem::path& directory, bool overwrite = false);
+[[nodiscard]] std::string merge(const std::vector<std::filesystem::path>& shards,
+                                const std::filesystem::path& directory, bool overwrite = false);
 
-/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there.
-[[nodiscard]] std::vector<ScoreRow> score_directory(const std::filesystem::path& directory,
-                                                    const SceneSet& set,
-                                                    const std::vector<std::string>& lanes_files,
-                                                    const std::string& run_record);
+/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there. Returns the
+/// table.
+[[nodiscard]] std::string score_directory(const std::filesystem::path& directory, const SceneSet& set,
+                                          const std::vector<std::string>& lanes_files,
+                                          const std::string& run_record);
 
 }  // namespace conelane::experiments

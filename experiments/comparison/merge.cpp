@@ -1,4 +1,5 @@
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/scenes/scene_file.hpp"
@@ -87,7 +88,7 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
 
 }  // namespace
 
-std::vector<ScoreRow> merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
+std::string merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
     for (const fs::path& shard : shards) {
         std::error_code ignored;
         if (fs::equivalent(shard, directory, ignored)) {
@@ -123,6 +124,11 @@ std::vector<ScoreRow> merge(const std::vector<fs::path>& shards, const fs::path&
         }
         write_lanes(directory / lanes_files.back(), interleave<LaneRecord>(starts, lanes));
     }
+    EchoFloor echo;
+    for (const fs::path& shard : run.directories) {
+        std::ranges::copy(read_echo_floor(shard / kEchoFloorFile), std::back_inserter(echo));
+    }
+    if (!echo.empty()) write_echo_floor(directory / kEchoFloorFile, echo);
     return score_directory(directory, set, lanes_files, run.record.dump());
 }
 

@@ -5,6 +5,8 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scoring/statistics.hpp"
+#include "experiments/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -12,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -23,7 +26,7 @@ ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
-    const auto& [scene, record, score] = scored;
+    const auto& [scene, record, score, failure] = scored;
     nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->method}};
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) line[key] = *value;
@@ -36,7 +39,9 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     line["status"] = to_string(record->answer.status);
     if (record->checked) line["checked"] = true;
     line["category"] = to_string(score.category);
+    if (score.trained_on) line["trained_on"] = true;
     put_if_known("usable", score.usable());
+    if (failure) line["cause"] = to_string(*failure);
     put_if_known("iou", score.iou);
     line["lane_length_m"] = score.lane_length_m;
     line["ground_truth_length_m"] = score.ground_truth_length_m;
@@ -72,13 +77,62 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     }
     line["cones"] = std::min(scene->scene.cones.size(), record->nearest.value_or(scene->scene.cones.size()));
     line["latency_ms"] = score.latency_ms;
+    put_if_known("self_timed_ms", record->self_timed_ms);
     return line;
+}
+
+/// What the methods themselves say that they took, of the records that `is_meant` picks.
+template <typename IsMeant>
+std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
+    std::vector<double> times_ms;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->self_timed_ms && is_meant(record))
+            times_ms.push_back(*record.record->self_timed_ms);
+    }
+    return times_ms;
+}
+
+nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
+    return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
+}
+
+nlohmann::ordered_json outside_part(const OutsideMethod& method, const std::vector<double>& own_ms,
+                                    const EchoFloor& echo) {
+    nlohmann::ordered_json part{{"outside", method.is_program() ? "exec" : "lanes"}};
+    if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
+    if (method.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
+    const auto described = nlohmann::ordered_json::parse(outside_method_json(method));
+    if (described.contains("card")) part["card"] = described["card"];
+    return part;
+}
+
+/// How many answers are errors, and the first of them; empty where none is.
+std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& method) {
+    std::size_t answers = 0;
+    std::size_t errors = 0;
+    std::string first;
+    for (const ScoredRecord& record : scored) {
+        if (record.record->method != method) continue;
+        ++answers;
+        if (record.record->answer.status != LaneStatus::error) continue;
+        if (++errors == 1) first = record.record->scene + ": " + record.record->answer.message;
+    }
+    if (errors == 0) return "";
+    return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, answers, first);
 }
 
 }  // namespace
 
-RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks)
-    : scene_count_(scenes.size()) {
+std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
+    const auto outside = std::ranges::find(methods, method, &OutsideMethod::name);
+    if (outside == methods.end()) return cross_validated ? std::set<std::string>{} : training_courses(method);
+    if (!outside->card || !outside->card->training_courses) return {};
+    return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
+}
+
+RecordScorer::RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                           CoursesOf courses_of)
+    : scene_count_(scenes.size()), courses_of_(std::move(courses_of)) {
     std::vector<Truth> truths(scenes.size());
     oneapi::tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
         const auto track = tracks.find(scenes[i].track);
@@ -102,11 +156,27 @@ const RecordScorer::Truth& RecordScorer::truth_of(const LaneRecord& record,
     return truth->second;
 }
 
-void RecordScorer::score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line) {
+void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& line) {
     const AnnotatedScene& scene = *truth.scene;
-    score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
-    if (record.answer.status == LaneStatus::found)
-        line = centre_line_of(outline_of(record.answer.lane, scene.scene), scene.scene.pose);
+    const LaneRecord& record = *scored.record;
+    SceneScore& score = scored.score;
+    const Pose& pose = scene.scene.pose;
+    LaneOutline outline;
+    if (record.points) {
+        outline = {record.points->left, record.points->right, record.answer.lane.closed};
+        score = score_outline(scene, outline, record.latency_ms, truth.boundaries);
+        line = centre_line_of(outline, pose);
+    } else if (!record.centre_line.empty()) {
+        score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
+        line = centre_line_of(record.centre_line, pose);
+    } else {
+        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        if (record.answer.status == LaneStatus::found) {
+            outline = outline_of(record.answer.lane, scene.scene);
+            line = centre_line_of(outline, pose);
+        }
+    }
+    scored.failure = lane_failure(scene, outline, score, truth.boundaries);
     if (score.usable().value_or(false) && !truth.centre_line.empty())
         score.centre_line_error = centre_line_error(line, truth.centre_line);
 }
@@ -120,18 +190,23 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         truths.push_back(&truth_of(record, lanes_file));
         ++answered[key_of(*truths.back()->scene, record).method_label()];
     }
-    std::vector<SceneScore> scores(records.size());
+    std::vector<ScoredRecord> all(records.size());
     std::vector<CentreLine> lines(records.size());
     std::vector<std::exception_ptr> failures(records.size());
     oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
         if (!truths[i]->counts) return;
         try {
-            score(*truths[i], records[i], scores[i], lines[i]);
+            all[i] = {truths[i]->scene, &records[i], {}};
+            score(*truths[i], all[i], lines[i]);
         } catch (const InvalidInput& invalid) {
             failures[i] = std::make_exception_ptr(
                 InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
         }
     });
+    std::map<std::string, std::set<std::string>> courses;  // by method
+    for (const LaneRecord& record : records) {
+        if (!courses.contains(record.method)) courses.emplace(record.method, courses_of_(record.method));
+    }
     std::vector<ScoredRecord> scored;
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (failures[i]) std::rethrow_exception(failures[i]);
@@ -139,9 +214,10 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
             records[i].nearest == records[i - 1].nearest &&
             same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
-            scores[i].steady = is_steady(lines[i - 1], lines[i]);
+            all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
-        scored.push_back({truths[i]->scene, &records[i], std::move(scores[i])});
+        all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
+        scored.push_back(std::move(all[i]));
     }
     for (const auto& [name, count] : answered) {
         if (count != scene_count_) {
@@ -168,11 +244,19 @@ void write_scores(const std::filesystem::path& file, std::span<const ScoredRecor
 }
 
 void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
                    const std::string& run) {
     const Provenance origin = provenance();
     AtomicFile output(file);
     for (const ScoreRow& row : rows) {
         nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
+        const auto method = std::ranges::find(outside.methods, row.key.method, &OutsideMethod::name);
+        if (method != outside.methods.end()) {
+            const auto is_of_row = [&](const ScoredRecord& record) {
+                return key_of(*record.scene, *record.record) == row.key;
+            };
+            line.update(outside_part(*method, self_times_ms(scored, is_of_row), outside.echo));
+        }
         line["commit"] = origin.commit;
         line["compiler"] = origin.compiler;
         line["machine"] = origin.machine;
@@ -180,6 +264,35 @@ void write_results(const std::filesystem::path& file, std::span<const ScoreRow> 
         output.stream() << line.dump() << '\n';
     }
     output.commit();
+}
+
+std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside) {
+    if (outside.methods.empty()) return "";
+    std::string notes = "methods from outside\n";
+    for (const OutsideMethod& method : outside.methods) {
+        const auto is_of_method = [&](const ScoredRecord& record) {
+            return record.record->method == method.name;
+        };
+        const std::vector<double> own_ms = self_times_ms(scored, is_of_method);
+        notes += "  " + method.name + ": ";
+        if (method.is_program()) {
+            notes += "latency is the round trip of a scene and its answer; ";
+            notes += outside.echo.empty()
+                         ? "that of an echo program is unknown"
+                         : fmt::format("that of an echo program is {:.2f} ms (median), {:.2f} (p95)",
+                                       median(outside.echo), quantile(outside.echo, 0.95));
+            if (!own_ms.empty()) {
+                notes += fmt::format("; self-timed {:.2f} ms (median), {:.2f} (p95)", median(own_ms),
+                                     quantile(own_ms, 0.95));
+            }
+        } else {
+            notes += "latency is self-timed, as the lanes file says";
+        }
+        notes += '\n';
+        if (method.card) notes += "    " + method.card->summary() + '\n';
+        notes += note_on_errors(scored, method.name);
+    }
+    return notes;
 }
 
 }  // namespace conelane::experiments

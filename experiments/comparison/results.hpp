@@ -1,13 +1,19 @@
 #pragma once
 
+#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/lane_file.hpp"
+#include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/centre_line_error.hpp"
+#include "experiments/scoring/lane_failure.hpp"
 #include "experiments/scoring/score.hpp"
 #include "experiments/scoring/score_table.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -20,13 +26,18 @@ struct ScoredRecord {
     const AnnotatedScene* scene;
     const LaneRecord* record;
     SceneScore score;
+    std::optional<LaneFailure> failure = {};  ///< why the lane is not usable
 };
 
 /// Scores records against the scenes of one set. What all methods are held against is made once.
 class RecordScorer {
   public:
-    /// Both must outlive it.
-    RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks);
+    /// The courses that a method has learned from.
+    using CoursesOf = std::function<std::set<std::string>(const std::string& method)>;
+
+    /// Scenes and tracks must outlive it.
+    RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
+                 CoursesOf courses_of);
 
     /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
     /// records of one method and cone-set size must cover every scene once; a scene that does not count is
@@ -43,9 +54,11 @@ class RecordScorer {
         CentreLine centre_line;  ///< empty where the truth is a driven path
     };
     [[nodiscard]] const Truth& truth_of(const LaneRecord& record, const std::filesystem::path& file) const;
-    static void score(const Truth& truth, const LaneRecord& record, SceneScore& score, CentreLine& line);
+    /// Fills in score and failure of `scored`.
+    static void score(const Truth& truth, ScoredRecord& scored, CentreLine& line);
 
     std::size_t scene_count_;
+    CoursesOf courses_of_;
     std::unordered_map<std::string, Truth> truth_of_;  // for look-up only
 };
 
@@ -55,8 +68,26 @@ class RecordScorer {
 /// Writes a line per record with every measure of it.
 void write_scores(const std::filesystem::path& file, std::span<const ScoredRecord> scored);
 
-/// Writes a line per row: the summary, then commit, compiler and machine of this program, and `run`, a JSON
-/// object with everything that the run depended on (options, parameters, seed).
-void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows, const std::string& run);
+/// The methods from outside among those scored, and what an echo program takes.
+struct OutsideMethods {
+    std::vector<OutsideMethod> methods;
+    EchoFloor echo;
+
+    /// The courses that a method has learned from: those of its card where it is one of these, none where it
+    /// was `cross_validated`, else those of training_courses.
+    [[nodiscard]] std::set<std::string> courses_of(const std::string& method, bool cross_validated) const;
+};
+
+/// Writes a line per row: the summary, of a method from outside also `outside` (exec or lanes),
+/// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
+/// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
+/// seed).
+void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
+                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
+                   const std::string& run);
+
+/// What a table says below of methods from outside: what its latencies are, how many scenes they failed on,
+/// and their cards. Empty where there are none.
+[[nodiscard]] std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside);
 
 }  // namespace conelane::experiments

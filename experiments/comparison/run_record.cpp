@@ -1,8 +1,11 @@
 #include "experiments/comparison/run_record.hpp"
 
+#include "conelane/invalid_input.hpp"
+#include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -28,8 +31,9 @@ constexpr const char* kRunFile = "run.json";
 
 bool is_of_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
-    constexpr std::array<std::string_view, 6> kNames{
-        kRunFile, "results.jsonl", "scores.jsonl", "table.txt", "scenes.scenes.jsonl", "scenes.tracks.json"};
+    constexpr std::array<std::string_view, 8> kNames{
+        kRunFile, "results.jsonl",       "scores.jsonl",       "table.txt",
+        "folds",  "scenes.scenes.jsonl", "scenes.tracks.json", kEchoFloorFile};
     return name.ends_with(".lanes.jsonl") || name.ends_with(".lanes.jsonl.part") ||
            std::ranges::find(kNames, name) != kNames.end();
 }
@@ -57,14 +61,14 @@ std::vector<std::string> differing_keys(const std::string& stored, const std::st
     return {keys.begin(), keys.end()};
 }
 
-/// FNV-1a of the file of this program; empty where it cannot be read.
-std::string program_hash() {
-    std::ifstream program("/proc/self/exe", std::ios::binary);
-    if (!program) return "";
+/// FNV-1a of a file; empty where it cannot be read.
+std::string hash_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return "";
     std::uint64_t hash = 14695981039346656037U;
     std::array<char, 1U << 16U> block{};
-    while (program.read(block.data(), block.size()), program.gcount() > 0) {
-        for (std::streamsize i = 0; i < program.gcount(); ++i) {
+    while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
+        for (std::streamsize i = 0; i < stream.gcount(); ++i) {
             hash = (hash ^ static_cast<unsigned char>(block[static_cast<std::size_t>(i)])) * 1099511628211U;
         }
     }
@@ -85,7 +89,27 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
     return json;
 }
 
+nlohmann::ordered_json to_json(const OutsideMethod& method) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_method_json(method));
+    if (method.is_program()) return json;
+    json["hash"] = hash_of(method.source);
+    if (json["hash"].empty()) throw InputError(method.source, 0, "", "cannot be read");
+    return json;
+}
+
 }  // namespace
+
+Entrant parse_entrant(const std::string& text, std::optional<std::size_t> nearest) {
+    if (auto outside = parse_outside_method(text)) {
+        if (nearest && !outside->is_program()) {
+            throw InvalidInput(
+                "method", "'" + outside->name + "' is a finished lanes file, no cone-set size can be given");
+        }
+        std::string name = outside->name;
+        return {std::move(name), nearest, std::move(outside)};
+    }
+    return {std::string(find_method(text).name), nearest, {}};
+}
 
 std::string Entrant::lanes_file() const {
     return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", method, *nearest) : method + ".lanes.jsonl";
@@ -96,34 +120,28 @@ std::string run_record(const ComparisonOptions& options) {
     nlohmann::ordered_json methods = nlohmann::ordered_json::array();
     for (const Entrant& entrant : options.entrants) {
         nlohmann::ordered_json json{{"name", entrant.method}};
+        if (entrant.outside) json = to_json(*entrant.outside);
         if (entrant.nearest) json["nearest"] = *entrant.nearest;
+        if (entrant.outside) {
+            methods.push_back(json);
+            continue;
+        }
         const Method& method = find_method(entrant.method);
         if (method.is_rld()) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
         methods.push_back(json);
     }
-    const SceneOptions& scenes = options.scenes;
-    nlohmann::ordered_json record{
-        {"commit", origin.commit},
-        {"compiler", origin.compiler},
-        {"machine", origin.machine},
-        {"tracks", options.tracks},
-        {"methods", methods},
-        {"fp", scenes.false_positive_rates},
-        {"range", scenes.ranges_m},
-        {"every", scenes.every_m},
-        {"noise", scenes.noise_sigma_m.value_or(0.0)},
-        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
-        {"miss", scenes.miss_rate.value_or(0.0)},
-        {"color", scenes.with_color},
-        {"color_error", scenes.color_error_rate},
-        {"confidence", scenes.with_confidence},
-        {"seed", scenes.seed},
-        {"threads", options.run.threads},
-        {"candidates", options.run.limits.keep_candidates}};
-    if (origin.commit == "unknown" || origin.commit.ends_with("-dirty")) record["program"] = program_hash();
-    if (!scenes.conditions.empty()) record["condition"] = condition_names(scenes);
-    if (scenes.persistent) record["persist"] = *scenes.persistent;
-    if (scenes.nearest) record["nearest"] = *scenes.nearest;
+    nlohmann::ordered_json record{{"commit", origin.commit},
+                                  {"compiler", origin.compiler},
+                                  {"machine", origin.machine},
+                                  {"tracks", options.tracks},
+                                  {"methods", methods}};
+    record.update(scene_options_json(options.scenes));
+    record["threads"] = options.run.threads;
+    record["candidates"] = options.run.limits.keep_candidates;
+    if (!options.cross_validation.empty())
+        record["cross_validation"] = nlohmann::ordered_json::parse(options.cross_validation);
+    if (origin.commit == "unknown" || origin.commit.ends_with("-dirty"))
+        record["program"] = hash_of("/proc/self/exe");
     if (std::isfinite(options.run.limits.time_limit_ms))
         record["time_limit_ms"] = options.run.limits.time_limit_ms;
     if (options.shard.count > 1) record["shard"] = {options.shard.index, options.shard.count};
@@ -149,7 +167,7 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
                          fmt::format("holds {}, but not the {} that belongs to it; --overwrite replaces it",
                                      earlier.front().filename().string(), kRunFile));
     }
-    for (const fs::path& file : earlier) fs::remove(file);
+    for (const fs::path& file : earlier) fs::remove_all(file);
     AtomicFile file(directory / kRunFile);
     file.stream() << record << '\n';
     file.commit();

@@ -2,10 +2,12 @@
 
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/folder_lock.hpp"
+#include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/scene_generation.hpp"
 #include "experiments/scenes/scene_set.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +16,11 @@ namespace conelane::experiments {
 
 /// A method, and the cone-set size it gets instead of its own.
 struct Entrant {
-    std::string method;
+    std::string method;  ///< name of a method of this program, or of `outside`
     std::optional<std::size_t> nearest = {};
+    std::optional<OutsideMethod> outside = {};
+    /// Another way to make the method, such as from weights that have not seen the course; none: by its name.
+    std::function<MethodMaker(const RunOptions&)> maker = {};
 
     /// Name of its lanes file: METHOD.lanes.jsonl or METHOD.n012.lanes.jsonl.
     [[nodiscard]] std::string lanes_file() const;
@@ -29,10 +34,20 @@ struct ComparisonOptions {
     RunOptions run;
     Shard shard;
     bool overwrite = false;  ///< results of another run in the directory
+    /// What is needed before the entrants can be made; called when the directory is locked and ready.
+    std::function<void()> prepare = {};
+    std::string cross_validation = {};  ///< JSON object, what the folds depend on; empty where there are none
 };
 
+/// The entrant that a text of `--methods` names. Throws InvalidInput where there is no such method and where
+/// a finished lanes file is to get a cone-set size; InputError where the card of a method from outside is
+/// wrong.
+[[nodiscard]] Entrant parse_entrant(const std::string& text, std::optional<std::size_t> nearest = {});
+
 /// The options, and commit, compiler and machine of this program, as a JSON object in one line. Where the
-/// commit does not say which program it is (changed sources, or none known), a hash of the program does.
+/// commit does not say which program it is (changed sources, or none known), a hash of the program does. A
+/// method from outside is recorded with its command, or with its file and a hash of it, and with its card.
+/// Throws InputError where that file cannot be read.
 [[nodiscard]] std::string run_record(const ComparisonOptions& options);
 
 /// Makes the directory ready for a run and keeps others out of it: where its run.json holds the same record,

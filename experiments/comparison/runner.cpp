@@ -2,6 +2,7 @@
 
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/pinning.hpp"
+#include "experiments/outside/outside_program.hpp"
 #include "experiments/progress.hpp"
 #include "model/deadline.hpp"
 
@@ -20,14 +21,81 @@
 namespace conelane::experiments {
 namespace {
 
-std::vector<LaneRecord> drive_lap(const Method& method, std::span<const AnnotatedScene> lap,
-                                  const RunOptions& options, Progress& progress) {
-    TimedMethod timed(method, options);
-    timed.warm_up(lap.front().scene);
+/// What an RLD detector's lanes are checked against.
+struct CheckedRld {
+    ConeSet cones;
+    RldParameters parameters;
+};
+
+/// A detector of this program.
+class TimedDetector : public TimedMethod {
+  public:
+    TimedDetector(std::string name, std::unique_ptr<LaneDetector> detector, const RunOptions& options,
+                  std::optional<std::size_t> nearest, std::optional<CheckedRld> check = {})
+        : name_(std::move(name)),
+          limits_(options.limits),
+          detector_(std::move(detector)),
+          nearest_(nearest),
+          check_(std::move(check)) {}
+
+    LaneRecord answer(const Scene& scene) override {
+        const Stopwatch watch;
+        LaneAnswer answer = detector_->detect(scene, limits_);
+        const double latency_ms = watch.elapsed_ms();
+        LaneRecord record{scene.id, name_, std::move(answer), latency_ms, nearest_};
+        if (check_) check_answer(record, check_->cones.seen(scene), check_->parameters);
+        return record;
+    }
+    void warm_up(const Scene& scene) override {
+        (void)detector_->detect(scene, limits_);
+        detector_->reset();
+    }
+    void reset() override { detector_->reset(); }
+
+  private:
+    std::string name_;
+    DetectionLimits limits_;
+    std::unique_ptr<LaneDetector> detector_;
+    std::optional<std::size_t> nearest_;
+    std::optional<CheckedRld> check_;
+};
+
+/// A program from outside, taken from those that run already and given back.
+class TimedProgram : public TimedMethod {
+  public:
+    TimedProgram(std::shared_ptr<OutsideProgramPool> pool, std::optional<std::size_t> nearest)
+        : pool_(std::move(pool)), program_(pool_->take()), nearest_(nearest) {}
+    ~TimedProgram() override { pool_->give_back(std::move(program_)); }
+    TimedProgram(const TimedProgram&) = delete;
+    TimedProgram& operator=(const TimedProgram&) = delete;
+
+    LaneRecord answer(const Scene& scene) override {
+        if (!nearest_) return program_->answer(scene);
+        const Stopwatch watch;
+        const Scene seen = nearest_ahead(scene, *nearest_);
+        const double cut_ms = watch.elapsed_ms();
+        LaneRecord record = program_->answer(seen);
+        record.latency_ms += cut_ms;
+        record.nearest = nearest_;
+        return record;
+    }
+    void warm_up(const Scene& /*scene*/) override {}  // once at its start
+    void reset() override { program_->reset(); }
+
+  private:
+    std::shared_ptr<OutsideProgramPool> pool_;
+    std::unique_ptr<OutsideProgram> program_;
+    std::optional<std::size_t> nearest_;
+};
+
+std::vector<LaneRecord> drive_lap(const MethodMaker& make, std::span<const AnnotatedScene> lap,
+                                  Progress& progress) {
+    const std::unique_ptr<TimedMethod> timed = make(lap.front().track);
+    timed->warm_up(lap.front().scene);
     std::vector<LaneRecord> records;
     records.reserve(lap.size());
     for (const AnnotatedScene& scene : lap) {
-        records.push_back(timed.answer(scene.scene));
+        records.push_back(timed->answer(scene.scene));
         progress.advance();
     }
     return records;
@@ -56,25 +124,26 @@ class InOrder {
 
 }  // namespace
 
-TimedMethod::TimedMethod(const Method& method, const RunOptions& options)
-    : method_(method),
-      limits_(options.limits),
-      detector_(make_detector(method, options.method)),
-      cones_(cone_set(method, options.method)),
-      parameters_(rld_parameters(method, options.method)) {}
-
-LaneRecord TimedMethod::answer(const Scene& scene) {
-    const Stopwatch watch;
-    LaneAnswer answer = detector_->detect(scene, limits_);
-    const double latency_ms = watch.elapsed_ms();
-    LaneRecord record{scene.id, std::string(method_.name), std::move(answer), latency_ms, cones_.nearest};
-    if (method_.is_rld()) check_answer(record, cones_.seen(scene), parameters_);
-    return record;
+MethodMaker maker_of(const Method& method, const RunOptions& options) {
+    return [&method, options](const std::string& /*track*/) {
+        const ConeSet cones = cone_set(method, options.method);
+        std::optional<CheckedRld> check;
+        if (method.is_rld()) check = CheckedRld{cones, rld_parameters(method, options.method)};
+        return std::make_unique<TimedDetector>(
+            std::string(method.name), make_detector(method, options.method), options, cones.nearest, check);
+    };
 }
 
-void TimedMethod::warm_up(const Scene& scene) {
-    (void)detector_->detect(scene, limits_);
-    detector_->reset();
+MethodMaker maker_of(const std::string& name, std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                     const RunOptions& options) {
+    return [name, make_detector = std::move(make_detector), options](const std::string& /*track*/) {
+        return std::make_unique<TimedDetector>(name, make_detector(), options, std::nullopt);
+    };
+}
+
+MethodMaker maker_of_program(const std::string& name, const std::string& command, const RunOptions& options) {
+    return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.method.nearest](
+               const std::string& /*track*/) { return std::make_unique<TimedProgram>(pool, nearest); };
 }
 
 bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {
@@ -91,9 +160,9 @@ std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     return starts;
 }
 
-void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
-         const LapSink& sink) {
-    Progress progress(std::string(method.name), options.show_progress ? scenes.size() : 0);
+void run(const std::string& name, const MethodMaker& make, std::span<const AnnotatedScene> scenes,
+         const RunOptions& options, const LapSink& sink) {
+    Progress progress(name, options.show_progress ? scenes.size() : 0);
     const std::vector<std::size_t> starts = lap_starts(scenes);
     const std::size_t laps = starts.size() - 1;
     const auto lap_scenes = [&](std::size_t lap) {
@@ -101,8 +170,7 @@ void run(const Method& method, std::span<const AnnotatedScene> scenes, const Run
     };
     if (options.threads <= 1) {
         const PinnedThread pinned;
-        for (std::size_t lap = 0; lap < laps; ++lap)
-            sink(drive_lap(method, lap_scenes(lap), options, progress));
+        for (std::size_t lap = 0; lap < laps; ++lap) sink(drive_lap(make, lap_scenes(lap), progress));
         return;
     }
     InOrder in_order(laps, sink);
@@ -111,15 +179,15 @@ void run(const Method& method, std::span<const AnnotatedScene> scenes, const Run
     oneapi::tbb::task_arena arena(threads);
     arena.execute([&] {
         oneapi::tbb::parallel_for(std::size_t{0}, laps, [&](std::size_t lap) {
-            in_order.put(lap, drive_lap(method, lap_scenes(lap), options, progress));
+            in_order.put(lap, drive_lap(make, lap_scenes(lap), progress));
         });
     });
 }
 
-std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
-                            const RunOptions& options) {
+std::vector<LaneRecord> run(const std::string& name, const MethodMaker& make,
+                            std::span<const AnnotatedScene> scenes, const RunOptions& options) {
     std::vector<LaneRecord> records;
-    run(method, scenes, options,
+    run(name, make, scenes, options,
         [&](std::span<const LaneRecord> lap) { std::ranges::copy(lap, std::back_inserter(records)); });
     return records;
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace conelane::experiments {
@@ -23,32 +24,40 @@ struct RunOptions {
 };
 
 /// A method that answers scene after scene, each timed in the same way: from the scene in memory to the lane
-/// in memory, on the wall clock. What an RLD method found and the independent checker rejects becomes an
-/// answer of status error (see check_answer; not timed).
+/// in memory, on the wall clock.
 class TimedMethod {
   public:
-    /// The method must outlive it.
-    TimedMethod(const Method& method, const RunOptions& options);
-
-    [[nodiscard]] LaneRecord answer(const Scene& scene);
+    virtual ~TimedMethod() = default;
+    [[nodiscard]] virtual LaneRecord answer(const Scene& scene) = 0;
     /// Answers the scene untimed and forgets it, so that no latency holds the loading of code.
-    void warm_up(const Scene& scene);
+    virtual void warm_up(const Scene& scene) = 0;
     /// What follows is another lap.
-    void reset() { detector_->reset(); }
-
-  private:
-    const Method& method_;
-    DetectionLimits limits_;
-    std::unique_ptr<LaneDetector> detector_;
-    ConeSet cones_;
-    RldParameters parameters_;
+    virtual void reset() = 0;
 };
 
-/// Whether two scenes are of one lap: the same track, rate and range.
+/// Makes what answers a lap of the course of this name, in any thread.
+using MethodMaker = std::function<std::unique_ptr<TimedMethod>(const std::string& track)>;
+
+/// A method of this program. What an RLD method found and the independent checker rejects becomes an answer
+/// of status error (see check_answer; not timed). The method must outlive what is made.
+[[nodiscard]] MethodMaker maker_of(const Method& method, const RunOptions& options);
+
+/// Any detector under a name, on all cones.
+[[nodiscard]] MethodMaker maker_of(const std::string& name,
+                                   std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                                   const RunOptions& options);
+
+/// A program from outside, timed by its round trip. It stays from lap to lap, as long as the maker lives; of
+/// the options it knows the cone-set size alone, and has its own limits (see OutsideLimits).
+[[nodiscard]] MethodMaker maker_of_program(const std::string& name, const std::string& command,
+                                           const RunOptions& options);
+
+/// Whether two scenes are of one lap: the same track, condition, rate and range.
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
 
-/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track, rate
-/// and range, the unit of work: a detector that carries state sees each lap from its beginning, alone.
+/// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track,
+/// condition, rate and range, the unit of work: a detector that carries state sees each lap from its
+/// beginning, alone.
 [[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
 
 /// Gets the records of each lap, in the order of the laps, from one thread at a time.
@@ -56,11 +65,11 @@ using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
 /// Runs a method on every scene, a TimedMethod for each lap. The first scene of a lap is answered once
 /// untimed before. The cut to the cone set is part of the method and of its time.
-void run(const Method& method, std::span<const AnnotatedScene> scenes, const RunOptions& options,
-         const LapSink& sink);
+void run(const std::string& name, const MethodMaker& make, std::span<const AnnotatedScene> scenes,
+         const RunOptions& options, const LapSink& sink);
 
 /// The same, all records at once.
-[[nodiscard]] std::vector<LaneRecord> run(const Method& method, std::span<const AnnotatedScene> scenes,
-                                          const RunOptions& options);
+[[nodiscard]] std::vector<LaneRecord> run(const std::string& name, const MethodMaker& make,
+                                          std::span<const AnnotatedScene> scenes, const RunOptions& options);
 
 }  // namespace conelane::experiments

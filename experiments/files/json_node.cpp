@@ -108,6 +108,13 @@ void require_read_to_end(const std::ifstream& stream, const std::filesystem::pat
     if (stream.bad()) throw InputError(file, 0, "", "cannot be read to its end");
 }
 
+std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream = open(file);
+    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    require_read_to_end(stream, file);
+    return text;
+}
+
 }  // namespace
 
 JsonNode JsonNode::member(std::string_view key) const {
@@ -235,10 +242,15 @@ bool is_blank(std::string_view line) {
 }
 
 void with_json_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {
-    std::ifstream stream = open(file);
-    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    require_read_to_end(stream, file);
-    with_json_text(text, file, read);
+    with_json_text(text_of(file), file, read);
+}
+
+void with_json_list_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {
+    const json value = parse(text_of(file), file, 1);
+    const JsonOrigin origin{file, 0};
+    const JsonNode node(value, origin);
+    (void)node.array_size();
+    read(node);
 }
 
 void with_json_text(std::string_view text, const std::filesystem::path& file,

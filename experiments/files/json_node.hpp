@@ -83,6 +83,9 @@ void with_json_line(std::string_view text, const std::filesystem::path& file, st
 /// Calls `read` with the object that a whole file holds. Throws like for_each_json_line.
 void with_json_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
+/// The same for a file that holds a list.
+void with_json_list_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
+
 /// The same for a text that stands for the file.
 void with_json_text(std::string_view text, const std::filesystem::path& file,
                     const std::function<void(const JsonNode&)>& read);

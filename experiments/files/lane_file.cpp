@@ -57,11 +57,39 @@ Enumeration read_enumeration(const JsonNode& json) {
     return enumeration;
 }
 
-LaneRecord read_record(const JsonNode& json) {
-    LaneRecord record;
-    record.line = json.line();
-    record.scene = json.member("scene").string();
-    record.method = json.member("method").string();
+std::vector<Point> read_points(const JsonNode& json) {
+    std::vector<Point> points;
+    const std::size_t size = json.array_size();
+    points.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) {
+        const JsonNode point = json.element(i);
+        if (point.array_size() != 2) point.fail("must be [x, y]");
+        points.emplace_back(point.element(0).number(), point.element(1).number());
+    }
+    return points;
+}
+
+/// Boundaries by cone ids, or else by points, or else a centre line.
+void read_shape(const JsonNode& json, bool may_be_absent, LaneRecord& record) {
+    const auto left_points = json.find("left_points");
+    const auto right_points = json.find("right_points");
+    const auto centre_line = json.find("centre_line");
+    const bool has_points = left_points || right_points;
+    Lane& lane = record.answer.lane;
+    if (json.find("left") || json.find("right") || !(has_points || centre_line || may_be_absent)) {
+        lane = read_lane(json);
+    } else if (const auto closed = json.find("closed")) {
+        lane.closed = closed->boolean();
+    }
+    if (!lane.left.empty() || !lane.right.empty()) return;
+    if (has_points) {
+        record.points = {read_points(json.member("left_points")), read_points(json.member("right_points"))};
+    } else if (centre_line) {
+        record.centre_line = read_points(*centre_line);
+    }
+}
+
+void read_answer(const JsonNode& json, bool may_be_without_shape, LaneRecord& record) {
     LaneAnswer& answer = record.answer;
     if (json.member("status").string() == kStoppedByTime) {
         answer.status = LaneStatus::stopped;
@@ -70,16 +98,31 @@ LaneRecord read_record(const JsonNode& json) {
         answer.status = json.member("status").one_of(kStatuses);
     }
     if (const auto reason = json.find("stopped_by")) answer.stopped_by = reason->one_of(kStopReasons);
-    answer.lane = read_lane(json);
-    if (answer.status != LaneStatus::found) {
+    const bool found = answer.status == LaneStatus::found;
+    read_shape(json, !found && may_be_without_shape, record);
+    if (!found) {
         const std::string reason = "must be empty where status is " + std::string(to_string(answer.status));
         if (!answer.lane.left.empty()) json.member("left").fail(reason);
         if (!answer.lane.right.empty()) json.member("right").fail(reason);
+        if (record.points && !record.points->left.empty()) json.member("left_points").fail(reason);
+        if (record.points && !record.points->right.empty()) json.member("right_points").fail(reason);
+        if (!record.centre_line.empty()) json.member("centre_line").fail(reason);
+        record.points.reset();
     }
-    record.latency_ms = json.member("latency_ms").non_negative_number();
     if (const auto message = json.find("message")) answer.message = message->string();
     if (const auto confidence = json.find("confidence")) answer.confidence = confidence->number_in(0.0, 1.0);
     if (const auto trusted = json.find("trusted_m")) answer.trusted_m = trusted->non_negative_number();
+}
+
+LaneRecord read_record(const JsonNode& json) {
+    LaneRecord record;
+    record.line = json.line();
+    record.scene = json.member("scene").string();
+    record.method = json.member("method").string();
+    read_answer(json, false, record);
+    record.latency_ms = json.member("latency_ms").non_negative_number();
+    if (const auto own = json.find("self_timed_ms")) record.self_timed_ms = own->non_negative_number();
+    LaneAnswer& answer = record.answer;
     if (json.find("objective")) answer.optimality = read_optimality(json);
     if (json.find("iterations")) answer.enumeration = read_enumeration(json);
     if (const auto nearest = json.find("nearest")) {
@@ -87,6 +130,23 @@ LaneRecord read_record(const JsonNode& json) {
     }
     if (const auto checked = json.find("checked")) record.checked = checked->boolean();
     return record;
+}
+
+LaneRecord read_foreign(const JsonNode& json) {
+    LaneRecord record;
+    record.line = json.line();
+    record.scene = json.member("scene").string();
+    read_answer(json, true, record);
+    if (const auto own = json.find("latency_ms")) record.self_timed_ms = own->non_negative_number();
+    return record;
+}
+
+ordered_json to_json(const std::vector<Point>& points, const std::string& key) {
+    ordered_json json = ordered_json::array();
+    for (const Point& point : points) {
+        json.push_back(ordered_json::array({require_finite(point.x(), key), require_finite(point.y(), key)}));
+    }
+    return json;
 }
 
 ordered_json to_json(const LaneRecord& record, const std::string& key) {
@@ -98,6 +158,13 @@ ordered_json to_json(const LaneRecord& record, const std::string& key) {
                       {"right", answer.lane.right},
                       {"closed", answer.lane.closed},
                       {"latency_ms", require_finite(record.latency_ms, key + "latency_ms")}};
+    if (record.points) {
+        json["left_points"] = to_json(record.points->left, key + "left_points");
+        json["right_points"] = to_json(record.points->right, key + "right_points");
+    }
+    if (!record.centre_line.empty()) json["centre_line"] = to_json(record.centre_line, key + "centre_line");
+    if (record.self_timed_ms)
+        json["self_timed_ms"] = require_finite(*record.self_timed_ms, key + "self_timed_ms");
     if (answer.stopped_by) json["stopped_by"] = to_string(*answer.stopped_by);
     if (!answer.message.empty()) json["message"] = answer.message;
     if (answer.confidence) json["confidence"] = require_finite(*answer.confidence, key + "confidence");
@@ -137,6 +204,28 @@ std::vector<LaneRecord> read_lanes(const std::filesystem::path& file) {
         if (!is_new) {
             json.member("scene").fail("method \"" + record.method + "\" answers scene \"" + record.scene +
                                       "\" twice, first on line " + std::to_string(first->second));
+        }
+        records.push_back(std::move(record));
+    });
+    return records;
+}
+
+LaneRecord read_foreign_lane(std::string_view line) {
+    LaneRecord record;
+    with_json_line(line, "", 0, [&](const JsonNode& json) { record = read_foreign(json); });
+    return record;
+}
+
+std::vector<LaneRecord> read_foreign_lanes(const std::filesystem::path& file) {
+    std::vector<LaneRecord> records;
+    std::map<std::string, std::size_t> line_of;
+    for_each_json_line(file, [&](const JsonNode& json) {
+        LaneRecord record = read_foreign(json);
+        (void)json.member("latency_ms");
+        const auto [first, is_new] = line_of.try_emplace(record.scene, json.line());
+        if (!is_new) {
+            json.member("scene").fail("scene \"" + record.scene + "\" is answered twice, first on line " +
+                                      std::to_string(first->second));
         }
         records.push_back(std::move(record));
     });

@@ -72,7 +72,7 @@ void append_files_of(const fs::path& folder, std::span<const std::string_view> e
 /// The files that the text of an option may mean: the one of that name, the one behind the kind of a track or
 /// behind NAME=, those of a folder of tracks or of results, the companion of scenes.
 std::vector<fs::path> files_meant(const std::string& text) {
-    constexpr std::array<std::string_view, 1> kTracks{".yaml"};
+    constexpr std::array<std::string_view, 3> kTracks{".yaml", ".csv", ".json"};
     constexpr std::array<std::string_view, 3> kResults{".json", ".jsonl", ".txt"};
     std::vector<fs::path> files{text};
     if (text.ends_with(".scenes.jsonl")) files.push_back(track_boundaries_path(text));
@@ -80,7 +80,11 @@ std::vector<fs::path> files_meant(const std::string& text) {
         const std::size_t at = text.find(separator);
         if (at != std::string::npos) files.emplace_back(text.substr(at + 1));
     }
-    if (text.starts_with("fsd:")) append_files_of(text.substr(4, text.find(':', 4) - 4), kTracks, files);
+    const std::size_t kind_end = text.find(':');
+    if (kind_end != std::string::npos) {
+        const std::size_t from = kind_end + 1;
+        append_files_of(text.substr(from, text.find(':', from) - from), kTracks, files);
+    }
     append_files_of(text, kResults, files);
     return files;
 }
@@ -138,7 +142,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
             "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
             "0.5 m and 8 degrees, 0.1, --persist. Where one of these is given beside it, it holds in all "
             "of them, and their names say so, such as car+no_persist")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->capture_default_str();
     command.add_option_function<double>(
         "--noise", [&options](double sigma_m) { options.noise_sigma_m = sigma_m; },
         "standard deviation of the seen positions [m]");
@@ -225,8 +230,9 @@ void refuse_lost_inputs(CLI::App& command) {
         std::vector<fs::path> written{output->results().front()};
         if (command.get_name() == "scenes") written.push_back(track_boundaries_path(written.front()));
         for (const CLI::Option* input : options) {
-            if (input == output || names_no_file(*input)) continue;
+            if (input == output) continue;
             for (const std::string& text : input->results()) {
+                if (names_no_file(*input) && !text.starts_with("lanes:")) continue;
                 for (const fs::path& file : files_meant(text))
                     refuse_to_replace(*output, written, *input, file);
             }

@@ -1,10 +1,12 @@
-"""report RESULTS PAGE PUBLISHED PICTURES: RESULTS is the directory of a comparison, PUBLISHED a JSON object with the
-papers' figures, PICTURES a folder for the main figures as PNG or empty. Anything wrong with the input is one line on
+"""report RESULTS PAGE PUBLISHED PICTURES TRACKS: RESULTS is the directory of a comparison, PUBLISHED a JSON object with
+the papers' figures and the named conditions, PICTURES a folder for the main figures as PNG or empty, TRACKS those
+whose laps the viewer shall have, separated by commas, or empty. Anything wrong with the input is one line on
 stderr and exit code 2. The caller gives places of its own and puts the files where they are wanted when all is whole."""
 
 import json
 import os
 import sys
+import warnings
 
 from .load import InputError, load_results
 from .page import render
@@ -17,12 +19,13 @@ def write(path, content):
 
 
 def main(arguments):
-    folder, page, published, picture_folder = arguments
+    folder, page, published, picture_folder, tracks = arguments
+    warnings.simplefilter("ignore")  # of figures too small for their labels; nobody can do anything about them
     try:
         results = load_results(folder)
         if picture_folder:
             os.makedirs(picture_folder, exist_ok=True)
-        write(page, render(results, json.loads(published)).encode("utf-8"))
+        write(page, render(results, json.loads(published), tuple(filter(None, tracks.split(",")))).encode("utf-8"))
         if picture_folder:
             for name, content in pictures(results):
                 write(os.path.join(picture_folder, name), content)

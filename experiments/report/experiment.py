@@ -2,7 +2,7 @@
 
     Title
 
-    Claim: what is to be shown.
+    Claim: what is to be shown; of an experiment of a paper, what the paper claims.
     Protocol: how it is measured.
     Source: the paper and its figure, or this project.
     Published: what the paper prints, for those that reproduce one.
@@ -34,15 +34,16 @@ def _block(module, content):
     title, parts = _described(module)
     details = "".join(f"<div><dt>{name}</dt><dd>{_prose(text)}</dd></div>" for name, text in parts.items()
                       if name != "Claim")
+    claim = ("The paper claims: " if re.match(r"(RLD|CLC) (Fig|Table)", title) else "") + _prose(parts["Claim"])
     wide = " wide" if 'class="table"' in content or 'class="figures"' in content else ""
-    return (f'<article class="experiment{wide}"><h3>{escape(title)}</h3><p class="claim">{_prose(parts["Claim"])}</p>'
+    return (f'<article class="experiment{wide}"><h3>{escape(title)}</h3><p class="claim">{claim}</p>'
             f'{content}<details><summary>Protocol and source</summary><dl class="about">{details}</dl></details>'
             "</article>")
 
 
-def blocks(modules, results, published):
-    """The experiments in order, then what the results do not hold and which command makes it."""
-    present, absent = [], []
+def blocks(modules, results, published, absent):
+    """The experiments in order. What the results do not hold is added to `absent`, with the command that makes it."""
+    present = []
     for module in modules:
         try:
             present.append(_block(module, module.html(results, published)))
@@ -50,5 +51,4 @@ def blocks(modules, results, published):
             title, parts = _described(module)
             absent.append(f"<li><b>{escape(title)}</b>: {_prose(str(missing))} "
                           f"<code>{escape(parts['Command'])}</code></li>")
-    missing = (f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else "")
-    return f'<div class="experiments">{"".join(present)}</div>{missing}'
+    return f'<div class="experiments">{"".join(present)}</div>' if present else ""

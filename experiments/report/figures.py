@@ -5,10 +5,12 @@ from html import escape
 from .theme import svg_of
 
 
-def drawn(name, caption, figure, title=""):
-    """A figure with its caption; `title` where it does not stand alone below an experiment's."""
+def drawn(name, caption, figure, title="", condition=""):
+    """A figure with its caption; `title` where it does not stand alone below an experiment's, `condition` where it is
+    of one of several."""
     head = f"<h4>{escape(title)}</h4>" if title else ""
-    return (f'<figure id="{name}">{head}<div class="plot" role="img" aria-label="{escape(title or name)}. '
+    of_condition = f' data-condition="{escape(condition)}"' if condition else ""
+    return (f'<figure id="{name}"{of_condition}>{head}<div class="plot" role="img" aria-label="{escape(title or name)}. '
             f'{escape(caption)}">{svg_of(figure, name)}</div><figcaption>{escape(caption)}</figcaption></figure>')
 
 
@@ -20,6 +22,11 @@ def group(figures):
 def percent_label(rate):
     """A rate as axes and tables show it: 16.7, not 16.66; 30, not 30.0."""
     return f"{100.0 * rate:.1f}".rstrip("0").rstrip(".")
+
+
+def in_condition(results):
+    """What a caption adds where a figure takes one of several conditions."""
+    return f" Condition {results.main_condition} alone." if len(results.conditions) > 1 else ""
 
 
 def variants(samples):

@@ -1,98 +1,156 @@
-"""Scenes as small drawings, the car below looking up: the best, the median and the worst of each method."""
+"""The error gallery: the worst scenes of each method in each condition as small drawings, the car below looking up."""
 
 from html import escape
 
-from .figures import percent_label
-from .load import CATEGORIES
-from .scenes import gallery_rate
+import numpy as np
+
+from .load import CATEGORIES, CAUSES
+from .scenes import WORST, WORST_APART_M, WORST_OF_A_TRACK, in_car_frame
 from .theme import METHOD_COLOURS
 
 CATEGORY_WORDS = {"ground_truth": "ground truth", "near_ground_truth": "near ground truth", "too_short": "too short",
                   "diverging_from_20": "diverges after 20 m", "diverging_below_20": "diverges within 20 m",
                   "none": "no lane"}
+CAUSE_WORDS = list(CAUSES.values())
+
+_ASPECT = 1.2  # width over height of a drawing
 
 
-_ASPECT = 1.35  # width over height of a drawing
+def _points(flat):
+    """Car frame in centimetres to drawing: x ahead becomes up, y to the left stays left; metres."""
+    return [(-flat[i + 1] / 100, -flat[i] / 100) for i in range(0, len(flat), 2)]
 
 
-def _points(frame, indices):
-    """Car frame to drawing: x ahead becomes up, y to the left stays left; metres."""
-    cones = frame["c"]
-    return [(-cones[2 * i + 1] / 100, -cones[2 * i] / 100) for i in indices]
+def _number(value):
+    """As short as SVG takes it: -.5, 3, 12.1."""
+    text = f"{value:.1f}".removesuffix(".0")
+    return "0" if text in ("-0", "0") else text.replace("0.", ".", 1) if abs(value) < 0.95 else text
 
 
 def _path(points, closed=False):
-    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points) + ("Z" if closed else "") if points else ""
+    if not points:
+        return ""
+    return "M" + "L".join(f"{_number(x)} {_number(y)}" for x, y in points) + ("Z" if closed else "")
 
 
-def _band(frame):
-    left, right, closed = frame["g"]
-    left, right = _points(frame, left), _points(frame, right)
-    if closed:
-        return _path(left, True) + _path(right[::-1], True)
-    return _path(left + right[::-1], True)
+def _side(cones, side):
+    return _points(side["p"]) if isinstance(side, dict) else [cones[i] for i in side]
 
 
-def drawing(frame, samples, methods, subject):
-    """All lanes of a scene, that of `subject` above the others."""
-    shown = set(frame["g"][0] + frame["g"][1])
-    for answer in frame["a"]:
-        shown.update(answer[0] + answer[1] if answer else ())
-    xs, ys = zip(*_points(frame, sorted(shown)), (0.0, 0.0))
-    middle = 0.5 * (min(xs) + max(xs))
-    half = 0.5 * max(max(xs) - min(xs), _ASPECT * (max(ys) - min(ys)), 12.0) + 3.0  # round what matters: the lanes
-    height = 2.0 * half / _ASPECT
-    top = 0.5 * (min(ys) + max(ys)) - 0.5 * height
-    parts = [f'<path class="band" fill-rule="evenodd" d="{_band(frame)}"/>']
-    split = len(frame["c"]) // 2 - frame["f"]
-    radius = half / 70
-    for x, y in _points(frame, range(split, len(frame["c"]) // 2)):
-        r = radius * 1.1
-        parts.append(f'<path class="stray" d="M{x - r:.2f} {y - r:.2f}l{2 * r:.2f} {2 * r:.2f}m0 {-2 * r:.2f}'
-                     f'l{-2 * r:.2f} {2 * r:.2f}"/>')
-    order = [i for i in range(len(samples)) if samples[i].label != subject]
-    order += [i for i in range(len(samples)) if samples[i].label == subject]
-    for i in order:
-        answer = frame["a"][i]
-        if not answer:
-            continue
-        path = "".join(_path(_points(frame, side), answer[2]) for side in answer[:2])
-        if path:
-            kind = "lane" if samples[i].label == subject else "lane other"
-            colour = methods.index(samples[i].method) % METHOD_COLOURS
-            parts.append(f'<path class="{kind}" style="stroke:var(--m{colour})" d="{path}"/>')
-    for x, y in _points(frame, range(split)):
-        parts.append(f'<circle class="cone" cx="{x:.2f}" cy="{y:.2f}" r="{radius:.2f}"/>')
-    car = half / 26
-    parts.append(f'<path class="car" d="M0 {-car:.2f}L{0.7 * car:.2f} {car:.2f}H{-0.7 * car:.2f}Z"/>')
-    return (f'<svg viewBox="{middle - half:.1f} {top:.1f} {2 * half:.1f} {height:.1f}" aria-hidden="true">'
-            f'{"".join(parts)}</svg>')
+class _View:
+    """What a drawing shows: round the truth and the lane, for these matter."""
+
+    def __init__(self, points):
+        xs, ys = zip(*points, (0.0, 0.0))
+        self.half = 0.5 * max(max(xs) - min(xs), _ASPECT * (max(ys) - min(ys)), 12.0) + 2.0
+        self.middle = 0.5 * (min(xs) + max(xs))
+        self.height = 2.0 * self.half / _ASPECT
+        self.top = 0.5 * (min(ys) + max(ys)) - 0.5 * self.height
+
+    def box(self):
+        return (f"{_number(self.middle - self.half)} {_number(self.top)} {_number(2 * self.half)} "
+                f"{_number(self.height)}")
+
+    def _has(self, point):
+        return abs(point[0] - self.middle) < self.half and self.top < point[1] < self.top + self.height
+
+    def inside(self, points):
+        return [point for point in points if self._has(point)]
+
+    def pieces(self, line):
+        """The stretches of a line that are inside."""
+        found = [[]]
+        for point in line:
+            if self._has(point):
+                found[-1].append(point)
+            elif found[-1]:
+                found.append([])
+        return [piece for piece in found if len(piece) > 1]
 
 
-def _card(data, samples, methods, label, word, scene):
-    frame = data.frames[scene]
-    slot = next(i for i, sample in enumerate(samples) if sample.label == label)
+def _driven(results, frame, track):
+    """The path that was driven, from above as the car looks; empty where boundaries are the truth."""
+    driven = results.tracks.get(track, {}).get("driven", [])
+    if not driven:
+        return []
+    x, y, yaw = frame["p"]
+    ahead = in_car_frame((x / 100, y / 100, yaw / 1000), np.array(driven, dtype=float).reshape(-1, 2))
+    return [(-left, -along) for along, left in ahead]
+
+
+def drawing(results, frame, slot, track):
+    """One scene with the lane of one method."""
+    cones = _points(frame["c"])
+    split = len(cones) - frame["f"]
+    left, right, closed = ([cones[i] for i in frame["g"][0]], [cones[i] for i in frame["g"][1]], frame["g"][2])
     answer = frame["a"][slot]
-    what = (f"IoU {100 * answer[4]:.1f} %, {CATEGORY_WORDS[CATEGORIES[answer[5]]]}, {answer[3]:.2f} ms" if answer
-            else "no answer stored")
-    return (f'<figure class="scene"><div role="img" aria-label="{escape(f"{word} scene of {label}: {what}")}">'
-            f"{drawing(frame, samples, methods, label)}</div>"
-            f"<figcaption><b>{word}</b> {escape(what)}<br>"
+    sides = [_side(cones, side) for side in answer[:2]] if answer else []
+    view = _View(left + right + [point for side in sides for point in side] + ([] if left else cones[:split]))
+    band = _path(left, True) + _path(right[::-1], True) if closed else _path(left + right[::-1], True)
+    radius = view.half / 60
+    parts = [f'<path class="band" d="{band}"/>'] if band else []
+    driven = "".join(map(_path, view.pieces(_driven(results, frame, track))))
+    if driven:
+        parts.append(f'<path class="driven" d="{driven}"/>')
+    cross = _number(2 * radius)
+    strays = "".join(f"M{_number(x - radius)} {_number(y - radius)}l{cross} {cross}m0-{cross}l-{cross} {cross}"
+                     for x, y in view.inside(cones[split:]))
+    if strays:
+        parts.append(f'<path class="stray" d="{strays}"/>')
+    lane = "".join(_path(side, answer[2]) for side in sides)
+    if lane:
+        colour = results.methods.index(results.samples[slot].method) % METHOD_COLOURS
+        parts.append(f'<path class="lane" style="stroke:var(--m{colour})" d="{lane}"/>')
+    dots = "".join(f"M{_number(x)} {_number(y)}h0" for x, y in view.inside(cones[:split]))
+    if dots:
+        parts.append(f'<path class="cone" d="{dots}"/>')
+    for x, y in view.inside(_points(frame.get("m", []))):
+        parts.append(f'<circle class="missed" cx="{_number(x)}" cy="{_number(y)}" r="{radius:.2f}"/>')
+    car = view.half / 22
+    parts.append(f'<path class="car" d="M0-{car:.1f}L{0.7 * car:.1f} {car:.1f}H-{0.7 * car:.1f}Z"/>')
+    return f'<svg viewBox="{view.box()}" aria-hidden="true">{"".join(parts)}</svg>'
+
+
+def _what(answer):
+    if not answer:
+        return "no answer stored"
+    iou, category, usable, cause = answer[4], answer[5], answer[7], answer[8]
+    words = (CAUSE_WORDS[cause] if cause is not None else
+             "usable" if usable else CATEGORY_WORDS[CATEGORIES[category]])
+    return f"{words}, IoU {'unknown' if iou is None else f'{100 * iou:.1f} %'}"
+
+
+def _card(results, data, slot, track_of, scene):
+    frame = data.frames[scene]
+    what = _what(frame["a"][slot])
+    return (f'<figure class="scene"><div role="img" aria-label="{escape(what)}">'
+            f"{drawing(results, frame, slot, track_of[scene])}</div><figcaption>{escape(what)}<br>"
             f'<button type="button" class="link" data-open="{escape(scene)}">{escape(scene)}</button>'
-            f"</figcaption></figure>")
+            "</figcaption></figure>")
 
 
 def html(results, data):
     if data.missing:
         return f'<p class="left-out"><b>Gallery.</b> Left out: {escape(data.missing)}</p>'
+    track_of = {scene: lap["track"] for lap in data.laps for scene in lap["scenes"]}
     blocks = []
-    for sample in results.samples:
-        cards = "".join(_card(data, results.samples, results.methods, sample.label, word, scene)
-                        for word, scene in data.picks.get(sample.label, ()))
+    for slot, sample in enumerate(results.samples):
         colour = results.methods.index(sample.method) % METHOD_COLOURS
-        blocks.append(f'<h4><span class="swatch" style="background:var(--m{colour})"></span>{escape(sample.label)}</h4>'
-                      f'<div class="scenes">{cards}</div>')
-    rate = percent_label(gallery_rate(results))
-    return (f"<p>Best, median and worst scene of each method by IoU, at {rate} % false positives. The band is the "
-            "ground truth, the strong lines are the method's lane, the faint ones the other methods'; dots are cones, "
-            "crosses false positives. A scene's name opens it in the viewer.</p>" + "".join(blocks))
+        for condition in results.conditions:
+            scenes = data.worst.get((sample.label, condition), ())
+            if not scenes:
+                continue
+            usable = sum(1 for scene in scenes if (data.frames[scene]["a"][slot] or [None] * 9)[7] == 1)
+            title = f"{sample.label}, {condition}" if condition else sample.label
+            tail = f"{len(scenes)} scenes, {usable} of them usable" if usable else f"{len(scenes)} scenes"
+            cards = "".join(_card(results, data, slot, track_of, scene) for scene in scenes)
+            blocks.append(f'<details class="worst" open data-method="{escape(sample.label)}" '
+                          f'data-condition="{escape(condition)}"><summary>'
+                          f'<span class="swatch" style="background:var(--m{colour})"></span><b>{escape(title)}</b> '
+                          f'<small>{tail}</small></summary><div class="scenes">{cards}</div></details>')
+    return (f"<p>The {WORST} worst scenes of each method in each condition, over all rates and ranges: those whose "
+            "lane is not usable come first, then the lowest IoU. To show different things, at most "
+            f"{WORST_OF_A_TRACK} are of one track, and these at least {WORST_APART_M:g} m apart. The band is the "
+            "ground truth, a dashed line the path that was driven, where that is the truth; lines are the method's "
+            "lane, dots cones, circles cones that were missed, crosses false positives. A scene's name opens it in "
+            "the viewer, with all methods.</p>" + "".join(blocks))

@@ -7,6 +7,11 @@ from . import measures
 REAL_TIME_BUDGET_MS = 50.0
 
 
+def usable_values(part):
+    part = part.known("usable")
+    return dict(zip(part.scene, part.usable)), dict(zip(part.scene, part.track))
+
+
 def accurate_values(part):
     part = part.known("accurate")
     return dict(zip(part.scene, part.accurate)), dict(zip(part.scene, part.track))
@@ -14,6 +19,11 @@ def accurate_values(part):
 
 def success_values(part):
     return dict(zip(part.scene, part.success)), dict(zip(part.scene, part.track))
+
+
+def headline_values(samples):
+    """Usable; success in results of earlier versions, which do not have it."""
+    return usable_values if any(sample.has("usable") for sample in samples) else success_values
 
 
 def difference_interval(first, second, values_of):
@@ -26,12 +36,13 @@ def difference_interval(first, second, values_of):
     return measures.mean_interval(differences, np.array([tracks[scene] for scene in scenes], dtype=object))
 
 
-MEASURES = (("accurate", "accurate", accurate_values), ("success", "successful", success_values))
+MEASURES = (("usable", "usable", usable_values), ("accurate", "accurate", accurate_values), ("success", "successful", success_values))
 
 
 def leaders_of(parts, values_of):
     """(mean, samples): the highest mean, and all that the tracks do not tell from it. None without values."""
-    means = [(float(np.mean(list(values_of(part)[0].values()))), part) for part in parts if values_of(part)[0]]
+    values = [(values_of(part)[0], part) for part in parts]
+    means = [(float(np.mean(list(known.values()))), part) for known, part in values if known]
     if not means:
         return None
     best_mean, best = max(means, key=lambda pair: pair[0])

@@ -1,9 +1,11 @@
 """Reads what `conelane compare` stored, and refuses what does not fit together."""
 
+import dataclasses
 import json
 import math
 import os
 import re
+from array import array
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,15 +15,25 @@ import numpy as np
 BESIDE = ("sweep", "topologies", "candidates")
 SUCCESSES = ("ground_truth", "near_ground_truth", "too_short", "diverging_from_20")
 CATEGORIES = SUCCESSES + ("diverging_below_20", "none")
+PAPER_CONDITION = "paper"
 
-# Columns of Sample that hold numbers, by their keys in scores.jsonl; NaN where a line has no such key.
+# Why a lane is not usable, as the scores name it.
+CAUSES = {"wrong_start": "wrong start", "wrong_leg": "wrong leg", "wrong_side": "wrong side",
+          "false_cone": "false cone taken", "cone_skipped": "cone skipped", "gap_not_bridged": "gap not bridged",
+          "stopped_early": "stopped early", "leaves_path": "leaves the path", "nothing_found": "nothing found",
+          "error": "error"}
+
+# Columns of Sample that hold texts and numbers, by their keys in scores.jsonl; "" and NaN where a line has no such key.
+_TEXTS = ("scene", "track", "category", "status", "condition", "cause")
+_OPTIONAL_TEXTS = ("condition", "cause")
 _NUMBERS = {
-    "rate": "false_positive_rate", "range": "range", "iou": "iou", "lane_length": "lane_length_m",
-    "ground_truth_length": "ground_truth_length_m", "divergence": "divergence_m", "accurate": "accurate",
+    "rate": "false_positive_rate", "range": "range", "usable": "usable", "iou": "iou", "lane_length": "lane_length_m",
+    "ground_truth_length": "ground_truth_length_m", "divergence": "divergence_m", "lateral": "lateral_median_m",
+    "lateral_most": "lateral_max_m", "heading": "heading_error_rad", "steady": "steady", "accurate": "accurate",
     "solved": "solved", "objective": "objective", "optimal": "optimal", "iterations": "iterations",
     "complete": "complete", "checked": "checked", "best_candidate_iou": "best_candidate_iou",
-    "first_near_iteration": "first_near_iteration", "cones": "cones", "latency": "latency_ms"}
-_REQUIRED = ("rate", "range", "iou", "lane_length", "ground_truth_length", "cones", "latency")
+    "first_near_iteration": "first_near_iteration", "trained_on": "trained_on", "cones": "cones", "latency": "latency_ms"}
+_REQUIRED = ("rate", "range", "lane_length", "ground_truth_length", "cones", "latency")
 
 
 class InputError(Exception):
@@ -35,14 +47,11 @@ def label_of(method, nearest):
 
 @dataclass(frozen=True)
 class Sample:
-    """The scores of one method on one cone-set size: a row per scene, columns as arrays of one length."""
+    """The scores of one method on one cone-set size: a row per scene, columns as arrays of one length, of texts (see
+    _TEXTS) and of numbers (see _NUMBERS)."""
 
     method: str
     nearest: int | None
-    scene: np.ndarray
-    track: np.ndarray
-    category: np.ndarray
-    status: np.ndarray
     values: dict
 
     def __getattr__(self, name):
@@ -67,21 +76,28 @@ class Sample:
     def success(self):
         return np.isin(self.category, SUCCESSES).astype(float)
 
-    def where(self, mask):
-        return Sample(self.method, self.nearest, self.scene[mask], self.track[mask], self.category[mask],
-                      self.status[mask], {key: column[mask] for key, column in self.values.items()})
+    @property
+    def mean_iou(self):
+        """None where no scene has one: the truth is a driven path, or the answer a centre line alone."""
+        return float(np.nanmean(self.iou)) if self.has("iou") else None
 
-    def at(self, rate=None, range_m=None):
+    def where(self, mask):
+        return Sample(self.method, self.nearest, {key: column[mask] for key, column in self.values.items()})
+
+    def at(self, rate=None, range_m=None, condition=None):
         mask = np.ones(len(self), bool)
         if rate is not None:
             mask &= self.rate == rate
         if range_m is not None:
             mask &= self.range == range_m
-        return self.where(mask)
+        if condition is not None:
+            mask &= self.condition == condition
+        return self if mask.all() else self.where(mask)
 
     def known(self, name):
         """The rows that have a value in this column."""
-        return self.where(~np.isnan(self.values[name]))
+        mask = ~np.isnan(self.values[name])
+        return self if mask.all() else self.where(mask)
 
     def has(self, name):
         return bool(np.any(~np.isnan(self.values[name])))
@@ -96,11 +112,39 @@ class Results:
     beside: dict  # of BESIDE: folder -> list of Sample, by method and then size; empty where there is none
     tracks: dict  # name -> {"left", "right", "closed"}
     methods: list = field(default_factory=list)  # names, in order
+    runs_beside: list = field(default_factory=list)  # run.json of the comparisons beside
 
     @property
     def sweep(self):
         """The samples of the sweep over cone-set sizes."""
         return [sample for sample in self.beside["sweep"] if sample.nearest is not None]
+
+    @property
+    def conditions(self):
+        """In the order of the rows; "" where none was named."""
+        return list(dict.fromkeys(row.get("condition", "") for row in self.rows))
+
+    @property
+    def main_condition(self):
+        """The one that the papers' figures take."""
+        return PAPER_CONDITION if PAPER_CONDITION in self.conditions else self.conditions[0]
+
+    def under(self, condition):
+        """What was measured in this condition alone; of a comparison beside that names none, all."""
+        def parts(samples):
+            named = any(np.any(sample.condition != "") for sample in samples)
+            wanted = condition if named else ""
+            return [part for part in (sample.at(condition=wanted) for sample in samples) if len(part)]
+
+        return dataclasses.replace(
+            self, rows=[row for row in self.rows if row.get("condition", "") == condition],
+            samples=parts(self.samples), beside={folder: parts(samples) for folder, samples in self.beside.items()})
+
+    def objective_of(self, sample):
+        """What stands for the objective that a method minimises: methods of the same parameters have the same."""
+        known = (method for run in [self.run, *self.runs_beside] for method in run.get("methods", ())
+                 if isinstance(method, dict) and method.get("name") == sample.method)
+        return json.dumps(next(known, {}).get("rld_parameters"), sort_keys=True)
 
     @property
     def rates(self):
@@ -169,58 +213,95 @@ def require(path, number, value, key, kinds):
     return found
 
 
+class _Columns:
+    """The columns of a Sample while they are read. Texts are shared: the same scenes come with every method."""
+
+    def __init__(self):
+        self.texts = [[] for _ in _TEXTS]
+        self.numbers = [array("d") for _ in _NUMBERS]
+
+    def add(self, path, number, line, shared):
+        for column, key in zip(self.texts, _TEXTS):
+            value = line.get(key, "") if key in _OPTIONAL_TEXTS else require(path, number, line, key, (str,))
+            if not isinstance(value, str):
+                require(path, number, line, key, (str,))
+            column.append(shared.setdefault(value, value))
+        for column, (name, key) in zip(self.numbers, _NUMBERS.items()):
+            value = line.get(key)
+            if value is None and key not in line and name not in _REQUIRED:
+                column.append(math.nan)
+            else:
+                column.append(value if type(value) is float and math.isfinite(value) else
+                              require(path, number, line, key, (int, float, bool)))
+
+    def sample(self, method, nearest):
+        columns = {name: np.array(column, dtype=object) for name, column in zip(_TEXTS, self.texts)}
+        columns |= {name: np.array(column) for name, column in zip(_NUMBERS, self.numbers)}
+        return Sample(method, nearest, columns)
+
+
 def _read_samples(path):
-    texts = {}  # (method, nearest) -> rows
+    read, shared = {}, {}  # (method, nearest) -> columns; each text once
     for number, line in read_lines(path):
         key = (require(path, number, line, "method", (str,)), line.get("nearest"))
         if key[1] is not None:
             require(path, number, line, "nearest", (int,))
-        category = require(path, number, line, "category", (str,))
-        if category not in CATEGORIES:
-            raise InputError(f"{path}:{number}: category: there is no '{category}'")
-        row = [require(path, number, line, key, (str,)) for key in ("scene", "track", "category", "status")]
-        for name, source in _NUMBERS.items():
-            if source not in line and name not in _REQUIRED:
-                row.append(math.nan)
-            else:
-                row.append(float(require(path, number, line, source, (int, float, bool))))
-        texts.setdefault(key, []).append(row)
-    samples = []
-    for (method, nearest), rows in texts.items():
-        columns = list(zip(*rows))
-        samples.append(Sample(method, nearest, *(np.array(column, dtype=object) for column in columns[:4]),
-                              {name: np.array(column) for name, column in zip(_NUMBERS, columns[4:])}))
-    return samples
+        if key not in read:
+            read[key] = _Columns()
+        read[key].add(path, number, line, shared)
+        if line["category"] not in CATEGORIES:
+            raise InputError(f"{path}:{number}: category: there is no '{line['category']}'")
+        if line.get("cause", "error") not in CAUSES:
+            raise InputError(f"{path}:{number}: cause: there is no '{line['cause']}'")
+    return [columns.sample(method, nearest) for (method, nearest), columns in read.items()]
+
+
+_SHARES = ("mean_iou", "usable_share", "unsteady_share")  # absent where no scene has the measure
+_KNOWN_IF_ANY = ("lateral_median_m", "lateral_p95_m", "heading_median_rad", "heading_p95_rad")
 
 
 def _read_rows(path):
     rows = []
     for number, row in read_lines(path):
         for key, kinds in (("method", (str,)), ("false_positive_rate", (int, float)), ("range", (int, float)),
-                           ("scenes", (int,)), ("success_share", (int, float)), ("mean_iou", (int, float)),
-                           ("share", (dict,)), ("latency_ms", (dict,))):
+                           ("scenes", (int,)), ("success_share", (int, float)), ("share", (dict,)),
+                           ("latency_ms", (dict,))):
             require(path, number, row, key, kinds)
         for key in ("median", "mean", "p95", "p99", "max", "shifted_geometric_mean"):
             require(path, number, row["latency_ms"], key, (int, float))
+        for key in _SHARES + _KNOWN_IF_ANY:
+            if key in row:
+                require(path, number, row, key, (int, float))
+        if "condition" in row:
+            require(path, number, row, "condition", (str,))
         rows.append(row)
     if not rows:
         raise InputError(f"{path}: has no line")
     return rows
 
 
+def row_name(row):
+    """How a row of results.jsonl is called in an error."""
+    condition = f" in condition {row['condition']}" if row.get("condition") else ""
+    return (f"{label_of(row['method'], row.get('nearest'))} at rate {row['false_positive_rate']}, range "
+            f"{row['range']}{condition}")
+
+
 def _check_same_run(path, rows, samples):
     """The summaries must be those of the scores, else page and figures would tell of different runs."""
     by_label = {sample.label: sample for sample in samples}
     for row in rows:
-        label = label_of(row["method"], row.get("nearest"))
-        name = f"{label} at rate {row['false_positive_rate']}, range {row['range']}"
-        sample = by_label.get(label)
-        part = sample.at(row["false_positive_rate"], row["range"]) if sample else ()
+        sample = by_label.get(label_of(row["method"], row.get("nearest")))
+        part = (sample.at(row["false_positive_rate"], row["range"], row.get("condition", "")) if sample else ())
         if len(part) != row["scenes"]:
-            raise InputError(f"{path}: {len(part)} scores of {name}, results.jsonl has {row['scenes']}")
-        for key, mean in (("success_share", part.success.mean()), ("mean_iou", part.iou.mean())):
-            if abs(mean - row[key]) > 1e-6:
-                raise InputError(f"{path}: {key} of {name} is {mean}, results.jsonl has {row[key]}")
+            raise InputError(f"{path}: {len(part)} scores of {row_name(row)}, results.jsonl has {row['scenes']}")
+        means = [("success_share", part.success.mean()), ("mean_iou", part.mean_iou)]
+        if "usable_share" in row:  # results of earlier versions have none
+            means.append(("usable_share", float(np.nanmean(part.usable)) if part.has("usable") else None))
+        for key, mean in means:
+            stored = row.get(key)
+            if (mean is None) != (stored is None) or (mean is not None and abs(mean - stored) > 1e-6):
+                raise InputError(f"{path}: {key} of {row_name(row)} is {mean}, results.jsonl has {stored}")
 
 
 def _read_beside(path):
@@ -248,4 +329,6 @@ def load_results(directory):
         stored.sort(key=lambda sample: (methods.index(sample.method), sample.nearest or math.inf))
     tracks_file = path("scenes.tracks.json")
     tracks = read_object(tracks_file) if os.path.exists(tracks_file) else {}
-    return Results(directory, run, rows, samples, beside, tracks, methods)
+    runs_beside = [read_object(path(os.path.join(folder, "run.json"))) for folder in BESIDE
+                   if os.path.exists(path(os.path.join(folder, "run.json")))]
+    return Results(directory, run, rows, samples, beside, tracks, methods, runs_beside)

@@ -1,6 +1,8 @@
 """Statistics of samples. Intervals resample tracks, not scenes: scenes of one track are alike, so an interval that
 took them for independent would be far too narrow."""
 
+import functools
+
 import numpy as np
 
 CONFIDENCE = 0.95
@@ -18,12 +20,20 @@ def shifted_geometric_mean(values, shift=GEOMETRIC_MEAN_SHIFT_MS):
     return float(np.exp(np.mean(np.log(np.asarray(values) + shift))) - shift)
 
 
+@functools.lru_cache
 def _track_weights(track_count):
     """How often each track is drawn in each resample: (RESAMPLES, track_count). The same draws every time."""
     drawn = np.random.default_rng(20).integers(0, track_count, size=(RESAMPLES, track_count))
     weights = np.zeros((RESAMPLES, track_count))
     np.add.at(weights, (np.arange(RESAMPLES)[:, None], drawn), 1.0)
+    weights.flags.writeable = False  # it is shared
     return weights
+
+
+def _track_index(tracks):
+    """For each row the number of its track, in the order of names, and how many there are."""
+    number = {name: i for i, name in enumerate(sorted(set(tracks)))}
+    return np.fromiter((number[name] for name in tracks), int, len(tracks)), len(number)
 
 
 def _interval(estimates):
@@ -33,8 +43,7 @@ def _interval(estimates):
 
 def mean_interval(values, tracks):
     """Bootstrap interval of the mean; None where there are not two tracks to resample."""
-    _, index = np.unique(tracks.astype(str), return_inverse=True)
-    track_count = index.max() + 1 if len(index) else 0
+    index, track_count = _track_index(tracks)
     if track_count < 2:
         return None
     weights = _track_weights(track_count)
@@ -45,17 +54,23 @@ def mean_interval(values, tracks):
 
 def median_interval(values, tracks):
     """As mean_interval, of the median."""
-    _, index = np.unique(tracks.astype(str), return_inverse=True)
-    track_count = index.max() + 1 if len(index) else 0
+    index, track_count = _track_index(tracks)
     if track_count < 2:
         return None
     order = np.argsort(values, kind="stable")
-    ordered, index = values[order], index[order]
-    medians = np.empty(RESAMPLES)
-    for i, weights in enumerate(_track_weights(track_count)):
-        running = np.cumsum(weights[index])
-        medians[i] = ordered[np.searchsorted(running, running[-1] / 2.0)]
-    return _interval(medians)
+    ordered, weights = values[order], _track_weights(track_count)
+    # How many rows of each track are among the first ones: a resample's running weight is a weighted sum of these.
+    running = np.zeros((len(ordered), track_count), dtype=np.int32)
+    running[np.arange(len(ordered)), index[order]] = 1
+    np.cumsum(running, axis=0, out=running)
+    half = weights @ running[-1] / 2.0
+    low, high = np.zeros(RESAMPLES, int), np.full(RESAMPLES, len(ordered) - 1)  # the first row that reaches the half
+    while np.any(low < high):
+        middle = (low + high) // 2
+        reached = np.einsum("ij,ij->i", weights, running[middle]) >= half
+        high = np.where(reached, middle, high)
+        low = np.where(reached, low, middle + 1)
+    return _interval(ordered[low])
 
 
 def paired(first, second):

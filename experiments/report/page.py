@@ -4,7 +4,7 @@ import json
 import pkgutil
 from html import escape
 
-from . import experiments, filters, gallery, provenance, verdict
+from . import experiments, filters, gallery, headline, provenance
 from .experiment import blocks
 from .load import CATEGORIES
 from .scenes import read_scenes
@@ -14,6 +14,7 @@ _VIEWER = """
 <div id="viewer" tabindex="0" aria-label="Scene viewer">
 <div class="controls">
 <label>Track <select id="view-track"></select></label>
+<label>Condition <select id="view-condition"></select></label>
 <label>False positives <select id="view-rate"></select></label>
 <label>Range <select id="view-range"></select></label>
 <label>Speed <select id="view-speed"><option value="4">4 / s</option><option value="10" selected>10 / s</option>
@@ -26,12 +27,13 @@ _VIEWER = """
 <button type="button" id="view-play" aria-label="play the lap">▶</button>
 <button type="button" id="view-next" aria-label="next pose">›</button>
 <input type="range" id="view-pose" min="0" value="0" aria-label="pose"><output id="view-name"></output></div>
-<div class="scroll"><table class="answers"><thead><tr><th scope="col">method</th><th scope="col">outcome</th>
+<div class="scroll"><table class="answers"><thead><tr><th scope="col">method</th><th scope="col">usable</th><th scope="col">outcome</th>
 <th scope="col" class="number">IoU %</th><th scope="col">accurate</th><th scope="col" class="number">latency ms</th>
 </tr></thead><tbody id="view-methods"></tbody></table></div>
 <p class="note">Arrow keys: pose and false positives. Space: play. Digits: methods on and off. Click the small map to go
-there; point at a cone for its place. <span class="key band-key"></span> ground truth
-<span class="key cone-key">●</span> cone <span class="key stray-key">×</span> false positive</p>
+there; point at a cone for its place. <span class="key"><span class="band-key"></span> ground truth</span>
+<span class="key">● cone</span> <span class="key">○ cone that was missed</span> <span class="key">× false positive</span>
+<span class="key"><span class="driven-key">┅</span> path that was driven</span></p>
 </div>"""
 
 
@@ -40,44 +42,95 @@ def _embedded(value):
     return json.dumps(value, separators=(",", ":"), allow_nan=False).replace("</", "<\\/").replace("<!--", "<\\u0021--")
 
 
+def _flat(points):
+    return [round(100 * value) for point in points for value in point]
+
+
+def _part_shown(data):
+    """Which laps the viewer has, where it has not all."""
+    if len(data.frames) == data.scene_count:
+        return ""
+    if data.stride > 1:
+        which = f"one pose in {data.stride} of the chosen tracks' {data.whole_laps} laps"
+    else:
+        which = (f"{data.whole_laps} of {data.lap_count} laps whole, those first on which the methods fail most, at "
+                 "the gallery's rate and the shortest range before others")
+    return (f'<p class="note">As the page has room for, {which}, and the gallery\'s scenes: {len(data.frames)} of '
+            f"{data.scene_count} scenes. <code>conelane report --viewer TRACK,…</code> makes a page with the laps of "
+            "other tracks. Tables and figures use all scenes.</p>")
+
+
 def _viewer(results, data):
     if data.missing:
         return f'<p class="left-out"><b>Viewer.</b> Left out: {escape(data.missing)}</p>'
-    tracks = {track: {side: [round(100 * value) for point in boundaries[side] for value in point]
-                      for side in ("left", "right")} | {"closed": bool(boundaries.get("closed", True))}
-              for track, boundaries in results.tracks.items()}
-    part = ("" if len(data.frames) == data.scene_count else
-            f'<p class="note">One pose in {data.stride} of each lap, as the page has room for: {len(data.frames)} of '
-            f"{data.scene_count} scenes. Tables and figures use all.</p>")
+    shown = {lap["track"] for lap in data.laps}
+    tracks = {track: {side: _flat(boundaries.get(side, [])) for side in ("left", "right", "driven")} |
+              {"closed": bool(boundaries.get("closed", True))}
+              for track, boundaries in results.tracks.items() if track in shown}
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
     content = {"methods": methods, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
-               "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES]}
-    return f'{part}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}</script>'
+               "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES],
+               "causes": gallery.CAUSE_WORDS}
+    return (f'{_part_shown(data)}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}'
+            "</script>")
 
 
 def _asset(name):
     return pkgutil.get_data(__package__, name).decode("utf-8")
 
 
-def render(results, published):
-    """The whole page as text; the same results give the same bytes."""
-    data = read_scenes(results)
-    sections = (
-        ("verdict", "Verdict", "Verdict", verdict.html(results)),
-        ("comparison", "Comparison", "Comparison",
-         filters.html(results) + blocks(experiments.COMPARISON, results, published)),
-        ("exactness", "Exactness", "What exactness buys",
-         blocks(experiments.EXACTNESS, results, published)),
-        ("rld", "RLD paper", "Beside the RLD paper", blocks(experiments.RLD_PAPER, results, published)),
-        ("clc", "CLC paper", "Beside the CLC paper", blocks(experiments.CLC_PAPER, results, published)),
-        ("gallery", "Scenes", "Scenes", gallery.html(results, data)),
+def _one_condition(results):
+    """Which of several conditions the figures of a section take."""
+    if len(results.conditions) < 2:
+        return ""
+    return (f'<p class="note">What follows takes condition {escape(results.main_condition)} alone, as the papers '
+            "measured.</p>")
+
+
+def _sections(results, published, data):
+    """(id, short title, title, content) of each; those of which the results hold nothing are left out."""
+    main, note, absent = results.under(results.main_condition), _one_condition(results), []
+
+    def shown(modules, of=results):
+        return blocks(modules, of, published, absent)
+
+    def alone(modules):
+        content = shown(modules, main)
+        return note + content if content else ""
+
+    sections = [
+        ("verdict", "Headline", "Which method to run", filters.html(results) + headline.html(results)),
+        ("comparison", "Comparison", "Comparison", shown(experiments.COMPARISON)),
+        ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
-        ("protocol", "Protocol", "Protocol and provenance", provenance.html(results, data)))
+        ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
+        ("exactness", "Exactness", "What exactness buys", shown(experiments.EXACTNESS)),
+        ("rld", "RLD paper", "Beside the RLD paper", alone(experiments.RLD_PAPER)),
+        ("clc", "CLC paper", "Beside the CLC paper", alone(experiments.CLC_PAPER))]
+    missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
+    sections.append(("protocol", "Protocol", "Protocol and provenance",
+                     provenance.html(results, data, published["conditions"]) + missing))
+    return [section for section in sections if section[3]]
+
+
+def _lead(results):
+    """What kind of comparison this is."""
+    held_out = results.run.get("cross_validation")
+    families = held_out.get("families", {}) if isinstance(held_out, dict) else {}
+    how = (f" Held out: what learns was fitted anew for each of {len(families)} families of courses, without them."
+           if families else "")
+    return ("Every method on the same scenes, scored by the same code, beside what the papers print."
+            f"{how} Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
+
+
+def render(results, published, tracks=()):
+    """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
+    data = read_scenes(results, published["conditions"], tracks)
+    sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
                    for name, _, title, content in sections)
-    commit = escape(str(results.run.get("commit", "unknown")))
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark"><title>conelane: lanes between cones, compared</title>
@@ -85,8 +138,7 @@ def render(results, published):
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
 <main><h1>Lanes between cones, compared</h1>
-<p class="lead">Every method on the same scenes, scored by the same code, beside what the papers print.
-Commit <code>{commit}</code>.</p>
+<p class="lead">{_lead(results)}</p>
 {body}</main>
 <script>{_asset("tables.js")}</script>
 <script>{_asset("viewer.js")}</script>

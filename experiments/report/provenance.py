@@ -1,5 +1,6 @@
 """How the numbers came about."""
 
+import math
 from html import escape
 
 from .load import label_of
@@ -23,7 +24,23 @@ def _flat(value, prefix=""):
         yield prefix[:-1], str(value)
 
 
-def html(results, data):
+def _conditions(results, conditions):
+    """What the conditions of this run are."""
+    pieces = []
+    for condition in conditions:
+        if condition["name"] not in results.conditions:
+            continue
+        disturbed = condition["noise_m"] or condition["miss_rate"]
+        what = (f"noise of {condition['noise_m']:g} m on seen positions, a pose {condition['pose_lateral_m']:g} m and "
+                f"{math.degrees(condition['pose_yaw_rad']):.0f}° off (one sigma each), "
+                f"{100 * condition['miss_rate']:g} % of the cones missed" if disturbed else "nothing disturbed")
+        strays = ("false positives stay where they are along a lap" if condition["persistent"] else
+                  "false positives are drawn anew at every pose")
+        pieces.append(f"<b>{escape(condition['name'])}</b>: {what}; {strays}")
+    return f"<li>Conditions. {'. '.join(pieces)}.</li>" if pieces else ""
+
+
+def html(results, data, conditions):
     def listed(entries):
         rows = "".join(f"<div><dt>{escape(key)}</dt><dd>{escape(value)}</dd></div>" for key, value in _flat(entries))
         return f'<dl class="run">{rows}</dl>'
@@ -37,23 +54,25 @@ def html(results, data):
         shown = "There are no scenes on this page."
     else:
         which = ("every scored scene" if len(data.frames) == data.scene_count else
-                 f"{len(data.frames)} of {data.scene_count} scored scenes: one pose in {data.stride} of each lap and "
-                 "the gallery's")
+                 f"{len(data.frames)} of {data.scene_count} scored scenes")
         shown = (f"The viewer holds {which}; positions are rounded to 1 cm. Tables and figures use all "
                  f"{data.scene_count}.")
     return f"""
 <p>A car drives the centre line of each track. A scene is what it sees from one pose: the points within range in the
-half-plane ahead, and false positives drawn uniformly among them until they make up the stated share of all points.
+half-plane ahead, and false positives drawn uniformly among them until they make up the stated share of all points. A
+scene of a run of a real car is a frame of its map; where nobody annotated boundaries the truth is the path it drove.
 Every method answers the same scenes, in order, and the same code scores the answers.</p>
 <ul>
-<li><b>Success</b>: a lane was found and does not diverge from the annotated boundary within 20 m.
+<li><b>Usable</b>: a lane was found, does not diverge from the annotated boundary within 20 m and, where it does not
+diverge at all, is at least 20 m or 75 % of the ground truth long. <b>Success</b>: a lane was found and does not diverge
+within 20 m, as the CLC paper counts. <b>Exact</b>: the very cones of the ground truth, in order.
 <b>IoU</b>: area common to lane and ground truth over the area of both; 0 where no lane was found.
 <b>Accurate</b>: at most one cone differs from the ground truth of the method's own cone set, each boundary lies on its
 side of the car, no edges cross, the width is 2.5 m to 6.5 m.</li>
 <li>A method marked n=12 saw only the 12 nearest cones ahead. Success and IoU still refer to all that is visible.</li>
 <li>Intervals are percentile bootstraps over whole tracks ({RESAMPLES} resamples, 95 %), as scenes of one track are
 alike; with few tracks they are rough. There are none where there is one track only.</li>
-{kept}
+{_conditions(results, conditions)}{kept}
 <li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
 <li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
 </ul>

@@ -4,6 +4,7 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/interruption.hpp"
 #include "experiments/report/archive.hpp"
+#include "experiments/scenes/condition.hpp"
 #include "experiments/scoring/published_figures.hpp"
 
 #include <cerrno>
@@ -94,7 +95,7 @@ std::string find_python(const std::string& wished) {
                              " has not (Debian: apt-get install python3-matplotlib)");
 }
 
-/// What the papers print, for the report to show beside.
+/// What the papers print, for the report to show beside, and what the named conditions are.
 std::string published() {
     nlohmann::ordered_json clc = nlohmann::ordered_json::array();
     for (const PublishedClcRow& row : kPublishedClc) {
@@ -115,7 +116,17 @@ std::string published() {
                        {"inaccurate", row.inaccurate},
                        {"upper_bound", row.upper_bound}});
     }
-    return nlohmann::ordered_json{{"clc", clc},
+    nlohmann::ordered_json conditions = nlohmann::ordered_json::array();
+    for (const Condition& condition : named_conditions()) {
+        conditions.push_back({{"name", condition.name},
+                              {"noise_m", condition.noise_sigma_m},
+                              {"pose_lateral_m", condition.pose_noise_lateral_m},
+                              {"pose_yaw_rad", condition.pose_noise_yaw_rad},
+                              {"miss_rate", condition.miss_rate},
+                              {"persistent", condition.persistent}});
+    }
+    return nlohmann::ordered_json{{"conditions", conditions},
+                                  {"clc", clc},
                                   {"clc_median_below_ms", kPublishedClcMedianBelow_ms},
                                   {"clc_max_ms", kPublishedClcMax_ms},
                                   {"rld", rld},
@@ -146,7 +157,8 @@ void put(const std::filesystem::path& file, const std::filesystem::path& place) 
 }  // namespace
 
 void write_report(const std::filesystem::path& results, const std::filesystem::path& page,
-                  const std::filesystem::path& pictures, const std::string& wished_python) {
+                  const std::filesystem::path& pictures, const std::string& wished_python,
+                  const std::string& viewer_tracks) {
     require_writable(page);
     const std::string python = find_python(wished_python);
     const TemporaryFolder folder;
@@ -157,8 +169,9 @@ void write_report(const std::filesystem::path& results, const std::filesystem::p
         "runpy.run_module('report', run_name='__main__', alter_sys=True)";
     const std::filesystem::path made_page = folder.path() / "page.html";
     const std::filesystem::path made_pictures = pictures.empty() ? "" : folder.path() / "pictures";
-    const int code =
-        run({python, "-c", start, archive, results.string(), made_page, published(), made_pictures}, false);
+    const int code = run({python, "-c", start, archive, results.string(), made_page, published(),
+                          made_pictures, viewer_tracks},
+                         false);
     if (code == 2) throw ReportRefused();
     if (code != 0) throw std::runtime_error("the report failed, see above");
     if (!pictures.empty()) {

@@ -1,25 +1,43 @@
-"""What the tables with a row per method, rate and range share."""
+"""What the tables with a row per method, condition, rate and range share."""
 
 from .load import label_of
-from .tables import Cell, Column, method_cell, percent
+from .tables import Cell, Column, method_cell, percent, text
 
-KEYS = [Column("method", "text"), Column("false positives %"), Column("range m"), Column("scenes")]
+
+TRAINED = " *: with courses that the method has learned from, no held-out figure."
+
+
+def scenes_cell(count, trained_on):
+    """A number of scenes, marked where some of them are of courses that the method has learned from."""
+    return Cell(f"{count}{'*' if trained_on else ''}", count)
+
+
+def note_on_training(results):
+    """What a table says of the mark, where it has one."""
+    return TRAINED if any(sample.has("trained_on") for sample in results.samples) else ""
+
+
+def keys(results):
+    condition = [Column("condition", "text")] if results.conditions != [""] else []
+    return [Column("method", "text")] + condition + [Column("false positives %"), Column("range m"), Column("scenes")]
 
 
 def key_cells(results, row):
     label = label_of(row["method"], row.get("nearest"))
-    return [method_cell(results.methods, row["method"], label), percent(row["false_positive_rate"]),
-            Cell(f"{row['range']:g}", row["range"]), Cell(str(row["scenes"]), row["scenes"])]
+    condition = [text(row.get("condition", ""))] if results.conditions != [""] else []
+    return [method_cell(results.methods, row["method"], label)] + condition + [
+        percent(row["false_positive_rate"]), Cell(f"{row['range']:g}", row["range"]),
+        scenes_cell(row["scenes"], row.get("trained_on", 0))]
 
 
 def attributes(results):
     """What the filters of the page go by."""
-    return [{"method": label_of(row["method"], row.get("nearest")), "rate": row["false_positive_rate"],
-             "range": row["range"]} for row in results.rows]
+    return [{"method": label_of(row["method"], row.get("nearest")), "condition": row.get("condition", ""),
+             "rate": row["false_positive_rate"], "range": row["range"]} for row in results.rows]
 
 
 def part(results, row):
     """The scores that a row of results.jsonl sums up."""
     label = label_of(row["method"], row.get("nearest"))
     sample = next(sample for sample in results.samples if sample.label == label)
-    return sample.at(row["false_positive_rate"], row["range"])
+    return sample.at(row["false_positive_rate"], row["range"], row.get("condition", ""))

@@ -1,34 +1,40 @@
-"""The scenes that viewer and gallery show: cones in the car's frame, the ground truth, each method's lane. They are
-reduced to whole centimetres and to as many poses as the page has room for."""
+"""The scenes that viewer and gallery show: cones in the car's frame, the truth, each method's lane. They are reduced to
+whole centimetres and to as many laps as the page has room for."""
 
 import glob
 import json
 import math
 import os
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from .load import CATEGORIES, InputError, label_of, read_lines, require
+from .load import CATEGORIES, CAUSES, InputError, label_of, read_lines, require
 
 MOST_BYTES = 9_000_000  # of all frames as JSON
-_BYTES_PER_CONE = 11
-_BYTES_PER_ANSWER = 90
+_BYTES_PER_CONE = 10
+_BYTES_PER_ANSWER = 78
 _BYTES_PER_SCENE = 150
 _SAME_PLACE_M = 0.01
 _NOISE_FACTOR = 4.0  # a seen position is this many standard deviations off at most, nearly always
 
 GALLERY_RATE = 0.3
+WORST = 10  # scenes of each method and condition
+WORST_OF_A_TRACK = 2
+WORST_APART_M = 15.0
 
 
 @dataclass
 class SceneData:
     frames: dict = field(default_factory=dict)  # scene id -> frame
-    laps: list = field(default_factory=list)  # {"track", "rate", "range", "scenes": [ids in order of travel]}
+    laps: list = field(default_factory=list)  # {"track", "condition", "rate", "range", "scenes": [ids as travelled]}
     start: str = ""  # the scene to begin with
-    stride: int = 1
     scene_count: int = 0  # scored ones, of which `frames` has a part
-    picks: dict = field(default_factory=dict)  # label -> [(word, scene id)]
+    whole_laps: int = 0  # laps that are there with one pose in `stride`, of `lap_count`
+    lap_count: int = 0
+    stride: int = 1
+    worst: dict = field(default_factory=dict)  # (label, condition) -> [scene ids]
     missing: str = ""  # why there are none
 
 
@@ -37,31 +43,102 @@ def gallery_rate(results):
     return min(results.rates, key=lambda rate: (abs(rate - GALLERY_RATE), rate))
 
 
-def _picks(results):
-    """Best, median and worst scene of each method by IoU, at one rate; ties in order of scene ids."""
-    picks = {}
-    for sample in results.samples:
-        part = sample.at(gallery_rate(results))
-        order = sorted(range(len(part)), key=lambda i: (-part.iou[i], part.scene[i]))
-        if order:
-            chosen = (("best", order[0]), ("median", order[(len(order) - 1) // 2]), ("worst", order[-1]))
-            picks[sample.label] = [(word, part.scene[i]) for word, i in chosen]
-    return picks
+_POSE_AT_START = re.compile(r'\{"id":"([^"\\]*)","pose":\{"x":([-+.\deE]+),"y":([-+.\deE]+),')
 
 
-def _laps(results):
-    """Scored scenes by (track, rate, range), in order of travel: that of the scores, which is that of the file."""
-    place = {}
+def _poses(scenes_file):
+    """Where the car stands in each scene. Lines are long, and their beginning says it."""
+    places = {}
+    try:
+        with open(scenes_file, encoding="utf-8") as stream:
+            for number, line in enumerate(stream, 1):
+                start = _POSE_AT_START.match(line)
+                if start:
+                    places[start[1]] = (float(start[2]), float(start[3]))
+                elif line.strip():
+                    scene = json.loads(line)
+                    places[scene.get("id", str(number))] = (float(scene["pose"]["x"]), float(scene["pose"]["y"]))
+    except OSError as error:
+        raise InputError(f"{scenes_file}: {error.strerror}") from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{scenes_file}:{number}: no scene with a pose ({error})") from None
+    return places
+
+
+def _worst(results, places):
+    """The worst scenes of each method in each condition: those that are not usable first, then by IoU, an unknown one
+    last; ties in order of scene ids. At most WORST_OF_A_TRACK of one track, and these WORST_APART_M apart."""
+    worst = {}
     for sample in results.samples:
-        for row in zip(sample.scene, sample.track, sample.rate, sample.range, sample.cones):
-            if row[0] not in place or row[4] > place[row[0]][3]:
-                place[row[0]] = row[1:]
-    laps = {}
-    for scene, (track, rate, range_m, _) in place.items():
-        laps.setdefault((track, rate, range_m), []).append(scene)
-    size = sum(_BYTES_PER_SCENE + _BYTES_PER_CONE * cones + _BYTES_PER_ANSWER * len(results.samples)
-               for *_, cones in place.values())
-    return laps, math.ceil(size / MOST_BYTES), len(place)
+        for condition in results.conditions:
+            part = sample.at(condition=condition)
+            iou = np.where(np.isnan(part.iou), 2.0, part.iou)
+            chosen, of_track = [], {}
+            for i in sorted(range(len(part)), key=lambda i: (part.usable[i] != 0.0, iou[i], part.scene[i])):
+                place, others = places.get(part.scene[i]), of_track.setdefault(part.track[i], [])
+                if place is None:
+                    continue
+                if len(others) < WORST_OF_A_TRACK and all(math.dist(place, other) >= WORST_APART_M for other in others):
+                    others.append(place)
+                    chosen.append(part.scene[i])
+                if len(chosen) == WORST:
+                    break
+            if chosen:
+                worst[sample.label, condition] = chosen
+    return worst
+
+
+class _Laps:
+    """Scored scenes by (track, condition, rate, range), in order of travel: that of the scores, which is that of the
+    file."""
+
+    def __init__(self, results):
+        lap_of, cones = {}, {}
+        for sample in results.samples:
+            for scene, *lap, count in zip(sample.scene, sample.track, sample.condition, sample.rate, sample.range,
+                                          sample.cones):
+                if count > cones.get(scene, -1.0):  # a method on few cones does not tell how many there are
+                    cones[scene] = count
+                lap_of.setdefault(scene, tuple(lap))
+        self.scenes = {}
+        for scene, lap in lap_of.items():
+            self.scenes.setdefault(lap, []).append(scene)
+        answers = _BYTES_PER_ANSWER * len(results.samples)
+        self.bytes_of = {lap: sum(_BYTES_PER_SCENE + _BYTES_PER_CONE * cones[scene] + answers for scene in scenes)
+                         for lap, scenes in self.scenes.items()}
+        self.scene_count = len(lap_of)
+
+    def by_interest(self, results):
+        """First the laps at the gallery's rate and the shortest range, then all others; of each the tracks with the
+        largest share of answers that are not usable (no success in results of earlier versions) first."""
+        failed, answered = {}, {}
+        for sample in results.samples:
+            bad = np.where(np.isnan(sample.usable), 1.0 - sample.success, 1.0 - sample.usable)
+            for track, value in zip(sample.track, bad):
+                failed[track] = failed.get(track, 0.0) + value
+                answered[track] = answered.get(track, 0) + 1
+        rate, range_m = gallery_rate(results), results.ranges[0]
+        return sorted(self.scenes, key=lambda lap: ((lap[2], lap[3]) != (rate, range_m),
+                                                    -failed[lap[0]] / answered[lap[0]], lap[0]))
+
+
+def _chosen_laps(results, laps, tracks):
+    """The laps to show, most interesting first, and the stride: all of the named tracks, however thin; else whole ones
+    while there is room."""
+    order = laps.by_interest(results)
+    if tracks:
+        known = {lap[0] for lap in order}
+        for track in tracks:
+            if track not in known:
+                raise InputError(f"--viewer: there is no track '{track}' in {results.path('scores.jsonl')}")
+        chosen = [lap for lap in order if lap[0] in tracks]
+        return chosen, max(1, math.ceil(sum(laps.bytes_of[lap] for lap in chosen) / MOST_BYTES))
+    chosen, size = [], 0
+    for lap in order:
+        if size + laps.bytes_of[lap] <= MOST_BYTES:
+            size += laps.bytes_of[lap]
+            chosen.append(lap)
+    return chosen, 1
 
 
 def _centimetres(value):
@@ -69,10 +146,10 @@ def _centimetres(value):
 
 
 def _boundary_points(results, track):
-    boundaries = results.tracks.get(track)
-    if not boundaries:
-        return None
-    return np.array(boundaries["left"] + boundaries["right"], dtype=float)
+    """None where the track has no annotated boundaries."""
+    boundaries = results.tracks.get(track, {})
+    points = boundaries.get("left", []) + boundaries.get("right", [])
+    return np.array(points, dtype=float) if points else None
 
 
 def _false_positives(positions, boundary, noise_m):
@@ -83,32 +160,71 @@ def _false_positives(positions, boundary, noise_m):
     return distances.min(axis=1) > max(_SAME_PLACE_M, _NOISE_FACTOR * noise_m)
 
 
+def in_car_frame(pose, positions):
+    """Positions [m] as seen from a pose: ahead and to the left."""
+    x, y, yaw = pose
+    return (positions - (x, y)) @ np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
+
+
+def _positions(points):
+    return np.array([(point["x"], point["y"]) for point in points], dtype=float).reshape(-1, 2)
+
+
+def _flat(positions):
+    return [_centimetres(value) for position in positions for value in position]
+
+
 def _frame(path, number, scene, boundary, noise_m):
-    """The frame of a scene without its answers, and the index of each cone id in it. Cones come first, false
+    """The frame of a scene without its answers, its pose, and the index of each cone id in it. Cones come first, false
     positives last."""
     try:
-        pose = scene["pose"]
+        pose = tuple(float(scene["pose"][key]) for key in ("x", "y", "yaw"))
         ids = [cone["id"] for cone in scene["cones"]]
-        positions = np.array([(cone["x"], cone["y"]) for cone in scene["cones"]], dtype=float).reshape(-1, 2)
-        truth = scene["ground_truth"]
-        x, y, yaw = float(pose["x"]), float(pose["y"]), float(pose["yaw"])
+        positions = _positions(scene["cones"])
+        truth = scene.get("ground_truth") or {"left": [], "right": []}  # a run has a driven path instead
         false_positive = _false_positives(positions, boundary, noise_m)
         order = sorted(range(len(ids)), key=lambda i: (bool(false_positive[i]), ids[i]))
         index_of = {ids[i]: place for place, i in enumerate(order)}
-        ahead = (positions - (x, y)) @ np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
-        return {"p": [_centimetres(x), _centimetres(y), round(1000 * yaw)],
-                "c": [_centimetres(value) for i in order for value in ahead[i]],
-                "f": int(false_positive.sum()),
-                "g": [[index_of[i] for i in truth["left"]], [index_of[i] for i in truth["right"]],
-                      int(truth.get("closed", False))]}, index_of
+        frame = {"p": [_centimetres(pose[0]), _centimetres(pose[1]), round(1000 * pose[2])],
+                 "c": _flat(in_car_frame(pose, positions[order])), "f": int(false_positive.sum()),
+                 "g": [[index_of[i] for i in truth["left"]], [index_of[i] for i in truth["right"]],
+                       int(truth.get("closed", False))]}
+        if scene.get("missed"):
+            frame["m"] = _flat(in_car_frame(pose, _positions(scene["missed"])))
+        return frame, pose, index_of
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}:{number}: no scene with pose, cones and ground truth ({error})") from None
 
 
-def _add_answers(results, lanes_files, frames, indices):
+def _sides(path, number, line, pose, index_of):
+    """Left and right as indices of cones; as flat positions under "p" where the answer is positions. An answer that is
+    a centre line alone is drawn as a left side."""
+    def flat(key):
+        try:
+            positions = np.array(line[key], dtype=float).reshape(-1, 2)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{path}:{number}: {key}: no list of points ({error})") from None
+        return {"p": _flat(in_car_frame(pose, positions))}
+
+    if "left_points" in line:
+        return [flat("left_points"), flat("right_points")]
+    if "centre_line" in line and not line.get("left"):
+        return [flat("centre_line"), []]
+    try:
+        return [[index_of[i] for i in line.get(side, ())] for side in ("left", "right")]
+    except KeyError as error:
+        raise InputError(f"{path}:{number}: cone {error} is not in the scene") from None
+
+
+def _known_int(value):
+    return None if math.isnan(value) else int(value)
+
+
+def _add_answers(results, lanes_files, frames, poses, indices):
     slots = {sample.label: slot for slot, sample in enumerate(results.samples)}
     scores = {sample.label: {scene: row for row, scene in enumerate(sample.scene) if scene in frames}
               for sample in results.samples}
+    causes = list(CAUSES)
     for path in lanes_files:
         for number, line in read_lines(path, frames):
             scene = require(path, number, line, "scene", (str,))
@@ -117,62 +233,81 @@ def _add_answers(results, lanes_files, frames, indices):
             if row is None:
                 continue
             sample = results.samples[slots[label]]
-            index_of = indices[scene]
-            try:
-                sides = [[index_of[i] for i in line.get(side, ())] for side in ("left", "right")]
-            except KeyError as error:
-                raise InputError(f"{path}:{number}: cone {error} is not in the scene") from None
-            accurate = sample.accurate[row]
-            frames[scene]["a"][slots[label]] = sides + [
+            iou, cause = sample.iou[row], sample.cause[row]
+            frames[scene]["a"][slots[label]] = _sides(path, number, line, poses[scene], indices[scene]) + [
                 int(bool(line.get("closed", False))), float(f"{sample.latency[row]:.4g}"),
-                round(float(sample.iou[row]), 3), CATEGORIES.index(sample.category[row]),
-                None if math.isnan(accurate) else int(accurate)]
+                None if math.isnan(iou) else round(float(iou), 3), CATEGORIES.index(sample.category[row]),
+                _known_int(sample.accurate[row]), _known_int(sample.usable[row]),
+                causes.index(cause) if cause else None]
 
 
-def _thin(laps, picks, frames, stride):
-    """Drops frames until the rest has room, and returns one pose in how many is left. The estimate beforehand
-    keeps most of them from being read; cone sets cut to a size hide how many cones a scene has."""
-    picked = {scene for chosen in picks.values() for _, scene in chosen}
+def _make_room(laps, chosen, picked, frames, stride, named):
+    """Drops frames until the rest fits, the least interesting laps first; of named tracks poses. The estimate
+    beforehand keeps most of them from being read, but it may be wrong. Returns the stride."""
     sizes = {scene: len(json.dumps(frame, separators=(",", ":"))) + len(scene) for scene, frame in frames.items()}
-    while sum(sizes[scene] for scene in frames) > MOST_BYTES:
-        stride *= 2  # of the poses that were read
-        kept = {scene for scenes in laps.values() for scene in scenes[::stride]} | picked
-        if all(scene in kept for scene in frames) and stride > max(map(len, laps.values())):
-            break  # the gallery's alone
+    while sum(sizes.values()) > MOST_BYTES and (chosen if not named else stride < max(map(len, laps.scenes.values()))):
+        if named:
+            stride *= 2
+        else:
+            chosen.pop()
+        kept = {scene for lap in chosen for scene in laps.scenes[lap][::stride]} | picked
         for scene in [scene for scene in frames if scene not in kept]:
-            del frames[scene]
+            del frames[scene], sizes[scene]
     return stride
 
 
-def read_scenes(results):
-    """What fits on the page, or why there is nothing."""
+def _read_frames(results, scenes_file, wanted, noise_of):
+    """Frames, poses and cone indices of the wanted scenes."""
+    try:
+        boundaries = {track: _boundary_points(results, track) for track in results.tracks}
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
+    frames, poses, indices = {}, {}, {}
+    for number, line in read_lines(scenes_file, wanted):
+        scene = line.get("id", str(number))
+        if scene in wanted:
+            frame, poses[scene], indices[scene] = _frame(scenes_file, number, line, boundaries.get(line.get("track")),
+                                                         noise_of(line.get("condition", "")))
+            frame["a"] = [None] * len(results.samples)
+            frames[scene] = frame
+    if len(frames) < len(wanted):
+        raise InputError(f"{scenes_file}: has no scene {min(wanted - set(frames))}")
+    return frames, poses, indices
+
+
+def _start(results, lap_list, worst):
+    """The first scene of the first lap shown; where there is none, the worst of the first method."""
+    rate = gallery_rate(results)
+    first = next((lap for lap in lap_list if (lap["condition"], lap["rate"]) == (results.main_condition, rate)), None)
+    return first["scenes"][0] if first else next(iter(worst.values()))[0]
+
+
+def read_scenes(results, conditions=(), tracks=()):
+    """What fits on the page, or why there is nothing. `conditions`: what the program knows by name, each with its
+    noise. `tracks`: those whose laps the viewer shall have; else the most interesting."""
     scenes_file = results.path("scenes.scenes.jsonl")
     if not os.path.exists(scenes_file):
         return SceneData(missing=f"the results hold no {os.path.basename(scenes_file)}.")
     lanes_files = sorted(glob.glob(results.path("*.lanes.jsonl")))
     if not lanes_files:
         return SceneData(missing="the results hold no lanes files.")
-    laps, stride, count = _laps(results)
-    picks = _picks(results)
-    wanted = {scene for scenes in laps.values() for scene in scenes[::stride]}
-    wanted |= {scene for chosen in picks.values() for _, scene in chosen}
     try:
-        noise_m = float(results.run.get("noise", 0.0))
-        boundaries = {track: _boundary_points(results, track) for track, _, _ in laps}
-    except (KeyError, TypeError, ValueError):
-        raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
-    frames, indices = {}, {}
-    for number, line in read_lines(scenes_file, wanted):
-        scene = line.get("id")
-        if scene in wanted:
-            frame, index_of = _frame(scenes_file, number, line, boundaries.get(line.get("track")), noise_m)
-            frame["a"] = [None] * len(results.samples)
-            frames[scene], indices[scene] = frame, index_of
-    if len(frames) < len(wanted):
-        raise InputError(f"{scenes_file}: has no scene {min(wanted - set(frames))}")
-    _add_answers(results, lanes_files, frames, indices)
-    stride = _thin(laps, picks, frames, stride)
-    lap_list = [{"track": track, "rate": rate, "range": range_m, "scenes": [s for s in scenes if s in frames]}
-                for (track, rate, range_m), scenes in laps.items()]
-    start = next(scene for chosen in picks.values() for word, scene in chosen if word == "median")
-    return SceneData(frames, [lap for lap in lap_list if lap["scenes"]], start, stride, count, picks)
+        run_noise_m = float(results.run.get("noise", 0.0))
+    except (TypeError, ValueError):
+        raise InputError(f"{results.path('run.json')}: noise: has a value of the wrong kind") from None
+    noise_m = {condition["name"]: condition["noise_m"] for condition in conditions}
+    laps = _Laps(results)
+    worst = _worst(results, _poses(scenes_file))
+    picked = {scene for scenes in worst.values() for scene in scenes}
+    chosen, stride = _chosen_laps(results, laps, tracks)
+    wanted = {scene for lap in chosen for scene in laps.scenes[lap][::stride]} | picked
+    frames, poses, indices = _read_frames(results, scenes_file, wanted,
+                                          lambda name: max(run_noise_m, noise_m.get(name, 0.0)))
+    _add_answers(results, lanes_files, frames, poses, indices)
+    stride = _make_room(laps, chosen, picked, frames, stride, bool(tracks))
+    lap_list = [{"track": track, "condition": condition, "rate": rate, "range": range_m,
+                 "scenes": [scene for scene in scenes if scene in frames]}
+                for (track, condition, rate, range_m), scenes in laps.scenes.items()]
+    lap_list = [lap for lap in lap_list if lap["scenes"]]
+    return SceneData(frames, lap_list, _start(results, lap_list, worst), laps.scene_count, len(chosen),
+                     len(laps.scenes), stride, worst)

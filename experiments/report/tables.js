@@ -31,18 +31,25 @@
       for (const other of headers) other.setAttribute("aria-sort", "none");
       header.setAttribute("aria-sort", next ? "descending" : "ascending");
       const key = (row) => row.cells[column].dataset.value;
-      const rows = [...table.tBodies[0].rows].sort((a, b) => {
-        const order = compare(key(a), key(b));
-        return next && key(a) !== undefined && key(b) !== undefined ? -order : order;
-      });
-      table.tBodies[0].append(...rows);
+      for (const body of table.tBodies) { // each block for itself, below its title
+        const rows = [...body.rows].filter((row) => !row.classList.contains("block")).sort((a, b) => {
+          const order = compare(key(a), key(b));
+          return next && key(a) !== undefined && key(b) !== undefined ? -order : order;
+        });
+        body.append(...rows);
+      }
     }));
   }
 
   const filters = [...document.querySelectorAll("[data-filter]")];
   const apply = () => {
-    for (const row of document.querySelectorAll("#comparison tbody tr[data-rate]")) {
-      row.hidden = filters.some((filter) => filter.value && row.dataset[filter.dataset.filter] !== filter.value);
+    const filtered = "main tr[data-condition], main figure[data-condition], main details[data-condition]";
+    for (const item of document.querySelectorAll(filtered)) {
+      item.hidden = filters.some((filter) => filter.value && filter.dataset.filter in item.dataset &&
+                                             item.dataset[filter.dataset.filter] !== filter.value);
+    }
+    for (const title of document.querySelectorAll("tr.block")) {
+      title.hidden = [...title.parentElement.rows].every((row) => row === title || row.hidden);
     }
   };
   for (const filter of filters) filter.addEventListener("change", apply);

@@ -37,10 +37,10 @@
              y: (ahead) => height - 0.05 * reach * scale - ahead * scale };
   };
 
-  const placed = (view) => {
-    const { c } = frame();
-    return Array.from({ length: c.length / 2 }, (_, i) => [view.x(c[2 * i], c[2 * i + 1]), view.y(c[2 * i])]);
-  };
+  const positions = (flat, view) =>
+    Array.from({ length: flat.length / 2 }, (_, i) => [view.x(flat[2 * i], flat[2 * i + 1]), view.y(flat[2 * i])]);
+  const placed = (view) => positions(frame().c, view);
+  const missed = (view) => positions(frame().m || [], view);
 
   const drawRange = (context, view) => {
     const reach = 100 * state.lap.range;
@@ -51,28 +51,32 @@
       context.beginPath();
       context.arc(view.x(0, 0), view.y(0), radius * view.scale, Math.PI, 2 * Math.PI);
       context.stroke();
-      context.fillText(radius / 100 + " m", view.x(0, 0) + 3, view.y(radius) - 3);
+      context.fillText(radius / 100 + " m", view.x(0, -radius) - 28, view.y(0) + 11); // beside the car, where no lane is
     }
   };
 
+  /// The annotated boundaries, and of a run the path that was driven.
   const drawBoundaries = (context, view) => {
     const track = data.tracks[state.lap.track];
     if (!track) return;
     const [px, py, yaw] = frame().p;
     const cos = Math.cos(yaw / 1000), sin = Math.sin(yaw / 1000);
-    context.strokeStyle = colour("--line");
-    context.setLineDash([3, 4]);
-    for (const side of [track.left, track.right]) {
+    const drawDashed = (line, stroke, width, dash, closed) => {
       const points = [];
-      for (let i = 0; i < side.length; i += 2) {
-        const dx = side[i] - px, dy = side[i + 1] - py;
+      for (let i = 0; i < line.length; i += 2) {
+        const dx = line[i] - px, dy = line[i + 1] - py;
         const ahead = cos * dx + sin * dy;
         points.push([view.x(ahead, cos * dy - sin * dx), view.y(ahead)]);
       }
+      context.strokeStyle = stroke;
+      context.lineWidth = width;
+      context.setLineDash(dash);
       context.beginPath();
-      trace(context, points, track.closed);
+      trace(context, points, closed);
       context.stroke();
-    }
+    };
+    for (const side of [track.left, track.right]) drawDashed(side, colour("--line"), 1, [3, 4], track.closed);
+    drawDashed(track.driven, colour("--accent"), 1.6, [7, 5], false);
     context.setLineDash([]);
   };
 
@@ -80,6 +84,8 @@
     const { context, width, height } = prepare(scene);
     const view = fit(width, height), current = frame(), points = placed(view);
     const at = (indices) => indices.map((i) => points[i]);
+    /// A side of an answer: indices of cones, or positions of its own.
+    const side = (one) => (Array.isArray(one) ? at(one) : positions(one.p, view));
     drawRange(context, view);
     drawBoundaries(context, view);
 
@@ -101,7 +107,7 @@
       context.strokeStyle = colour("--m" + data.methods[i].colour);
       context.lineWidth = 2.2 + 2.4 * (visible.length - 1 - place);
       context.beginPath();
-      for (const side of answer.slice(0, 2)) trace(context, at(side), answer[2]);
+      for (const one of answer.slice(0, 2)) trace(context, side(one), answer[2]);
       context.stroke();
     });
 
@@ -121,6 +127,13 @@
       }
     });
 
+    context.strokeStyle = colour("--ink"); // what the car does not see is hollow
+    for (const [x, y] of missed(view)) {
+      context.beginPath();
+      context.arc(x, y, 3.4, 0, 2 * Math.PI);
+      context.stroke();
+    }
+
     context.fillStyle = colour("--accent");
     context.beginPath();
     trace(context, [[view.x(0, 0), view.y(0) - 9], [view.x(0, 0) + 6, view.y(0) + 7],
@@ -134,7 +147,8 @@
     if (!trackFrames.has(lap)) {
       const track = data.tracks[lap.track];
       const poses = lap.scenes.map((name) => data.frames[name].p);
-      const flat = track ? [...track.left, ...track.right] : poses.flatMap(([x, y]) => [x, y]);
+      const flat = [...(track ? [...track.left, ...track.right, ...track.driven] : []),
+                    ...poses.flatMap(([x, y]) => [x, y])];
       const xs = flat.filter((_, i) => i % 2 === 0), ys = flat.filter((_, i) => i % 2 === 1);
       trackFrames.set(lap, { track, poses, low: [Math.min(...xs), Math.min(...ys)],
                              high: [Math.max(...xs), Math.max(...ys)] });
@@ -153,12 +167,14 @@
     const { context, width, height } = prepare(map);
     const { track, poses } = mapOf();
     const place = mapView(width, height);
-    context.strokeStyle = colour("--muted");
-    for (const side of track ? [track.left, track.right] : []) {
+    const lines = track ? [[track.left, "--muted", track.closed], [track.right, "--muted", track.closed],
+                           [track.driven, "--accent", false]] : [];
+    for (const [line, stroke, closed] of lines) {
       const points = [];
-      for (let i = 0; i < side.length; i += 2) points.push(place([side[i], side[i + 1]]));
+      for (let i = 0; i < line.length; i += 2) points.push(place([line[i], line[i + 1]]));
+      context.strokeStyle = colour(stroke);
       context.beginPath();
-      trace(context, points, track.closed);
+      trace(context, points, closed);
       context.stroke();
     }
     const [x, y] = place(poses[state.pose]);
@@ -178,7 +194,7 @@
     const toggle = head.querySelector("input");
     toggle.addEventListener("change", () => { state.shown[i] = toggle.checked; drawScene(); });
     row.append(head);
-    const cells = ["outcome", "number", "accurate", "number"].map((kind) => {
+    const cells = ["usable", "outcome", "number", "accurate", "number"].map((kind) => {
       const cell = row.insertCell();
       if (kind === "number") cell.className = kind;
       return cell;
@@ -186,11 +202,12 @@
     return { toggle, cells };
   });
 
+  const yesOrNo = (value) => (value === null ? "–" : value ? "yes" : "no");
   const drawAnswers = () => frame().a.forEach((answer, i) => {
     const texts = answer
-      ? [data.categories[answer[5]], (100 * answer[4]).toFixed(1),
-         answer[6] === null ? "–" : answer[6] ? "yes" : "no", answer[3].toPrecision(3)]
-      : ["no answer", "–", "–", "–"];
+      ? [answer[8] === null ? yesOrNo(answer[7]) : "no: " + data.causes[answer[8]], data.categories[answer[5]],
+         answer[4] === null ? "–" : (100 * answer[4]).toFixed(1), yesOrNo(answer[6]), answer[3].toPrecision(3)]
+      : ["–", "no answer", "–", "–", "–"];
     texts.forEach((text, j) => { rows[i].cells[j].textContent = text; });
   });
 
@@ -200,7 +217,9 @@
     element("pose").value = state.pose;
     element("name").textContent = `${state.pose + 1} / ${state.lap.scenes.length}`;
     const cones = current.c.length / 2;
-    scene.setAttribute("aria-label", `Scene ${name}: ${cones - current.f} cones, ${current.f} false positives`);
+    const unseen = current.m ? `, ${current.m.length / 2} cones missed` : "";
+    scene.setAttribute("aria-label",
+                       `Scene ${name}: ${cones - current.f} cones, ${current.f} false positives${unseen}`);
     box.dataset.scene = name;
     drawScene();
     drawMap();
@@ -227,11 +246,14 @@
     }, 1000 / Number(element("speed").value));
   };
 
-  const choices = { track: element("track"), rate: element("rate"), range: element("range") };
+  const choices = { track: element("track"), condition: element("condition"), rate: element("rate"),
+                    range: element("range") };
   const fill = (select, values, show) => {
     for (const value of new Set(values)) select.add(new Option(show(value), value));
   };
   fill(choices.track, data.laps.map((lap) => lap.track), (track) => track);
+  fill(choices.condition, data.laps.map((lap) => lap.condition), (condition) => condition || "none named");
+  choices.condition.parentElement.hidden = choices.condition.options.length < 2;
   fill(choices.rate, data.laps.map((lap) => lap.rate).sort((a, b) => a - b), (rate) => (100 * rate).toFixed(1) + " %");
   fill(choices.range, data.laps.map((lap) => lap.range).sort((a, b) => a - b), (range) => range + " m");
   const showLap = (lap, pose) => {
@@ -239,20 +261,23 @@
     for (const key in choices) choices[key].value = lap[key];
     go(pose);
   };
-  /// The lap as chosen, at the place where the car is now.
-  const choose = () => {
+  /// The lap as chosen, at the place where the car is now. Where the page does not have it, one that has what was
+  /// chosen last and as much of the rest as there is.
+  const choose = (last) => {
+    const keys = [last, ...Object.keys(choices).filter((key) => key !== last)];
     const wanted = (lap, key) => String(lap[key]) === choices[key].value;
-    const lap = data.laps.find((one) => Object.keys(choices).every((key) => wanted(one, key))) ||
-                data.laps.find((one) => wanted(one, "track"));
+    const agreement = (lap) => keys.reduce((sum, key, i) => sum + (wanted(lap, key) ? 2 ** (keys.length - i) : 0), 0);
+    const best = Math.max(...data.laps.map(agreement));
+    const lap = data.laps.find((one) => agreement(one) === best);
     const share = state.lap.track === lap.track ? state.pose / Math.max(1, state.lap.scenes.length - 1) : 0;
     showLap(lap, Math.round(share * (lap.scenes.length - 1)));
   };
-  for (const select of Object.values(choices)) select.addEventListener("change", choose);
-  const step = (select, by) => {
-    const index = select.selectedIndex + by;
-    if (index < 0 || index >= select.options.length) return;
-    select.selectedIndex = index;
-    choose();
+  for (const [key, select] of Object.entries(choices)) select.addEventListener("change", () => choose(key));
+  const step = (key, by) => {
+    const index = choices[key].selectedIndex + by;
+    if (index < 0 || index >= choices[key].options.length) return;
+    choices[key].selectedIndex = index;
+    choose(key);
   };
 
   element("back").addEventListener("click", () => go(state.pose - 1));
@@ -269,8 +294,8 @@
     const digit = Number(event.key) - 1;
     if (event.key === "ArrowRight") go(state.pose + 1);
     else if (event.key === "ArrowLeft") go(state.pose - 1);
-    else if (event.key === "ArrowUp") step(choices.rate, 1);
-    else if (event.key === "ArrowDown") step(choices.rate, -1);
+    else if (event.key === "ArrowUp") step("rate", 1);
+    else if (event.key === "ArrowDown") step("rate", -1);
     else if (event.key === " ") play();
     else if (rows[digit]) rows[digit].toggle.click();
     else return;
@@ -279,7 +304,8 @@
   scene.addEventListener("pointerdown", () => box.focus({ preventScroll: true }));
 
   scene.addEventListener("pointermove", (event) => {
-    const view = fit(scene.clientWidth, scene.clientHeight), points = placed(view), { c, f } = frame();
+    const view = fit(scene.clientWidth, scene.clientHeight), { c, f, m = [] } = frame();
+    const seen = c.length / 2, flat = [...c, ...m], points = positions(flat, view);
     let nearest = -1, least = 12;
     points.forEach(([x, y], i) => {
       const distance = Math.hypot(x - event.offsetX, y - event.offsetY);
@@ -287,9 +313,10 @@
     });
     tip.hidden = nearest < 0;
     if (tip.hidden) return;
-    const kind = nearest < points.length - f ? "cone" : "false positive";
-    tip.textContent = `${kind}, ${(c[2 * nearest] / 100).toFixed(2)} m ahead, ` +
-      `${(Math.abs(c[2 * nearest + 1]) / 100).toFixed(2)} m ${c[2 * nearest + 1] < 0 ? "right" : "left"}`;
+    const kind = nearest >= seen ? "missed cone" : nearest < seen - f ? "cone" : "false positive";
+    const ahead = flat[2 * nearest] / 100, left = flat[2 * nearest + 1] / 100;
+    tip.textContent = `${kind}, ${ahead.toFixed(2)} m ahead, ` +
+      `${Math.abs(left).toFixed(2)} m ${left < 0 ? "right" : "left"}`;
     const [x, y] = points[nearest];
     tip.style.left = Math.max(4, Math.min(x + 10, scene.clientWidth - tip.offsetWidth - 4)) + "px";
     tip.style.top = Math.max(4, y - 28) + "px";

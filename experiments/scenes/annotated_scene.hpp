@@ -20,8 +20,9 @@ struct AnnotatedScene {
     std::optional<std::uint64_t> seed;  ///< the base seed
     std::string condition;              ///< empty where none was named
     /// Map points in view that the car does not see, in the map's order. Recorded where a condition was named
-    /// or false positives persist.
+    /// or false positives persist, and of runs, whose map may not hold them yet.
     std::vector<Cone> missed;
+    std::optional<double> travelled_m;  ///< along the path of a run
 };
 
 }  // namespace conelane::experiments

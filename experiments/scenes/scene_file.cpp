@@ -92,6 +92,9 @@ AnnotatedScene read_scene(const JsonNode& json) {
     if (const auto range = json.find("range")) result.range_m = range->non_negative_number();
     if (const auto seed = json.find("seed")) result.seed = seed->unsigned_integer();
     if (const auto condition = json.find("condition")) result.condition = condition->string();
+    if (const auto travelled = json.find("travelled")) {
+        result.travelled_m = travelled->non_negative_number();
+    }
     if (const auto missed = json.find("missed")) result.missed = read_missed(*missed, scene);
     return result;
 }
@@ -122,6 +125,9 @@ ordered_json to_json(const AnnotatedScene& annotated, const std::string& key) {
     if (const auto& range_m = annotated.range_m) json["range"] = require_finite(*range_m, key + ".range");
     if (annotated.seed) json["seed"] = *annotated.seed;
     if (!annotated.condition.empty()) json["condition"] = annotated.condition;
+    if (const auto& travelled_m = annotated.travelled_m) {
+        json["travelled"] = require_finite(*travelled_m, key + ".travelled");
+    }
     for (const Cone& cone : annotated.missed) {
         json["missed"].push_back({{"id", cone.id},
                                   {"x", require_finite(cone.position.x(), key + ".missed")},
@@ -130,10 +136,10 @@ ordered_json to_json(const AnnotatedScene& annotated, const std::string& key) {
     return json;
 }
 
-std::vector<Point> read_polyline(const JsonNode& json) {
+std::vector<Point> read_polyline(const JsonNode& json, bool may_be_empty) {
     std::vector<Point> polyline;
     const std::size_t size = json.array_size();
-    if (size == 0) json.fail("must hold at least one point");
+    if (size == 0 && !may_be_empty) json.fail("must hold at least one point");
     polyline.reserve(size);
     for (std::size_t i = 0; i < size; ++i) {
         const JsonNode point = json.element(i);
@@ -189,6 +195,12 @@ void for_each_scene_line(std::istream& stream, const std::function<void(const Sc
     }
 }
 
+std::string scene_line(const Scene& scene) {
+    AnnotatedScene bare;
+    bare.scene = scene;
+    return to_line(to_json(bare, ""));
+}
+
 void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {
     AtomicFile output(file);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -215,8 +227,12 @@ TrackBoundariesByName read_track_boundaries(const std::filesystem::path& file) {
     with_json_file(file, [&](const JsonNode& json) {
         for (const std::string& name : json.keys()) {
             const JsonNode track = json.member(name);
-            tracks[name] = {read_polyline(track.member("left")), read_polyline(track.member("right")),
-                            track.member("closed").boolean()};
+            TrackBoundaries& boundaries = tracks[name];
+            const auto driven = track.find("driven");
+            if (driven) boundaries.driven = read_polyline(*driven, false);
+            boundaries.left = read_polyline(track.member("left"), driven.has_value());
+            boundaries.right = read_polyline(track.member("right"), driven.has_value());
+            boundaries.closed = track.member("closed").boolean();
         }
     });
     return tracks;
@@ -229,6 +245,7 @@ void write_track_boundaries(const std::filesystem::path& file, const TrackBounda
         json[name] = {{"left", to_json(boundaries.left, name + ".left")},
                       {"right", to_json(boundaries.right, name + ".right")},
                       {"closed", boundaries.closed}};
+        if (!boundaries.driven.empty()) json[name]["driven"] = to_json(boundaries.driven, name + ".driven");
     }
     output.stream() << to_line(json) << '\n';
     output.commit();

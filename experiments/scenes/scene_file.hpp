@@ -32,6 +32,10 @@ struct SceneLine {
 /// wrong is passed on as such; its scenes may have the same id as others.
 void for_each_scene_line(std::istream& stream, const std::function<void(const SceneLine&)>& use);
 
+/// A scene as its line, without newline and with nothing but what a detector may know. Precondition: the
+/// scene is valid.
+[[nodiscard]] std::string scene_line(const Scene& scene);
+
 /// Throws InvalidInput where a number is not finite, InputError where the file cannot be written; then an old
 /// file stays as it was.
 void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes);
@@ -41,7 +45,7 @@ void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedSc
 [[nodiscard]] std::filesystem::path track_boundaries_path(const std::filesystem::path& scenes);
 
 /// Throws InputError naming file and key, and the line of what is no JSON. Each boundary has a point at
-/// least.
+/// least, but for those of a track with a driven path.
 [[nodiscard]] TrackBoundariesByName read_track_boundaries(const std::filesystem::path& file);
 
 /// Throws like write_scenes.

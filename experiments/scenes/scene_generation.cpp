@@ -37,7 +37,7 @@ struct Course {
     TrackBoundaries polylines;
     std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
     std::unordered_set<ConeId> boundary_ids;
-    std::vector<Pose> lap;  ///< along the whole course; empty where no false positives persist
+    std::vector<Viewpoint> lap;  ///< along the whole course; empty where no false positives persist
 };
 
 namespace {
@@ -111,7 +111,7 @@ Course make_course(const Track& track, const SceneOptions& options) {
     return course;
 }
 
-enum class Sight { out_of_view, missed, seen };
+enum class Sight { out_of_view, unmapped, missed, seen };
 
 /// A boundary's run in a scene, and whether nothing of the boundary is out of view.
 struct Run {
@@ -120,7 +120,7 @@ struct Run {
 };
 
 /// The run of seen cones from the first one at or past the car's foot point on the boundary; it goes on past
-/// missed cones and ends before the first one out of view.
+/// missed cones and single ones that the map lacks, and ends before the first one out of view.
 Run run_ahead(const Course& course, const std::vector<std::size_t>& side, const std::vector<Point>& polyline,
               const std::vector<Sight>& sights, const Point& car) {
     const PolylineFoot foot = foot_on_polyline(car, polyline, course.track.closed);
@@ -129,16 +129,20 @@ Run run_ahead(const Course& course, const std::vector<std::size_t>& side, const 
     const std::size_t first = at_vertex ? foot.segment : foot.segment + 1;
     const std::size_t steps = course.track.closed ? side.size() : side.size() - first;
     Run run;
+    bool lacked_one = false;
     for (std::size_t step = 0; step < steps; ++step) {
         const std::size_t cone = side[(first + step) % side.size()];
+        const bool lacked = sights[cone] == Sight::unmapped;
         if (sights[cone] == Sight::seen) {
             run.ids.push_back(course.cones[cone].id);
-        } else if (sights[cone] == Sight::out_of_view && !run.ids.empty()) {
+        } else if (!run.ids.empty() && (sights[cone] == Sight::out_of_view || (lacked && lacked_one))) {
             break;
         }
+        lacked_one = lacked;
     }
-    run.whole =
-        std::ranges::none_of(side, [&](std::size_t cone) { return sights[cone] == Sight::out_of_view; });
+    run.whole = std::ranges::none_of(side, [&](std::size_t cone) {
+        return sights[cone] == Sight::out_of_view || sights[cone] == Sight::unmapped;
+    });
     return run;
 }
 
@@ -202,6 +206,17 @@ class FalsePositives {
     boost::random::uniform_int_distribution<std::size_t> any_color_{0, kFalseColors.size() - 1};
 };
 
+/// Where the map of a viewpoint has each cone of the course, nothing where it lacks it.
+std::vector<std::optional<Point>> places_of(const Course& course, const Viewpoint& viewpoint) {
+    std::vector<std::optional<Point>> places(course.cones.size());
+    if (viewpoint.frame != nullptr) {
+        for (const MapPlace& place : viewpoint.frame->map) places[place.cone] = place.position;
+    } else {
+        std::ranges::transform(course.cones, places.begin(), &Cone::position);
+    }
+    return places;
+}
+
 /// What the scenes of one lap share.
 struct Lap {
     Condition condition;
@@ -219,10 +234,11 @@ std::vector<Cone> persistent_false_positives(const Course& course, const SceneOp
                                              const Condition& condition, double rate, double range_m) {
     if (!condition.persistent) return {};
     std::vector<PersistentView> views;
-    for (const Pose& pose : course.lap) {
-        PersistentView view{{pose.position, pose.heading(), range_m}};
-        const auto in_view = std::ranges::count_if(
-            course.cones, [&](const Cone& cone) { return view.view.contains(cone.position); });
+    for (const Viewpoint& viewpoint : course.lap) {
+        PersistentView view{{viewpoint.pose.position, viewpoint.pose.heading(), range_m}};
+        const auto in_view = std::ranges::count_if(places_of(course, viewpoint), [&](const auto& place) {
+            return place && view.view.contains(*place);
+        });
         const double seen = (1.0 - condition.miss_rate) * static_cast<double>(in_view);
         view.expected_points = static_cast<double>(false_positives_to(seen, rate));
         views.push_back(view);
@@ -246,11 +262,17 @@ std::vector<Cone> persistent_false_positives(const Course& course, const SceneOp
 /// One scene of a lap, and the steps from its pose to what the car sees.
 class SceneMaker {
   public:
-    SceneMaker(const Course& course, const SceneOptions& options, const Lap& lap, std::size_t pose_index)
-        : course_(course), options_(options), lap_(lap), pose_index_(pose_index) {}
+    SceneMaker(const Course& course, const SceneOptions& options, const Lap& lap, const Viewpoint& viewpoint,
+               std::size_t pose_index)
+        : course_(course),
+          options_(options),
+          lap_(lap),
+          viewpoint_(viewpoint),
+          pose_index_(pose_index),
+          places_(places_of(course, viewpoint)) {}
 
-    /// Nothing where a run of the ground truth has fewer than two cones.
-    [[nodiscard]] std::optional<AnnotatedScene> make(const Pose& on_course) const {
+    /// Nothing where a run of the ground truth has fewer than two cones, or no cone is seen.
+    [[nodiscard]] std::optional<AnnotatedScene> make() const {
         AnnotatedScene result;
         result.track = course_.track.name;
         result.false_positive_rate = lap_.rate;
@@ -259,22 +281,31 @@ class SceneMaker {
         result.condition = lap_.condition.name;
         Scene& scene = result.scene;
         scene.id = id();
-        scene.pose = disturbed(on_course);
+        scene.pose = disturbed(viewpoint_.pose);
         const HalfDisc view{scene.pose.position, scene.pose.heading(), lap_.range_m};
         const std::vector<Sight> sights = look(view);
-        if (!lap_.condition.name.empty() || lap_.condition.persistent) result.missed = missed_cones(sights);
+        const RunFrame* const frame = viewpoint_.frame;
+        if (frame != nullptr) result.travelled_m = rounded(frame->travelled_m, 1e6);
+        if (frame != nullptr || !lap_.condition.name.empty() || lap_.condition.persistent) {
+            result.missed = missed_cones(sights);
+        }
         scene.cones = seen_cones(sights);
         mistake_colors(scene.cones);
-        Lane lane = ground_truth(sights, scene);
-        if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
-        result.ground_truth = std::move(lane);
+        if (course_.track.driven.empty()) {
+            Lane lane = ground_truth(sights, scene);
+            if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
+            result.ground_truth = std::move(lane);
+        } else if (scene.cones.empty()) {
+            return std::nullopt;
+        }
         add_false_positives(scene.cones, view);
         draw_confidences(scene.cones);
         Generator order = generator("order");
         shuffle(scene.cones, order);
         if (options_.nearest) {
+            const bool known = result.ground_truth.has_value();
             result.ground_truth = ground_truth_of_nearest(result, *options_.nearest);
-            if (!result.ground_truth) return std::nullopt;
+            if (known && !result.ground_truth) return std::nullopt;
             scene = nearest_ahead(scene, *options_.nearest);
         }
         return result;
@@ -319,7 +350,11 @@ class SceneMaker {
         boost::random::uniform_01<double> uniform;
         std::vector<Sight> sights(course_.cones.size(), Sight::out_of_view);
         for (std::size_t i = 0; i < sights.size(); ++i) {
-            if (!view.contains(course_.cones[i].position)) continue;
+            if (!view.contains(places_[i].value_or(course_.cones[i].position))) continue;
+            if (!places_[i]) {
+                sights[i] = Sight::unmapped;
+                continue;
+            }
             const double miss_rate = lap_.condition.miss_rate;
             const bool missed = miss_rate > 0.0 && uniform(random) < miss_rate;
             sights[i] = missed ? Sight::missed : Sight::seen;
@@ -330,7 +365,9 @@ class SceneMaker {
     [[nodiscard]] std::vector<Cone> missed_cones(const std::vector<Sight>& sights) const {
         std::vector<Cone> cones;
         for (std::size_t i = 0; i < sights.size(); ++i) {
-            if (sights[i] == Sight::missed) cones.push_back(course_.cones[i]);
+            if (sights[i] != Sight::missed && sights[i] != Sight::unmapped) continue;
+            cones.push_back(course_.cones[i]);
+            cones.back().position = places_[i].value_or(course_.cones[i].position);
         }
         return cones;
     }
@@ -342,6 +379,7 @@ class SceneMaker {
         for (std::size_t i = 0; i < sights.size(); ++i) {
             if (sights[i] != Sight::seen) continue;
             cones.push_back(course_.cones[i]);
+            cones.back().position = *places_[i];
             if (const double sigma_m = lap_.condition.noise_sigma_m; sigma_m > 0.0) {
                 const double x_m = sigma_m * standard(random);
                 const double y_m = sigma_m * standard(random);
@@ -416,7 +454,9 @@ class SceneMaker {
     const Course& course_;
     const SceneOptions& options_;
     const Lap& lap_;
+    const Viewpoint& viewpoint_;
     std::size_t pose_index_;
+    std::vector<std::optional<Point>> places_;  ///< of the course's cones on the map
 };
 
 void require_between(double value, double lowest, double highest, const std::string& key) {
@@ -512,22 +552,58 @@ std::vector<std::string> condition_names(const SceneOptions& options) {
     return names;
 }
 
+namespace {
+
+std::vector<Viewpoint> viewpoints_at(std::span<const Pose> poses) {
+    std::vector<Viewpoint> viewpoints;
+    for (const Pose& pose : poses) viewpoints.push_back({pose});
+    return viewpoints;
+}
+
+/// Along the centre line of a track, or of a run its frames, one every so many metres of travel. Nothing
+/// where no pose of the track can have a ground truth.
+std::vector<Viewpoint> viewpoints_along(const Track& track, double every_m) {
+    if (track.frames.empty()) return viewpoints_at(centre_line_poses(boundaries(track), every_m));
+    std::vector<Viewpoint> viewpoints;
+    double steps = 0.0;  // of every_m, to where the next frame is taken
+    for (const RunFrame& frame : track.frames) {
+        if (frame.travelled_m < steps * every_m) continue;
+        viewpoints.push_back({frame.pose, &frame});
+        steps = std::floor(frame.travelled_m / every_m) + 1.0;
+    }
+    return viewpoints;
+}
+
+std::vector<Viewpoint> viewpoints_asked_for(const Track& track, const SceneOptions& options) {
+    validate(options);
+    return viewpoints_along(track, options.every_m);
+}
+
+}  // namespace
+
 TrackLaps::TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options)
-    : poses_(poses), options_(options) {
+    : TrackLaps(track, viewpoints_at(poses), options) {}
+
+TrackLaps::TrackLaps(const Track& track, const SceneOptions& options)
+    : TrackLaps(track, viewpoints_asked_for(track, options), options) {}
+
+TrackLaps::TrackLaps(const Track& track, std::vector<Viewpoint> viewpoints, const SceneOptions& options)
+    : viewpoints_(std::move(viewpoints)), options_(options) {
     validate(options);
     conditions_ = conditions_of(options);
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
         require_near_origin(track.cones[i].position, fmt::format("{}: cones[{}]", track.name, i));
     }
-    for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (std::size_t i = 0; i < viewpoints_.size(); ++i) {
+        const Pose& pose = viewpoints_[i].pose;
         const std::string key = fmt::format("{}: poses[{}]", track.name, i);
-        require_near_origin(poses[i].position, key);
-        if (!std::isfinite(poses[i].yaw_rad)) throw InvalidInput(key, "yaw must be a finite number");
+        require_near_origin(pose.position, key);
+        if (!std::isfinite(pose.yaw_rad)) throw InvalidInput(key, "yaw must be a finite number");
     }
-    if (track.left.size() < 2 || track.right.size() < 2) return;
+    if (track.driven.empty() && (track.left.size() < 2 || track.right.size() < 2)) return;
     Course course = make_course(track, options);
     if (std::ranges::any_of(conditions_, &Condition::persistent)) {
-        course.lap = centre_line_poses(course.polylines, kLapStep_m);
+        course.lap = viewpoints_along(track, kLapStep_m);
     }
     course_ = std::make_unique<const Course>(std::move(course));
 }
@@ -555,12 +631,12 @@ Lap lap_of(const Course& course, const SceneOptions& options, const std::vector<
 std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
     if (!course_) return {};
     const Lap shared = lap_of(*course_, options_, conditions_, lap);
-    std::vector<std::optional<AnnotatedScene>> made(poses_.size());
+    std::vector<std::optional<AnnotatedScene>> made(viewpoints_.size());
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
         oneapi::tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t pose) {
-            made[pose] = SceneMaker(*course_, options_, shared, pose).make(poses_[pose]);
+            made[pose] = SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make();
         });
     });
     std::vector<AnnotatedScene> scenes;
@@ -573,15 +649,15 @@ std::vector<AnnotatedScene> TrackLaps::make(std::size_t lap) const {
 bool TrackLaps::is_empty(std::size_t lap) const {
     if (!course_) return true;
     const Lap shared = lap_of(*course_, options_, conditions_, lap);
-    for (std::size_t pose = 0; pose < poses_.size(); ++pose) {
-        if (SceneMaker(*course_, options_, shared, pose).make(poses_[pose])) return false;
+    for (std::size_t pose = 0; pose < viewpoints_.size(); ++pose) {
+        if (SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make()) return false;
     }
     return true;
 }
 
-std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
-                                            const SceneOptions& options) {
-    const TrackLaps laps(track, poses, options);
+namespace {
+
+std::vector<AnnotatedScene> all_scenes(const TrackLaps& laps) {
     std::vector<AnnotatedScene> scenes;
     for (std::size_t lap = 0; lap < laps.size(); ++lap) {
         std::ranges::move(laps.make(lap), std::back_inserter(scenes));
@@ -589,9 +665,15 @@ std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const 
     return scenes;
 }
 
+}  // namespace
+
+std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
+                                            const SceneOptions& options) {
+    return all_scenes(TrackLaps(track, poses, options));
+}
+
 std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options) {
-    validate(options);
-    return generate_scenes(track, centre_line_poses(boundaries(track), options.every_m), options);
+    return all_scenes(TrackLaps(track, options));
 }
 
 }  // namespace conelane::experiments

@@ -49,8 +49,8 @@ void validate(const SceneOptions& options);
 [[nodiscard]] std::vector<std::string> condition_names(const SceneOptions& options);
 
 /// The scenes that a car sees along a track, with their ground truth; those without one (a run shorter than
-/// two cones) are left out. Order: condition, range, rate, pose, so that the scenes of a lap follow one
-/// another.
+/// two cones) are left out. Where the track has none but a driven path, all scenes with a cone are made.
+/// Order: condition, range, rate, pose, so that the scenes of a lap follow one another.
 ///
 /// The pose with index i in `poses` gives the scene "TRACK/pose_i/fp_RATE/range_RANGE", with a part more for
 /// the condition (but `paper`), else for each disturbance, and for `nearest`. Its content depends on nothing
@@ -69,12 +69,19 @@ void validate(const SceneOptions& options);
 
 struct Course;  ///< what all scenes of a track share
 
+/// From where, and by which map, a scene is seen.
+struct Viewpoint {
+    Pose pose;
+    const RunFrame* frame = nullptr;  ///< of a run; else all cones of the track are on the map
+};
+
 /// The scenes of `generate_scenes` lap by lap, for who does not want all of them in memory. A lap is one
-/// condition, range and rate; `poses`, `track` and `options` must outlive the object.
+/// condition, range and rate; `track` and `options` must outlive the object.
 class TrackLaps {
   public:
-    /// Throws like generate_scenes.
+    /// Both throw like generate_scenes.
     TrackLaps(const Track& track, std::span<const Pose> poses, const SceneOptions& options);
+    TrackLaps(const Track& track, const SceneOptions& options);
     ~TrackLaps();
     TrackLaps(const TrackLaps&) = delete;
     TrackLaps& operator=(const TrackLaps&) = delete;
@@ -86,14 +93,18 @@ class TrackLaps {
     [[nodiscard]] bool is_empty(std::size_t lap) const;
 
   private:
-    std::span<const Pose> poses_;
+    TrackLaps(const Track& track, std::vector<Viewpoint> viewpoints, const SceneOptions& options);
+
+    std::vector<Viewpoint> viewpoints_;
     const SceneOptions& options_;
     std::vector<Condition> conditions_;
     std::unique_ptr<const Course> course_;  ///< none where no pose of the track can have a ground truth
 };
 
 /// The same along the track's centre line, a pose every `every_m` of travel (see centre_line_poses, whose
-/// InvalidInput it passes on).
+/// InvalidInput it passes on). Along a run, a frame every `every_m` of its travel: its pose, and of the cones
+/// those that its map holds, where they are on it. A cone in view that it lacks counts as missed where it
+/// stands alone on its boundary; the ground truth ends before two in a row.
 [[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options);
 
 }  // namespace conelane::experiments

@@ -2,11 +2,13 @@
 
 #include "experiments/files/input_error.hpp"
 #include "experiments/scenes/scene_file.hpp"
-#include "experiments/tracks/centre_line.hpp"
 #include "experiments/tracks/track_spec.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
+
+#include <fmt/core.h>
 
 namespace conelane::experiments {
 
@@ -19,8 +21,10 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
         for (const Track& track : load_tracks(spec)) {
             const auto [entry, is_new] = set.tracks.emplace(track.name, boundaries(track));
             if (!is_new) throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
-            const std::vector<Pose> poses = centre_line_poses(entry->second, options.every_m);
-            const TrackLaps laps(track, poses, options);
+            for (const std::string& warning : track.warnings) {
+                fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
+            }
+            const TrackLaps laps(track, options);
             for (std::size_t lap = 0; lap < laps.size(); ++lap) {
                 // Laps without a scene are not counted: no reader of a scenes file can know of them.
                 if (laps_with_scenes % shard.count != shard.index) {

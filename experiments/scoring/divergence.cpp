@@ -8,9 +8,9 @@
 
 namespace conelane::experiments {
 
-std::optional<double> boundary_divergence_m(std::span<const Point> predicted,
-                                            std::span<const Point> annotated, bool closed,
-                                            const Point& first_ground_truth_cone) {
+std::optional<BoundaryDivergence> boundary_divergence(std::span<const Point> predicted,
+                                                      std::span<const Point> annotated, bool closed,
+                                                      const Point& first_ground_truth_cone) {
     if (predicted.empty()) return std::nullopt;
     if (annotated.empty()) throw InvalidInput("tracks", "an annotated boundary has no points");
     const double course_m = polyline_length_m(annotated, closed);
@@ -32,12 +32,20 @@ std::optional<double> boundary_divergence_m(std::span<const Point> predicted,
         const PolylineFoot foot = foot_on_polyline(predicted[i], annotated, closed);
         const double move_m = moved(last_foot_m, foot.arc_length_m, back_m);
         if (foot.distance_m > kOffBoundary_m || move_m < -back_m || move_m > ahead_m) {
-            return std::max(0.0, travelled_m);
+            return BoundaryDivergence{std::max(0.0, travelled_m), i};
         }
         last_foot_m = foot.arc_length_m;
         travelled_m += move_m;
     }
     return std::nullopt;
+}
+
+std::optional<double> boundary_divergence_m(std::span<const Point> predicted,
+                                            std::span<const Point> annotated, bool closed,
+                                            const Point& first_ground_truth_cone) {
+    const auto divergence = boundary_divergence(predicted, annotated, closed, first_ground_truth_cone);
+    if (!divergence) return std::nullopt;
+    return divergence->distance_m;
 }
 
 std::optional<double> divergence_m(const LaneOutline& predicted, const LaneOutline& ground_truth,

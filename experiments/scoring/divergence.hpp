@@ -4,6 +4,7 @@
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -19,7 +20,13 @@ inline constexpr double kFootAhead_m = 3.0;
 inline constexpr double kFirstFootBack_m = 8.0;
 inline constexpr double kFirstFootAhead_m = 12.0;
 
-/// Divergence distance [m] of one predicted boundary; nothing where no vertex is off.
+/// Where one predicted boundary leaves the annotated one.
+struct BoundaryDivergence {
+    double distance_m;       ///< the divergence distance
+    std::size_t vertex_off;  ///< index of the first vertex that is off
+};
+
+/// The first vertex of one predicted boundary that is off; nothing where none is.
 ///
 /// Walks `predicted` outward. A vertex is off when it is more than kOffBoundary_m from the whole `annotated`
 /// polyline, or when its foot point there leaps along the polyline; the limits themselves are not off. On a
@@ -28,6 +35,11 @@ inline constexpr double kFirstFootAhead_m = 12.0;
 /// foot of `first_ground_truth_cone` to that of the last vertex before the first one off, 0 where there is
 /// none or it lies behind that cone.
 /// Throws InvalidInput where `annotated` has no vertex and `predicted` has one.
+[[nodiscard]] std::optional<BoundaryDivergence> boundary_divergence(std::span<const Point> predicted,
+                                                                    std::span<const Point> annotated,
+                                                                    bool closed,
+                                                                    const Point& first_ground_truth_cone);
+/// The divergence distance alone.
 [[nodiscard]] std::optional<double> boundary_divergence_m(std::span<const Point> predicted,
                                                           std::span<const Point> annotated, bool closed,
                                                           const Point& first_ground_truth_cone);

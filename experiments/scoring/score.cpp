@@ -397,6 +397,7 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
     for (const SceneScore& score : scores) {
         ++of_category[static_cast<std::size_t>(score.category)];
         if (score.error) ++result.errors;
+        if (score.trained_on) ++result.trained_on;
         if (!score.divergence_known) ++result.divergence_unknown;
         if (score.success()) ++successes;
         if (score.accuracy) ++result.accuracy_scenes;

@@ -83,6 +83,7 @@ struct SceneScore {
     /// Against the ground truth's centre line; absent where the lane is not usable or was not held against
     /// it.
     std::optional<CentreLineError> centre_line_error;
+    bool trained_on = false;  ///< the method has learned from the course
     /// Whether the centre line agrees with that of the pose before; absent at the first pose of a lap.
     std::optional<bool> steady;
 
@@ -135,6 +136,7 @@ struct SceneScore {
 struct ScoreSummary {
     std::size_t scenes = 0;
     std::size_t errors = 0;                               ///< scenes on which the method failed
+    std::size_t trained_on = 0;                           ///< scenes of courses it has learned from
     std::size_t divergence_unknown = 0;                   ///< scenes scored without annotated boundaries
     std::array<double, kCategoryCount> category_share{};  ///< indexed by Category
     std::optional<double> usable_share;                   ///< of the scenes whose divergence is known

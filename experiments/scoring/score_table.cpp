@@ -77,7 +77,7 @@ Line line_of(const ScoreRow& row) {
     if (!row.key.condition.empty()) line[Column::condition] = row.key.condition;
     line[Column::rate] = percent(row.key.false_positive_rate);
     line[Column::range] = number(row.key.range_m, 0);
-    line[Column::scenes] = fmt::format("{}", summary.scenes);
+    line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
     line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
     line[Column::none] = percent(summary.share(Category::none));
     line[Column::error] = percent(static_cast<double>(summary.errors) / static_cast<double>(summary.scenes));
@@ -209,6 +209,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
         table += fmt::format("divergence unknown, scenes scored without the boundaries of their track: {}\n",
                              unknown);
     }
+    if (std::ranges::any_of(rows, [](const ScoreRow& row) { return row.summary.trained_on > 0; }))
+        table += "* with courses that the method has learned from: no held-out figure\n";
     table += "published (other machines; CLC: Tables I, II and VIII-G; RLD: IV, Figs. 6 and 7)\n";
     std::ranges::for_each(published, write);
     return table;
@@ -232,6 +234,7 @@ std::string summary_json(const ScoreRow& row) {
     json["scenes"] = summary.scenes;
     json["errors"] = summary.errors;
     json["divergence_unknown"] = summary.divergence_unknown;
+    if (summary.trained_on > 0) json["trained_on"] = summary.trained_on;
     for (std::size_t i = 0; i < kCategoryCount; ++i) {
         json["share"][std::string(to_string(static_cast<Category>(i)))] = summary.category_share[i];
     }

@@ -7,15 +7,18 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include <boost/geometry.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -26,8 +29,10 @@ struct EufsCones {
     std::vector<std::size_t> blue;
     std::vector<std::size_t> yellow;
     std::vector<std::size_t> orange;  ///< small and big ones
-    Pose car_start;
+    std::optional<Pose> car_start;
     std::size_t car_start_line = 0;
+    std::map<std::string, std::size_t>
+        other_tags;  ///< how many cones have a tag that says nothing of a boundary
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -69,8 +74,8 @@ class EufsColumns {
         const std::string_view tag = field(fields, tag_, line, "tag");
         const Point position{number(fields, x_, line, "x"), number(fields, y_, line, "y")};
         if (tag == "car_start") {
-            if (result.car_start_line > 0) throw InputError(file_, line, "car_start", "is there twice");
-            result.car_start = {position, number(fields, direction_, line, "direction")};
+            if (result.car_start) throw InputError(file_, line, "car_start", "is there twice");
+            result.car_start = Pose{position, number(fields, direction_, line, "direction")};
             result.car_start_line = line;
             return;
         }
@@ -87,7 +92,7 @@ class EufsColumns {
             cone.color = ConeColor::orange;
             result.orange.push_back(result.cones.size());
         } else if (tag != "unknown") {
-            throw InputError(file_, line, "tag", fmt::format("'{}' is no known tag", tag));
+            ++result.other_tags[std::string(tag)];
         }
         result.cones.push_back(cone);
     }
@@ -134,7 +139,6 @@ EufsCones read_eufs_cones(const std::filesystem::path& file) {
         }
     }
     if (!columns) throw InputError(file, 0, "tag", "column missing");
-    if (result.car_start_line == 0) throw InputError(file, 0, "car_start", "missing");
     return result;
 }
 
@@ -146,12 +150,33 @@ std::vector<Point> positions(const std::vector<Cone>& cones, const Boundary& bou
     return result;
 }
 
-Boundary in_tour_order(const std::vector<Cone>& cones, const Boundary& boundary) {
+Boundary in_order(const std::vector<Cone>& cones, const Boundary& boundary, bool closed) {
+    const std::vector<Point> points = positions(cones, boundary);
     Boundary ordered;
-    for (const std::size_t position : shortest_tour(positions(cones, boundary))) {
+    for (const std::size_t position : closed ? shortest_tour(points) : shortest_path(points)) {
         ordered.push_back(boundary[position]);
     }
     return ordered;
+}
+
+/// Whether cones can be the boundary of a closed course: their shortest tour takes no edge that stands out
+/// beside those of their shortest path, or, at a gate without cones of a colour, goes straight on there.
+bool may_close(const std::vector<Cone>& cones, const Boundary& boundary) {
+    constexpr double kOutstanding = 1.5;
+    constexpr double kLeastCosine = 0.5;  // of the turns at both ends of a gate
+    if (boundary.size() < 3) return false;
+    const std::vector<Point> path = positions(cones, in_order(cones, boundary, false));
+    const std::vector<Point> tour = positions(cones, in_order(cones, boundary, true));
+    double longest_m = 0.0;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        longest_m = std::max(longest_m, (path[i + 1] - path[i]).norm());
+    }
+    if (polyline_length_m(tour, true) - polyline_length_m(path, false) <= kOutstanding * longest_m)
+        return true;
+    const Point gap = (path.front() - path.back()).normalized();
+    const Point out = (path.back() - path[path.size() - 2]).normalized();
+    const Point in = (path[1] - path[0]).normalized();
+    return gap.dot(out) >= kLeastCosine && gap.dot(in) >= kLeastCosine;
 }
 
 using BoostPoint = boost::geometry::model::d2::point_xy<double>;
@@ -170,6 +195,7 @@ bool encloses(const Ring& outer, const Ring& inner) {
         inner, [&](const BoostPoint& vertex) { return boost::geometry::within(vertex, counter_clockwise); });
 }
 
+/// The place of a closed boundary's cone nearest ahead of a car.
 void start_nearest_ahead(Boundary& boundary, const std::vector<Cone>& cones, const Pose& car) {
     const auto distance_m = [&](std::size_t index) {
         const Point& position = cones[index].position;
@@ -179,56 +205,139 @@ void start_nearest_ahead(Boundary& boundary, const std::vector<Cone>& cones, con
     std::rotate(boundary.begin(), std::ranges::min_element(boundary, {}, distance_m), boundary.end());
 }
 
-}  // namespace
+/// Starts a closed course at its first pair: the first left cone of the file and the right one nearest to it.
+void start_at_first_pair(Track& track) {
+    std::rotate(track.left.begin(), std::ranges::min_element(track.left), track.left.end());
+    const Point first = track.cones[track.left.front()].position;
+    const auto nearest = std::ranges::min_element(
+        track.right, {}, [&](std::size_t index) { return (track.cones[index].position - first).norm(); });
+    std::rotate(track.right.begin(), nearest, track.right.end());
+}
 
-Track read_eufs_track(const std::filesystem::path& file) {
-    EufsCones content = read_eufs_cones(file);
-    Track track;
-    track.name = "eufs_" + file.stem().string();
-    track.closed = true;
-    track.left = content.blue;
-    track.right = content.yellow;
-    require_enough_cones({track.name, content.cones, track.left, track.right, true}, file);
+/// Turns the boundary of an open course around where most of the other one's cones lie on the wrong side of
+/// it: `side` is +1 where they belong to its left, -1 to its right.
+void direct_open_boundary(Boundary& boundary, const Boundary& other, const std::vector<Cone>& cones,
+                          double side) {
+    const std::vector<Point> line = positions(cones, boundary);
+    std::ptrdiff_t votes = 0;
+    for (const Point& position : positions(cones, other)) {
+        const PolylineFoot foot = foot_on_polyline(position, line);
+        const std::size_t from = std::min(foot.segment, line.size() - 2);
+        votes += side * cross(line[from + 1] - line[from], position - line[from]) > 0.0 ? 1 : -1;
+    }
+    if (votes < 0) std::ranges::reverse(boundary);
+}
 
+/// Takes orange cones out of an ordered boundary that stand beside it, not in its line: a gate may be wider
+/// than the lane.
+void drop_beside(Boundary& boundary, const std::vector<Cone>& cones, bool closed) {
+    constexpr double kSideBySide_m = 1.5;
+    constexpr double kDetour_m = 0.4;
+    const Boundary all = boundary;
+    const std::size_t n = all.size();
+    const auto beside = [&](std::size_t i) {
+        if (cones[all[i]].color != ConeColor::orange || (!closed && (i == 0 || i + 1 == n))) return false;
+        const Point& before = cones[all[(i + n - 1) % n]].position;
+        const Point& after = cones[all[(i + 1) % n]].position;
+        const Point& here = cones[all[i]].position;
+        const double to_before_m = (here - before).norm();
+        const double to_after_m = (after - here).norm();
+        return std::min(to_before_m, to_after_m) < kSideBySide_m &&
+               to_before_m + to_after_m - (after - before).norm() > kDetour_m;
+    };
+    boundary.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+        if (!beside(i)) boundary.push_back(all[i]);
+    }
+}
+
+/// Orders the boundaries of a track; orange cones join the one that they are nearer to if they stand in its
+/// line.
+void order_boundaries(Track& track, const Boundary& orange) {
     const auto order = [&] {
-        track.left = in_tour_order(content.cones, track.left);
-        track.right = in_tour_order(content.cones, track.right);
+        track.left = in_order(track.cones, track.left, track.closed);
+        track.right = in_order(track.cones, track.right, track.closed);
     };
     order();
-    if (!content.orange.empty()) {
-        const std::vector<Point> left = positions(content.cones, track.left);
-        const std::vector<Point> right = positions(content.cones, track.right);
-        for (const std::size_t index : content.orange) {
-            const Point& position = content.cones[index].position;
-            const bool nearer_left = foot_on_polyline(position, left, true).distance_m <=
-                                     foot_on_polyline(position, right, true).distance_m;
-            (nearer_left ? track.left : track.right).push_back(index);
-        }
-        order();
+    if (orange.empty()) return;
+    const std::vector<Point> left = positions(track.cones, track.left);
+    const std::vector<Point> right = positions(track.cones, track.right);
+    for (const std::size_t index : orange) {
+        const Point& position = track.cones[index].position;
+        const bool nearer_left = foot_on_polyline(position, left, track.closed).distance_m <=
+                                 foot_on_polyline(position, right, track.closed).distance_m;
+        (nearer_left ? track.left : track.right).push_back(index);
     }
+    order();
+    drop_beside(track.left, track.cones, track.closed);
+    drop_beside(track.right, track.cones, track.closed);
+}
 
-    // The colours fix the direction: who has the inner boundary on the left drives counter-clockwise.
-    const Ring left_ring = ring(positions(content.cones, track.left));
-    const Ring right_ring = ring(positions(content.cones, track.right));
+/// Gives the ordered boundaries of a closed course their direction, which the colours fix: who has the inner
+/// boundary on the left drives counter-clockwise.
+void direct_closed_boundaries(Track& track, const std::filesystem::path& file) {
+    const Ring left_ring = ring(positions(track.cones, track.left));
+    const Ring right_ring = ring(positions(track.cones, track.right));
     const bool counter_clockwise = encloses(right_ring, left_ring);
     if (!counter_clockwise && !encloses(left_ring, right_ring)) {
         throw InputError(file, 0, "tag", "the blue and the yellow cones do not bound a closed course");
     }
     if ((boost::geometry::area(left_ring) > 0.0) != counter_clockwise) std::ranges::reverse(track.left);
     if ((boost::geometry::area(right_ring) > 0.0) != counter_clockwise) std::ranges::reverse(track.right);
+}
 
-    const std::vector<Point> left = positions(content.cones, track.left);
-    const PolylineFoot foot = foot_on_polyline(content.car_start.position, left, true);
-    const Point along = left[(foot.segment + 1) % left.size()] - left[foot.segment];
-    if (along.dot(content.car_start.heading()) <= 0.0) {
-        throw InputError(file, content.car_start_line, "direction",
-                         "the car does not drive with the blue cones on its left");
+void require_direction_of_car(const Track& track, const EufsCones& content,
+                              const std::filesystem::path& file) {
+    const std::vector<Point> left = positions(track.cones, track.left);
+    const PolylineFoot foot = foot_on_polyline(content.car_start->position, left, track.closed);
+    const std::size_t from = track.closed ? foot.segment : std::min(foot.segment, left.size() - 2);
+    const Point along = left[(from + 1) % left.size()] - left[from];
+    if (along.dot(content.car_start->heading()) > 0.0) return;
+    throw InputError(file, content.car_start_line, "direction",
+                     "the car does not drive with the blue cones on its left");
+}
+
+std::string warning_of(const std::map<std::string, std::size_t>& other_tags) {
+    std::size_t cones = 0;
+    std::vector<std::string> tags;
+    for (const auto& [tag, count] : other_tags) {
+        cones += count;
+        tags.push_back(tag);
     }
-    start_nearest_ahead(track.left, content.cones, content.car_start);
-    start_nearest_ahead(track.right, content.cones, content.car_start);
-    track.cones = std::move(content.cones);
+    return fmt::format("{} cones belong to no boundary by their tag: {}", cones, fmt::join(tags, ", "));
+}
+
+}  // namespace
+
+Track read_eufs_track(const std::filesystem::path& file) {
+    EufsCones content = read_eufs_cones(file);
+    Track track;
+    track.name = "eufs_" + file.stem().string();
+    track.cones = content.cones;
+    track.left = content.blue;
+    track.right = content.yellow;
+    track.closed = false;
+    require_enough_cones(track, file);
+    track.closed = may_close(track.cones, track.left) || may_close(track.cones, track.right);
+    require_enough_cones(track, file);
+
+    order_boundaries(track, content.orange);
+    if (track.closed) {
+        direct_closed_boundaries(track, file);
+    } else {
+        direct_open_boundary(track.left, track.right, track.cones, -1.0);
+        direct_open_boundary(track.right, track.left, track.cones, 1.0);
+    }
+    if (content.car_start) require_direction_of_car(track, content, file);
+    if (track.closed && content.car_start) {
+        start_nearest_ahead(track.left, track.cones, *content.car_start);
+        start_nearest_ahead(track.right, track.cones, *content.car_start);
+    } else if (track.closed) {
+        start_at_first_pair(track);
+    }
     track = without_doubled_cones(std::move(track));
     require_enough_cones(track, file);
+    if (!content.other_tags.empty()) track.warnings.push_back(warning_of(content.other_tags));
     return track;
 }
 

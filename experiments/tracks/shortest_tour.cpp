@@ -25,8 +25,11 @@ class TourImprovement {
 
   private:
     [[nodiscard]] double distance_m(std::size_t a, std::size_t b) const {
-        return (points_[a] - points_[b]).norm();
+        return is_joker(a) || is_joker(b) ? 0.0 : (points_[a] - points_[b]).norm();
     }
+    /// A place that is near to all others: the tour through it is a path from one of its neighbours to the
+    /// other.
+    [[nodiscard]] bool is_joker(std::size_t index) const { return index == points_.size(); }
     [[nodiscard]] std::size_t at(std::size_t position) const { return tour_[position % tour_.size()]; }
 
     /// 2-opt: the first exchange of two segments found that shortens the tour.
@@ -106,28 +109,42 @@ Tour nearest_neighbour_tour(std::span<const Point> points, std::size_t start) {
     return tour;
 }
 
-double tour_length_m(std::span<const Point> points, const Tour& tour) {
+/// Length of a tour, of a path where it is not closed.
+double length_m(std::span<const Point> points, const Tour& tour, bool closed) {
     std::vector<Point> vertices;
     for (const std::size_t index : tour) vertices.push_back(points[index]);
-    return polyline_length_m(vertices, true);
+    return polyline_length_m(vertices, closed);
+}
+
+Tour best_tour(std::span<const Point> points, bool closed) {
+    Tour best;
+    double best_m = std::numeric_limits<double>::infinity();
+    const std::size_t starts = std::min(points.size(), kMostStarts);
+    for (std::size_t start = 0; start < starts; ++start) {
+        Tour tour = nearest_neighbour_tour(points, start * points.size() / starts);
+        if (!closed) tour.push_back(points.size());
+        tour = TourImprovement(points, std::move(tour)).run();
+        if (!closed) {
+            std::rotate(tour.begin(), std::ranges::find(tour, points.size()), tour.end());
+            tour.erase(tour.begin());
+        }
+        const double tour_m = length_m(points, tour, closed);
+        if (tour_m < best_m - kSmallestGain_m) {
+            best_m = tour_m;
+            best = std::move(tour);
+        }
+    }
+    return best;
 }
 
 }  // namespace
 
 std::vector<std::size_t> shortest_tour(std::span<const Point> points) {
-    Tour best;
-    double best_m = std::numeric_limits<double>::infinity();
-    const std::size_t starts = std::min(points.size(), kMostStarts);
-    for (std::size_t start = 0; start < starts; ++start) {
-        Tour tour =
-            TourImprovement(points, nearest_neighbour_tour(points, start * points.size() / starts)).run();
-        const double length_m = tour_length_m(points, tour);
-        if (length_m < best_m - kSmallestGain_m) {
-            best_m = length_m;
-            best = std::move(tour);
-        }
-    }
-    return best;
+    return best_tour(points, true);
+}
+
+std::vector<std::size_t> shortest_path(std::span<const Point> points) {
+    return best_tour(points, false);
 }
 
 }  // namespace conelane::experiments

@@ -13,4 +13,7 @@ namespace conelane::experiments {
 /// between its segments. Deterministic; for a few hundred points.
 [[nodiscard]] std::vector<std::size_t> shortest_tour(std::span<const Point> points);
 
+/// The same for an open path, from either of its ends.
+[[nodiscard]] std::vector<std::size_t> shortest_path(std::span<const Point> points);
+
 }  // namespace conelane::experiments

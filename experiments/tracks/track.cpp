@@ -5,6 +5,7 @@ namespace conelane::experiments {
 TrackBoundaries boundaries(const Track& track) {
     TrackBoundaries result;
     result.closed = track.closed;
+    result.driven = track.driven;
     for (const std::size_t index : track.left) result.left.push_back(track.cones[index].position);
     for (const std::size_t index : track.right) result.right.push_back(track.cones[index].position);
     return result;

@@ -14,7 +14,8 @@ struct TrackBoundaries {
     std::vector<Point> left;
     std::vector<Point> right;
     bool closed = true;
-    std::vector<Point> driven = {};  ///< the path of a run without annotated boundaries; else empty
+    /// The path that was driven, where a run has no annotated boundaries; these are empty then.
+    std::vector<Point> driven = {};
 };
 
 using TrackBoundariesByName = std::map<std::string, TrackBoundaries>;

@@ -140,6 +140,10 @@ Track without_doubled_cones(Track track) {
         if (!doubled[index]) cones.push_back(track.cones[index]);
     }
     track.cones = std::move(cones);
+    for (RunFrame& frame : track.frames) {
+        std::erase_if(frame.map, [&](const MapPlace& place) { return doubled[place.cone]; });
+        for (MapPlace& place : frame.map) place.cone = new_index[place.cone];
+    }
     for (std::size_t& index : track.left) index = new_index[index];
     for (std::size_t& index : track.right) index = new_index[index];
     return track;

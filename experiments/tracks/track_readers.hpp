@@ -27,11 +27,14 @@ inline constexpr double kDoubledCone_m = 0.3;
 /// unknown.
 [[nodiscard]] Track read_pacsim_track(const std::filesystem::path& file);
 
-/// An EUFS track: unordered cones of one closed course, blue ones left and yellow ones right of the driving
+/// An EUFS track: unordered cones of one course, blue ones left and yellow ones right of the driving
 /// direction. Each boundary becomes the shortest tour of its cones that starts at the cone nearest ahead of
-/// `car_start`; orange cones join the boundary they are nearer to, those tagged `unknown` none. Ids count the
-/// cones in file order. Colours that do not bound a ring, or that contradict the direction of `car_start`,
-/// are an error.
+/// `car_start`; without one, at the first left cone of the file and the right one nearest to it. Where
+/// neither colour can close without an edge that stands out and turns back, the course is open: each boundary
+/// becomes the shortest path of its cones, from end to end. Orange cones join the boundary they are nearer
+/// to, but those beside a cone of its line none; nor do cones of any other tag, which a warning counts,
+/// except `unknown`. Ids count the cones in file order. Colours of a closed course that do not bound a ring,
+/// or that contradict the direction of `car_start`, are an error.
 [[nodiscard]] Track read_eufs_track(const std::filesystem::path& file);
 
 }  // namespace conelane::experiments

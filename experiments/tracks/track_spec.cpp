@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
+#include "experiments/tracks/run_log.hpp"
 #include "experiments/tracks/track_readers.hpp"
 
 #include <algorithm>
@@ -105,22 +106,41 @@ std::vector<Track> fsd(const std::string& spec, const std::string& where) {
     return tracks;
 }
 
+/// The track of a file, or those of all files in a folder that end like one, in the order of their names.
+std::vector<Track> of_files(const std::string& spec, const fs::path& where, std::string_view ending,
+                            Track (*read)(const fs::path&)) {
+    if (!fs::is_directory(where)) return {read(where)};
+    std::set<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(where)) {
+        if (entry.path().extension() == ending) files.insert(entry.path());
+    }
+    if (files.empty()) fail(spec, fmt::format("{} holds no {} file", where.string(), ending));
+    std::vector<Track> tracks;
+    tracks.reserve(files.size());
+    for (const fs::path& file : files) tracks.push_back(read(file));
+    return tracks;
+}
+
 }  // namespace
 
 std::vector<Track> load_tracks(const std::string& spec) {
     const std::size_t colon = spec.find(':');
     const std::string kind = spec.substr(0, colon);
     const std::string what = colon == std::string::npos ? "" : spec.substr(colon + 1);
-    if (what.empty()) fail(spec, "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE or eufs:FILE");
+    if (what.empty())
+        fail(spec,
+             "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE, eufs:FILE or ftlog:FILE, "
+             "where a FILE may be a folder of such");
     try {
         if (kind == "generated") return generated(spec, what);
         if (kind == "fsd") return fsd(spec, what);
-        if (kind == "pacsim") return {read_pacsim_track(what)};
-        if (kind == "eufs") return {read_eufs_track(what)};
+        if (kind == "pacsim") return of_files(spec, what, ".yaml", read_pacsim_track);
+        if (kind == "eufs") return of_files(spec, what, ".csv", read_eufs_track);
+        if (kind == "ftlog") return of_files(spec, what, ".json", read_run_log);
     } catch (const fs::filesystem_error& error) {
         fail(spec, error.code().message());
     }
-    fail(spec, fmt::format("'{}' is none of generated, fsd, pacsim and eufs", kind));
+    fail(spec, fmt::format("'{}' is none of generated, fsd, pacsim, eufs and ftlog", kind));
 }
 
 }  // namespace conelane::experiments

@@ -21,6 +21,8 @@ constexpr double kLargestLogStretch = 0.15;
 
 Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
     track.name += fmt::format("_variant{}", number);
+    track.frames.clear();  // a variant of a run is a course
+    track.driven.clear();
     boost::random::mt19937_64 random = generator_of(track.name, seed);
     const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
     boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);

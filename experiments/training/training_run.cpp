@@ -2,6 +2,7 @@
 
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tracks/track_spec.hpp"
 #include "experiments/training/track_variant.hpp"
@@ -35,20 +36,6 @@ Json describe(const RankingFigures& figures) {
             {"near_best_share", rounded(figures.near_best_share)},
             {"critical_share", rounded(figures.critical_share)},
             {"least_critical_share", rounded(figures.least_critical_share)}};
-}
-
-Json describe(const SceneOptions& scenes) {
-    Json json{
-        {"fp", scenes.false_positive_rates},
-        {"range", scenes.ranges_m},
-        {"every", scenes.every_m},
-        {"noise", scenes.noise_sigma_m.value_or(0.0)},
-        {"pose_noise", {scenes.pose_noise_lateral_m.value_or(0.0), scenes.pose_noise_yaw_rad.value_or(0.0)}},
-        {"miss", scenes.miss_rate.value_or(0.0)},
-        {"seed", scenes.seed}};
-    if (!scenes.conditions.empty()) json["condition"] = condition_names(scenes);
-    if (scenes.persistent) json["persist"] = *scenes.persistent;
-    return json;
 }
 
 Json describe(const RankNetTrainingOptions& training) {
@@ -91,6 +78,7 @@ std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
 void add_variants(const TrainingRunOptions& options, SceneSet& set) {
     for (const std::string& spec : options.tracks) {
         for (const Track& track : load_tracks(spec)) {
+            if (!track.frames.empty()) continue;  // the maps of a run are as they were recorded
             for (std::size_t number = 1; number <= options.variants; ++number) {
                 const Track variant = track_variant(track, number, options.scenes.seed);
                 set.tracks.emplace(variant.name, boundaries(variant));
@@ -118,7 +106,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     const Json record{{"tracks", trained_on},
                       {"variants", options.variants},
                       {"hold_out_tracks", track_names(held_out)},
-                      {"scenes", describe(options.scenes)},
+                      {"scenes", scene_options_json(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"most_candidates_per_scene", options.candidates.most_per_scene},
                       {"iterations", options.candidates.search.iteration_limit},
@@ -139,7 +127,7 @@ StepTrainingRun run_step_training(const StepTrainingRunOptions& options) {
     run.held_out = step_score_figures(held_out, run.scores, options.training.search);
     const Json record{{"tracks", track_names(set)},
                       {"hold_out_tracks", track_names(held_out)},
-                      {"scenes", describe(options.scenes)},
+                      {"scenes", scene_options_json(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
                       {"beam",
                        {{"width", options.training.search.beam_width},

@@ -19,17 +19,15 @@ using P = DelaunayBeamParameters;
 using HalfEdge = DelaunayTriangulation::HalfEdge;
 
 constexpr std::array kFields{
-    ParameterField<P>{"w_turn", &P::w_turn, "1/rad^2", 0.01, 100.0, true, "weight of the largest turn"},
-    ParameterField<P>{"w_width_spread", &P::w_width_spread, "1/m^2", 0.01, 100.0, true,
+    ParameterField<P>{"w_turn", &P::w_turn, "1/rad^2", 0.001, 10.0, true, "weight of the largest turn"},
+    ParameterField<P>{"w_width_spread", &P::w_width_spread, "1/m^2", 0.001, 10.0, true,
                       "weight of the variance of the track width"},
-    ParameterField<P>{"w_width", &P::w_width, "1/m^2", 0.01, 100.0, true,
+    ParameterField<P>{"w_width", &P::w_width, "1/m^2", 0.001, 10.0, true,
                       "weight of the error of the mean width"},
     ParameterField<P>{"w_spacing", &P::w_spacing, "1/m^2", 0.001, 10.0, true,
                       "weight of the variance of the boundaries' spacing"},
-    ParameterField<P>{"w_length", &P::w_length, "1", 0.1, 1000.0, true, "weight of the error of the length"},
     ParameterField<P>{"w_start", &P::w_start, "1/m^2", 0.0001, 1.0, true,
                       "weight of the distance to the first middle point"},
-    ParameterField<P>{"w_color", &P::w_color, "1", 0.01, 100.0, true, "weight of wrong colours"},
     ParameterField<P>{"expected_width_m", &P::expected_width_m, "m", 2.5, 6.5, false, "of the track"},
     ParameterField<P>{"expected_length_m", &P::expected_length_m, "m", 10.0, 60.0, false, "of the path"},
     ParameterField<P>{"widest_m", &P::widest_m, "m", 3.0, 12.0, false, "longest edge that is crossed"},
@@ -38,6 +36,7 @@ constexpr std::array kFields{
     ParameterField<P>{"start_radius_m", &P::start_radius_m, "m", 3.0, 15.0, false,
                       "farthest first middle point"},
 };
+constexpr double kLargestColorWeight = 1000.0;
 constexpr std::size_t kWidestBeam = 10'000;
 /// Nearer middle points have no direction from the car that means anything.
 constexpr double kNoDirection_m = 0.5;
@@ -205,8 +204,8 @@ class DelaunayBeamDetector : public LaneDetector {
     void add_children(std::size_t parent, const Scene& scene) {
         const HalfEdge ahead = tree_[parent].ahead;
         if (ahead == DelaunayTriangulation::kNone) return;
-        const HalfEdge from_right = triangulation_.next(ahead);
-        const HalfEdge to_left = triangulation_.next(from_right);
+        const HalfEdge from_right = DelaunayTriangulation::next(ahead);
+        const HalfEdge to_left = DelaunayTriangulation::next(from_right);
         const Vertex third = triangulation_.origin(to_left);
         if (is_on_path(third, parent)) return;
         add_child(parent, kLeft, third, triangulation_.twin(from_right), scene);
@@ -280,8 +279,8 @@ class DelaunayBeamDetector : public LaneDetector {
         return p.w_turn * squared(node.largest_turn_rad) + p.w_width_spread * node.width.variance() +
                p.w_width * squared(node.width.mean() - p.expected_width_m) +
                p.w_spacing * 0.5 * (node.spacing[kLeft].variance() + node.spacing[kRight].variance()) +
-               p.w_length * squared(node.length_m / p.expected_length_m - 1.0) +
-               p.w_start * squared(node.start_m) + p.w_color * node.wrong_colors / cones;
+               squared(node.length_m / p.expected_length_m - 1.0) + p.w_start * squared(node.start_m) +
+               p.w_color * node.wrong_colors / cones;
     }
 
     const DelaunayBeamParameters parameters_;
@@ -301,6 +300,8 @@ std::span<const ParameterField<DelaunayBeamParameters>> delaunay_beam_fields() {
 
 void validate(const DelaunayBeamParameters& parameters) {
     require_in_range(parameters, delaunay_beam_fields());
+    if (!(parameters.w_color >= 0.0 && parameters.w_color <= kLargestColorWeight))
+        throw InvalidInput("w_color", "must be between 0 and " + std::to_string(kLargestColorWeight));
     if (parameters.beam_width < 1 || parameters.beam_width > kWidestBeam)
         throw InvalidInput("beam_width", "must be between 1 and " + std::to_string(kWidestBeam));
 }

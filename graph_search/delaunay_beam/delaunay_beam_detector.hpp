@@ -10,25 +10,28 @@
 
 namespace conelane {
 
-/// What a path costs, and how far the tree of paths reaches. The paper prints no values.
+/// What a path costs, relative to the squared relative error of its length, and how far the tree of paths
+/// reaches. The paper prints no values.
 struct DelaunayBeamParameters {
-    double w_turn = 1.0;          ///< weight of the squared largest turn [1/rad^2]
-    double w_width_spread = 1.0;  ///< weight of the variance of the track width [1/m^2]
-    double w_width = 1.0;         ///< weight of the squared error of the mean width [1/m^2]
-    double w_spacing = 0.3;       ///< weight of the mean variance of both boundaries' spacing [1/m^2]
-    double w_length = 5.0;        ///< weight of the squared relative error of the length
-    double w_start = 0.02;        ///< weight of the squared distance to the first middle point [1/m^2]
-    double w_color = 1.0;  ///< weight of the mean probability that a cone's colour is of the other side
+    double w_turn = 0.2;          ///< weight of the squared largest turn [1/rad^2]
+    double w_width_spread = 0.2;  ///< weight of the variance of the track width [1/m^2]
+    double w_width = 0.1;         ///< weight of the squared error of the mean width [1/m^2]
+    double w_spacing = 0.05;      ///< weight of the mean variance of both boundaries' spacing [1/m^2]
+    double w_start = 0.01;        ///< weight of the squared distance to the first middle point [1/m^2]
     double expected_width_m = 4.0;
     double expected_length_m = 25.0;  ///< of the path; no path grows beyond it
     double widest_m = 7.0;            ///< longest edge that a path crosses
     double longest_spacing_m = 6.5;   ///< longest edge of a boundary
     double start_radius_m = 7.0;      ///< farthest middle point that a path may begin with
+
+    // Not tuned: scenes are scored without colours, and a wider beam only takes longer.
+    /// Weight of the mean probability that a cone has the colour of the other side, in [0, 1000].
+    double w_color = 1.0;
     /// Paths kept at each depth of the tree, in [1, 10000].
     std::size_t beam_width = 100;
 };
 
-/// All numbers of a DelaunayBeamParameters but the beam's width, in the order of files.
+/// The numbers that are tuned, in the order of files.
 [[nodiscard]] std::span<const ParameterField<DelaunayBeamParameters>> delaunay_beam_fields();
 
 /// Throws InvalidInput naming the first parameter that is out of its range.

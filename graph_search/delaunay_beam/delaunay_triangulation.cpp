@@ -53,9 +53,8 @@ void DelaunayTriangulation::place_sites(std::span<const Point> points) {
         sites_.push_back({std::llround(units.x()), std::llround(units.y()), static_cast<Vertex>(i)});
     }
     std::ranges::sort(sites_);
-    const auto repeated =
-        std::ranges::unique(sites_, [](const Site& a, const Site& b) { return a.x == b.x && a.y == b.y; });
-    sites_.erase(repeated.begin(), repeated.end());
+    const auto same_place = [](const Site& a, const Site& b) { return a.x == b.x && a.y == b.y; };
+    sites_.erase(std::unique(sites_.begin(), sites_.end(), same_place), sites_.end());
 }
 
 DelaunayTriangulation::HalfEdge DelaunayTriangulation::add_triangle(SiteIndex a, SiteIndex b, SiteIndex c) {

@@ -60,6 +60,17 @@ addEventListener("load", async () => {
     check(box.dataset.scene !== clean && /fp_0.30/.test(box.dataset.scene), "up takes the next rate");
     check(document.querySelector("#view-methods td").textContent !== "", "the answers are listed");
 
+    const condition = document.getElementById("view-condition");
+    check([...condition.options].map((option) => option.value).join() === "paper,car", "conditions can be chosen");
+    condition.value = "car";
+    condition.dispatchEvent(new Event("change"));
+    check(/fp_0.30.*\\/car$/.test(box.dataset.scene) && box.dataset.scene.startsWith("circle/"),
+          "another condition, the same track and rate");
+    check(document.querySelector("#view-methods td").textContent !== "", "usable or not is listed");
+    check(document.querySelector("#view-scene").getAttribute("aria-label").includes("false positives"), "it is said");
+    condition.value = "paper";
+    condition.dispatchEvent(new Event("change"));
+
     document.getElementById("view-speed").value = "25";
     key(" ");
     await wait(400);
@@ -88,7 +99,19 @@ addEventListener("load", async () => {
     filter.value = "clc";
     filter.dispatchEvent(new Event("change"));
     const visible = [...table.tBodies[0].rows].filter((row) => !row.hidden);
-    check(visible.length === 2 && visible.every((row) => row.dataset.method === "clc"), "the filter leaves CLC");
+    check(visible.length === 4 && visible.every((row) => row.dataset.method === "clc"), "the filter leaves CLC");
+    const blocks = [...document.querySelectorAll("#headline tbody")];
+    check(blocks.length === 4 && blocks.every((block) => [...block.rows].filter((row) => !row.hidden).length === 2),
+          "in each block of the first table too");
+    const chosen = document.querySelector('[data-filter="condition"]');
+    chosen.value = "car";
+    chosen.dispatchEvent(new Event("change"));
+    check([...document.querySelectorAll("#headline tr.block")].filter((row) => !row.hidden).length === 2,
+          "blocks of other conditions go");
+    check(document.getElementById("usable-by-rate-paper").hidden && !document.getElementById("usable-by-rate-car").hidden,
+          "so do figures of other conditions");
+    check([...document.querySelectorAll("details.worst")].filter((block) => !block.hidden).length === 1,
+          "and pictures of other conditions and methods");
 
     const ground = () => getComputedStyle(document.body).backgroundColor;
     const light = ground(), drawn = pixels();

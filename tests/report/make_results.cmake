@@ -7,7 +7,7 @@ function(conelane)
     execute_process(COMMAND ${PROGRAM} ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --fp 0,0.3 --every 15
-         --candidates --out ${RESULTS})
+         --condition paper,car --candidates --out ${RESULTS})
 conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
 set(scenes ${RESULTS}/scenes.scenes.jsonl)

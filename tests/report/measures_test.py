@@ -12,7 +12,8 @@ from report.load import Sample  # noqa: E402
 
 def sample(method, latency, tracks):
     scenes = np.array([f"s{i}" for i in range(len(latency))], dtype=object)
-    return Sample(method, None, scenes, np.array(tracks, dtype=object), scenes, scenes, {"latency": np.array(latency)})
+    return Sample(method, None, {"scene": scenes, "track": np.array(tracks, dtype=object),
+                                 "latency": np.array(latency)})
 
 
 class Measures(unittest.TestCase):
@@ -36,6 +37,16 @@ class Measures(unittest.TestCase):
         tracks = np.repeat(["a", "b"], 500)
         self.assertEqual(measures.mean_interval(values, tracks), (0.0, 1.0))
         self.assertEqual(measures.median_interval(values, tracks), (0.0, 1.0))
+
+    def test_median_is_that_of_the_rows_drawn(self):
+        # Each resample written out: the rows of a track as often as the track was drawn.
+        values = np.array([5.0, 1.0, 4.0, 2.0, 3.0, 9.0, 7.0])
+        tracks = np.array(["a", "a", "b", "b", "c", "c", "c"], dtype=object)
+        medians = []
+        for times in measures._track_weights(3):
+            drawn = sorted(value for value, track in zip(values, tracks) for _ in range(int(times["abc".index(track)])))
+            medians.append(drawn[(len(drawn) - 1) // 2])
+        self.assertEqual(measures.median_interval(values, tracks), measures._interval(medians))
 
     def test_alike_tracks_leave_no_doubt(self):
         values = np.array([0.0, 1.0] * 3)

@@ -1,7 +1,9 @@
 """page_test.py PROGRAM RESULTS: the page that PROGRAM made of RESULTS is well-formed, stands alone and shows the
-numbers of results.jsonl; made again it is the same; wrong input is told in one line."""
+numbers of results.jsonl; made again it is the same; wrong input is told in one line. Further pages are made of stored
+results that a small comparison does not have."""
 
 import json
+import math
 import os
 import re
 import shutil
@@ -10,6 +12,8 @@ import sys
 import tempfile
 import unittest
 from html.parser import HTMLParser
+
+from stored_results import Setup, write_results
 
 PROGRAM, RESULTS = sys.argv[1:3]
 # Google Benchmark may be missing where this was built.
@@ -23,7 +27,7 @@ class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.wrong, self.ids, self.outside = [], [], [], []
-        self.rows, self.words = {}, {}
+        self.rows, self.cells, self.words = {}, {}, {}  # cells: the values of a row's columns, in order
         self.table, self.row = None, None
         self.feed(text)
         self.close()
@@ -37,9 +41,14 @@ class Page(HTMLParser):
                 self.outside.append(attributes[key])
         if tag == "div" and attributes.get("class") == "table":
             self.table = attributes["id"]
-        if tag == "tr" and "data-rate" in attributes:
-            self.row = (self.table, attributes["data-method"], float(attributes["data-rate"]),
-                        float(attributes["data-range"]))
+        if tag == "tr" and "data-range" in attributes:
+            self.row = (self.table, attributes["data-method"], attributes["data-condition"],
+                        float(attributes["data-rate"]), float(attributes["data-range"]))
+        elif tag == "tr" and attributes.get("data-method"):
+            self.row = (self.table, attributes["data-method"], attributes["data-condition"],
+                        float(attributes.get("data-rate", "nan")))
+        if tag == "td" and self.row:
+            self.cells.setdefault(self.row, []).append(attributes.get("data-value"))
         if tag == "td" and self.row and "data-measure" in attributes:
             self.rows.setdefault(self.row, {})[attributes["data-measure"]] = [attributes.get("data-value"), ""]
             self.measure = attributes["data-measure"]
@@ -99,18 +108,20 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(used - set(self.page.ids), set())
 
     def test_has_every_figure_or_says_why_not(self):
-        for name in ("winners", "by-size", "growth", "accurate-by-size", "success-by-rate", "latency",
+        for name in ("headline", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
+                     "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
                      "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
                      "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
-            self.assertIn(name, self.page.ids)
+            self.assertTrue(name in self.page.ids, name)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
-        self.assertEqual(re.findall(r"<b>(.*?)</b>", absent), ["Update against rebuild"] * (not BENCHMARKED))
+        self.assertEqual(re.findall(r"<b>(.*?)</b>", absent),
+                         ["Methods from outside"] + ["Update against rebuild"] * (not BENCHMARKED))
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 23 + BENCHMARKED)
+        self.assertEqual(len(articles), 25 + BENCHMARKED)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -119,6 +130,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(len(of_papers), 10)
         for article in of_papers:
             self.assertIn("<dt>Published</dt>", article)
+            self.assertIn('<p class="claim">The paper claims: ', article)
 
     def test_stored_exactness_is_what_is_shown(self):
         stored = [line for line in lines("optimality.jsonl") if "gap" in line]
@@ -134,7 +146,8 @@ class ReportPage(unittest.TestCase):
                 pictures = os.path.join(folder, name)
                 done = report(RESULTS, os.path.join(folder, "page.html"), "--png", pictures)
                 self.assertEqual((done.returncode, done.stderr), (0, ""))
-                self.assertEqual(sorted(os.listdir(pictures)), ["growth.png", "iou.png", "latency.png", "success.png"])
+                self.assertEqual(sorted(os.listdir(pictures)), ["growth.png", "iou.png", "latency.png", "success.png",
+                                                                "usable.png"])
                 found = {}
                 for picture in os.listdir(pictures):
                     with open(os.path.join(pictures, picture), "rb") as stream:
@@ -148,9 +161,11 @@ class ReportPage(unittest.TestCase):
         checked = 0
         for row in lines("results.jsonl"):
             label = row["method"] + (f" n={row['nearest']}" if "nearest" in row else "")
-            key = (label, row["false_positive_rate"], row["range"])
-            stored = {"quality": {k: row.get(k) for k in ("success_share", "mean_iou", "accurate_share",
-                                                          "solved_share", "complete_share")},
+            key = (label, row["condition"], row["false_positive_rate"], row["range"])
+            stored = {"quality": {k: row.get(k) for k in ("usable_share", "success_share", "mean_iou",
+                                                          "accurate_share", "solved_share", "complete_share")},
+                      "steering": {k: row.get(k) for k in ("lateral_median_m", "lateral_p95_m", "heading_median_rad",
+                                                           "heading_p95_rad", "unsteady_share")},
                       "latencies": {**row["latency_ms"], "within_budget_share": row["within_budget_share"]},
                       "categories": row["share"]}
             for table, values in stored.items():
@@ -159,11 +174,12 @@ class ReportPage(unittest.TestCase):
                         self.assertEqual((value, shown), (None, "–"))
                         continue
                     self.assertEqual(float(value), values[measure], (table, key, measure))
-                    scale = 1.0 if table == "latencies" and measure != "within_budget_share" else 100.0
+                    is_in_unit = measure.endswith("_m") or (table == "latencies" and not measure.endswith("_share"))
+                    scale = math.degrees(1) if measure.endswith("_rad") else 1.0 if is_in_unit else 100.0
                     digits = len(shown.partition(".")[2])
                     self.assertAlmostEqual(float(shown), scale * values[measure], delta=0.5001 * 10.0 ** -digits)
                     checked += 1
-        self.assertGreater(checked, 6 * 12)
+        self.assertGreater(checked, 12 * 14)
 
     def test_scenes_are_those_of_the_lanes(self):
         found = re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', self.text, flags=re.S)
@@ -214,7 +230,13 @@ class ReportPage(unittest.TestCase):
             with open(scores, encoding="utf-8") as stream:
                 whole = stream.read().splitlines(keepends=True)
             for change, complaint in ((lambda rows: rows[:-1], "scores of"),
-                                      (lambda rows: [rows[0].replace('"iou"', '"ion"')] + rows[1:], ":1: iou: is missing"),
+                                      (lambda rows: [rows[0].replace('"cones"', '"bones"')] + rows[1:],
+                                       ":1: cones: is missing"),
+                                      (lambda rows: [rows[0].replace('"iou":', '"ion":')] + rows[1:], "mean_iou of"),
+                                      (lambda rows: [re.sub('"usable":[a-z]+', '"usable":2', rows[0])] + rows[1:],
+                                       "usable_share of"),
+                                      (lambda rows: [rows[0].replace('"range"', '"cause":"bad luck","range"')] +
+                                       rows[1:], ":1: cause: there is no 'bad luck'"),
                                       (lambda rows: rows[:2] + ["{\n"] + rows[3:], "scores.jsonl:3: ")):
                 with open(scores, "w", encoding="utf-8") as stream:
                     stream.writelines(change(whole))
@@ -234,6 +256,53 @@ class ReportPage(unittest.TestCase):
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
+    def test_headline_is_the_mean_over_the_scores(self):
+        rows = {key: values for key, values in self.page.cells.items() if key[0] == "headline"}
+        scores = lines("scores.jsonl")
+        blocks = {(line["method"], line["condition"], line["false_positive_rate"]) for line in scores}
+        self.assertEqual({key[2:] for key in rows}, {block[1:] for block in blocks})
+        self.assertEqual(len(rows), len(blocks))
+        for (_, label, condition, rate), cells in rows.items():
+            of_row = [line for line in scores if (line["condition"], line["false_positive_rate"]) == (condition, rate)
+                      and label in (line["method"], f"{line['method']} n={line.get('nearest')}")]
+            usable = sum(line["usable"] for line in of_row) / len(of_row)
+            exact = sum(line["category"] == "ground_truth" for line in of_row) / len(of_row)
+            self.assertAlmostEqual(float(cells[0]), usable)
+            self.assertAlmostEqual(float(cells[3]), exact)
+            self.assertEqual(float(cells[5]), max(line["latency_ms"] for line in of_row))
+            self.assertEqual(int(cells[6]), len(of_row))
+
+    def test_causes_are_those_of_the_scores(self):
+        causes = {}
+        for line in lines("scores.jsonl"):
+            label = line["method"] + (f" n={line['nearest']}" if "nearest" in line else "")
+            self.assertEqual("cause" in line, not line["usable"], line)
+            if "cause" in line:
+                of_method = causes.setdefault((label, line["condition"]), {})
+                of_method[line["cause"]] = of_method.get(line["cause"], 0) + 1
+        self.assertGreater(len(causes), 2)
+        for (label, condition), of_method in causes.items():
+            shown = next(values for key, values in self.page.rows.items()
+                         if key[:3] == ("failure-causes", label, condition))
+            for cause, count in of_method.items():
+                self.assertAlmostEqual(float(shown[cause][0]), count / sum(of_method.values()))
+
+    def test_gallery_shows_the_worst_first(self):
+        scores = {(line["method"], line["scene"]): line for line in lines("scores.jsonl")}
+        found = re.findall(r'<details class="worst" open data-method="([^"]*)" data-condition="([^"]*)">(.*?)</details>',
+                           self.text, flags=re.S)
+        self.assertEqual(len(found), 6)  # three methods, two conditions
+        for label, condition, content in found:
+            method = label.partition(" n=")[0]
+            shown = re.findall(r'data-open="([^"]*)"', content)
+            tracks = [scores[method, scene]["track"] for scene in shown]
+            self.assertTrue(0 < len(shown) <= 10 and all(tracks.count(track) <= 2 for track in tracks))
+            ranks = [(scores[method, scene]["usable"], scores[method, scene]["iou"]) for scene in shown]
+            self.assertEqual(ranks, sorted(ranks))
+            of_condition = [line for line in scores.values() if (line["method"], line["condition"]) == (method, condition)]
+            self.assertEqual(ranks[0], min((line["usable"], line["iou"]) for line in of_condition))
+            self.assertEqual(content.count("<svg"), len(shown))
+
     def test_experiments_take_other_comparisons_from_beside(self):
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "copy")
@@ -251,6 +320,73 @@ class ReportPage(unittest.TestCase):
                 text = stream.read()
             figure = r'<figure id="clc-fig-11">.*?</figure>'
             self.assertEqual(re.findall(figure, text, flags=re.S), re.findall(figure, self.text, flags=re.S))
+
+    def made_of(self, folder, setup, *options):
+        """The page that is made of such results, and what its viewer has."""
+        results, page = os.path.join(folder, "results"), os.path.join(folder, "page.html")
+        write_results(results, setup)
+        done = report(results, page, *options)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with open(page, encoding="utf-8") as stream:
+            text = stream.read()
+        self.assertEqual((Page(text).wrong, Page(text).open), ([], []))
+        found = re.search(r'<script type="application/json" id="scene-data">(.*?)</script>', text, flags=re.S)
+        return text, json.loads(found[1])
+
+    def test_runs_points_and_centre_lines_have_no_overlap(self):
+        with tempfile.TemporaryDirectory() as folder:
+            card = {"outside": "exec", "self_timed_ms": {"median": 3.25, "p95": 8.5},
+                    "echo_floor_ms": {"median": 0.04, "p95": 0.06},
+                    "card": {"name": "Points", "licence": "MIT", "colour_used": False, "training_courses": ["one"]}}
+            text, data = self.made_of(folder, Setup(methods=("ids", "points", "line"), points=("points",),
+                                                    centre_lines=("line",), runs=("run",), outside={"points": card},
+                                                    trained_on={"points": ("one",)}))
+            run = next(lap for lap in data["laps"] if lap["track"] == "run")
+            frame = data["frames"][run["scenes"][1]]
+            self.assertEqual(frame["g"], [[], [], 0])
+            self.assertEqual(data["tracks"]["run"]["driven"][:4], [-500, 20, -400, 20])
+            self.assertEqual(frame["a"][1][:2], [{"p": [0, 140, 800, 140, 1600, 140]},
+                                                 {"p": [0, -140, 800, -140, 1600, -140]}])
+            self.assertEqual(frame["a"][2][:2], [{"p": [0, 10, 800, 10, 1600, 10]}, []])
+            self.assertEqual([answer[4] for answer in frame["a"]], [None] * 3)
+            seen = next(lap for lap in data["laps"] if (lap["track"], lap["condition"]) == ("one", "car"))
+            self.assertEqual(data["frames"][seen["scenes"][0]]["m"], [600, 150])
+            self.assertIn('class="missed"', text)
+            self.assertIn('class="driven"', text)
+            self.assertIn("IoU unknown", text)
+            by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
+            self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
+            headline = re.search(r'<div class="table" id="headline">.*?</table>', text, flags=re.S)[0]
+            self.assertEqual(headline.count("*</td>"), 4)  # two conditions, two rates
+            self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
+
+    def test_results_of_earlier_versions_still_make_a_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text, data = self.made_of(folder, Setup(conditions=("",), old=True))
+            self.assertIn("success in ", text)
+            self.assertNotIn('id="failure-causes"', text)
+            self.assertNotIn(">condition<", text)
+            self.assertEqual({lap["condition"] for lap in data["laps"]}, {""})
+
+    def test_a_large_comparison_shows_some_laps_and_says_how_to_get_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            setup = Setup(tracks=tuple("abcdefgh"), rates=(0.3, 0.5), poses=700, every_m=1.1,
+                          methods=("first", "second"))
+            text, data = self.made_of(folder, setup)
+            self.assertLess(len(text), 15e6)
+            self.assertTrue("conelane report --viewer TRACK" in text)
+            whole = [lap for lap in data["laps"] if len(lap["scenes"]) == 700]
+            self.assertTrue(16 < len(whole) < 32, len(whole))
+            self.assertEqual(sum(lap["rate"] == 0.3 for lap in whole), 16)  # all of the gallery's rate come first
+            named, data = self.made_of(folder, setup, "--viewer", "h,b")
+            self.assertLess(len(named), 15e6)
+            long = {lap["track"] for lap in data["laps"] if len(lap["scenes"]) > 100}
+            self.assertEqual(long, {"h", "b"})
+            self.assertEqual({(lap["rate"], lap["condition"]) for lap in data["laps"] if lap["track"] == "h"},
+                             {(rate, condition) for rate in (0.3, 0.5) for condition in ("paper", "car")})
+            results = os.path.join(folder, "results")
+            page = os.path.join(folder, "other.html")
+            self.assertIn("there is no track 'z'", self.refused(results, page, "--viewer", "h,z"))
 
     def test_without_scenes_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:

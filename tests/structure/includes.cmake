@@ -16,10 +16,10 @@ set(experiments_depends_on model solvers graph_search detectors experiments)
 set(tests_depends_on model solvers graph_search detectors experiments tests)
 # From tracks to tables, each folder and each file of experiments/ itself, without its ending: what stands later may
 # include what stands before.
-set(experiments_layers provenance progress seeded_random files tracks scenes scoring methods options comparison checking training
-                       tuning studies report commands conelane benchmarks)
+set(experiments_layers provenance progress seeded_random files tracks training_courses scenes scoring methods outside options comparison
+                       checking training tuning cross_validation instances studies report commands conelane benchmarks examples)
 set(private_libraries
-    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
+    "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
 # The folder of each public header.
 file(GLOB_RECURSE public_headers RELATIVE ${ROOT} ${ROOT}/*/include/conelane/*.hpp ${ROOT}/*/*/include/conelane/*.hpp)

@@ -1,18 +1,43 @@
-"""Success by track
+"""Usable lanes by track
 
-Claim: Does a method's success hang on the track?
-Protocol: all rates and ranges of a track together.
+Claim: Does it hang on the track whether a method's lane can be driven by?
+Protocol: share of usable lanes (success in results of earlier versions), all rates and ranges of a track together.
 Source: this project.
 Command: conelane compare --out RESULTS
 """
 
-from ..tables import Column, percent, table, text
+import numpy as np
+
+from ..leaders import headline_values
+from ..tables import Cell, Column, percent, table, text
+
+
+def _cell(share, is_trained):
+    cell = percent(share)
+    return Cell(cell.text, cell.value, "trained") if is_trained and share is not None else cell
 
 
 def html(results, published):
-    tracks = sorted({track for sample in results.samples for track in sample.track})
-    rows = []
-    for track in tracks:
-        parts = [sample.where(sample.track == track) for sample in results.samples]
-        rows.append([text(track)] + [percent(part.success.mean() if len(part) else None) for part in parts])
-    return table("by-track", "", [Column("track", "text")] + [Column(s.label + " %") for s in results.samples], rows)
+    values_of = headline_values(results.samples)
+    tracks = sorted(set().union(*(set(sample.track) for sample in results.samples)))
+    trained = {sample.label: set(sample.track[sample.trained_on == 1.0]) for sample in results.samples}
+    rows, attributes = [], []
+    for condition in results.conditions:
+        shares = []
+        for sample in results.samples:
+            values, track_of = values_of(sample.at(condition=condition))
+            found = {}
+            for scene, value in values.items():
+                found.setdefault(track_of[scene], []).append(value)
+            shares.append({track: float(np.mean(of_track)) for track, of_track in found.items()})
+        for track in tracks:
+            if any(track in of_method for of_method in shares):
+                under = [text(condition)] if results.conditions != [""] else []
+                cells = [_cell(of_method.get(track), track in trained[sample.label])
+                         for sample, of_method in zip(results.samples, shares)]
+                rows.append([text(track)] + under + cells)
+                attributes.append({"condition": condition})
+    columns = [Column("track", "text")] + ([Column("condition", "text")] if results.conditions != [""] else [])
+    return table("by-track", "", columns + [Column(sample.label + " %") for sample in results.samples], rows,
+                 row_attributes=attributes, note="Trained: the method has learned from this course: no held-out figure."
+                 if any(trained.values()) else "")

@@ -27,7 +27,7 @@ def html(results, published):
 
     def of_ours(part):
         return ([percent(np.mean(part.category == key)) for key in CATEGORIES] +
-                [percent(part.success.mean()), percent(part.iou.mean())])
+                [percent(part.success.mean()), percent(part.mean_iou)])
 
     rows, marks = rows_by_rate(results, published, results.samples, of_paper, of_ours)
     return table("clc-table-1", "", columns, rows, published_rows=marks)

@@ -12,8 +12,8 @@ import numpy as np
 
 from .. import measures
 from ..boxes import box_plot
-from ..figures import drawn, group, percent_label, variants
-from ..rows import KEYS, attributes, key_cells, part
+from ..figures import drawn, group, in_condition, percent_label, variants
+from ..rows import attributes, key_cells, keys, part
 from ..tables import Cell, Column, milliseconds, percent, table
 from ..theme import ACCENT, legend, logarithmic, method_style, new_figure
 from ..leaders import REAL_TIME_BUDGET_MS
@@ -29,9 +29,9 @@ def latency_table(results):
             milliseconds(latency[key], measure=key) if key in latency else Cell("–")
             for key in ("mean", "standard_deviation", "shifted_geometric_mean", "p95", "p99", "max")] +
             [percent(row.get("within_budget_share"), measure="within_budget_share")])
-    columns = KEYS + [Column("median ms"), Column("mean ms"), Column("standard deviation ms"),
-                      Column("geometric mean ms"), Column("p95 ms"), Column("p99 ms"), Column("max ms"),
-                      Column("within 50 ms %")]
+    columns = keys(results) + [Column("median ms"), Column("mean ms"), Column("standard deviation ms"),
+                               Column("geometric mean ms"), Column("p95 ms"), Column("p99 ms"), Column("max ms"),
+                               Column("within 50 ms %")]
     return table("latencies", "", columns, rows, row_attributes=attributes(results),
                  note="Geometric mean: shifted by 1 ms. Small: 95 % interval, tracks resampled.")
 
@@ -71,8 +71,10 @@ def by_rate_figure(results):
 
 
 def html(results, published):
+    under, alone = results.under(results.main_condition), in_condition(results)
     return group([
-        drawn("latency-by-rate", "Strong: the median. Thin: the 99th percentile. The line is the real-time budget.",
-              by_rate_figure(results), "By false-positive rate"),
+        drawn("latency-by-rate", "Strong: the median. Thin: the 99th percentile. The line is the real-time budget."
+              f"{alone}", by_rate_figure(under), "By false-positive rate"),
         drawn("latency", "Quartiles and median; whiskers to the 1st and 99th percentile; the tick is the maximum. The "
-              "line is the real-time budget.", boxes_figure(results), "Over all scenes")]) + latency_table(results)
+              f"line is the real-time budget.{alone}", boxes_figure(under), "Over all rates and ranges")
+    ]) + latency_table(results)

@@ -1,8 +1,9 @@
 """What became of the scenes
 
 Claim: How do methods fail, not only how often?
-Protocol: the first that fits of: no lane, ground truth, diverging, too short, near. All but none and diverging below \
-20 m are successes. Errors, a part of none: the method failed, or the independent checker rejected what an RLD method \
+Protocol: the first that fits of: no lane, ground truth (the very same cones), diverging, too short (below 75 % of \
+the ground truth's length), near (all other lanes, which do not diverge). All but none and diverging below 20 m are \
+successes. Errors, a part of none: the method failed, or the independent checker rejected what an RLD method \
 answered; the checker recomputes every constraint, objective and bound from the scene.
 Source: categories of the CLC paper, VIII-D; the checker is this project's.
 Command: conelane compare --out RESULTS
@@ -11,7 +12,7 @@ Command: conelane compare --out RESULTS
 import numpy as np
 
 from ..load import CATEGORIES
-from ..rows import KEYS, attributes, key_cells, part
+from ..rows import attributes, key_cells, keys, part
 from ..tables import Cell, Column, percent, table
 
 _TITLES = {"ground_truth": "ground truth %", "near_ground_truth": "near %", "too_short": "too short %",
@@ -29,5 +30,7 @@ def _checks(scores):
 def html(results, published):
     rows = [key_cells(results, row) + [percent(row["share"].get(key), measure=key) for key in CATEGORIES] +
             _checks(part(results, row)) for row in results.rows]
-    columns = KEYS + [Column(_TITLES[key]) for key in CATEGORIES] + [Column("errors"), Column("checker accepts")]
-    return table("categories", "", columns, rows, row_attributes=attributes(results))
+    columns = keys(results) + [Column(_TITLES[key]) for key in CATEGORIES] + [Column("errors"), Column("checker accepts")]
+    return table("categories", "", columns, rows, row_attributes=attributes(results),
+                 note="Too short: below 75 % of the ground truth's length. Near: does not diverge and is long enough, but "
+                 "not of the very same cones.")

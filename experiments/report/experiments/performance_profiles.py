@@ -2,7 +2,8 @@
 
 Claim: Which exact method is fastest on most scenes, and how far behind are the others?
 Protocol: Dolan and Moré: the share of scenes that a method solves to proven optimality within a multiple of the \
-fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set only; \
+fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set and \
+the same objective only; \
 what is unproven after 0.4 s counts as unsolved. Where the methods of the comparison saw different cone sets, those \
 of the sweep stand in.
 Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
@@ -40,22 +41,24 @@ def profile_figure(labels, styles, times):
     return figure
 
 
-def _of_one_set(results):
-    """Samples that prove optimality by cone-set size: of the comparison, else of the sweep."""
+def _of_one_problem(results):
+    """Samples that prove optimality of one objective on one cone set, two or more: of the comparison, else of the
+    sweep."""
     found = {}
-    for sample in results.samples:
-        found.setdefault(sample.nearest, []).append(sample)
-    found = {nearest: samples for nearest, samples in found.items() if sum(s.has("solved") for s in samples) > 1}
-    for size in _SWEEP_SIZES:
-        found.setdefault(size, [sample for sample in results.sweep if sample.nearest == size])
-    return {nearest: [s for s in samples if s.has("solved")] for nearest, samples in found.items()}
+    for samples, sizes in ((results.samples, None), (results.sweep, _SWEEP_SIZES)):
+        known = {nearest for nearest, _ in found}
+        for sample in samples:
+            if sample.has("solved") and (sizes is None or (sample.nearest in sizes and sample.nearest not in known)):
+                found.setdefault((sample.nearest, results.objective_of(sample)), []).append(sample)
+        found = {problem: of_one for problem, of_one in found.items() if len(of_one) > 1}
+    return [(nearest, samples) for (nearest, _), samples in found.items()]
 
 
 def html(results, published):
-    figures = []
-    for nearest, samples in _of_one_set(results).items():
-        scenes = sorted(set.intersection(*(set(sample.scene) for sample in samples))) if samples else []
-        if len(samples) < 2 or not scenes:
+    figures, of_set = [], {}
+    for nearest, samples in _of_one_problem(results):
+        scenes = sorted(set.intersection(*(set(sample.scene) for sample in samples)))
+        if not scenes:
             continue
         columns = []
         for sample in samples:
@@ -64,8 +67,9 @@ def html(results, published):
         figure = profile_figure([sample.label for sample in samples],
                                 [method_style(results.methods, sample.method) for sample in samples],
                                 np.array(columns).T)
-        figures.append(drawn(f"profile-{nearest or 'all'}", f"On {name_of_set(nearest)}, {len(scenes)} scenes.",
-                             figure))
+        of_set[nearest] = of_set.get(nearest, 0) + 1  # one for each objective
+        name = f"profile-{nearest or 'all'}" + (f"-{of_set[nearest]}" if of_set[nearest] > 1 else "")
+        figures.append(drawn(name, f"On {name_of_set(nearest)}, {len(scenes)} scenes.", figure))
     if not figures:
-        raise Missing("no two methods that prove optimality saw the same cone sets.")
+        raise Missing("no two methods prove optimality of one objective on the same cone sets.")
     return group(figures) if len(figures) > 1 else figures[0]

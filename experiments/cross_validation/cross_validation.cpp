@@ -1,0 +1,112 @@
+#include "experiments/cross_validation/cross_validation.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/scenes/scene_options_json.hpp"
+#include "experiments/tracks/track_spec.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The family of each course by its name. Throws InputError where a course is there twice.
+std::map<std::string, std::string> family_of_courses(const CrossValidationOptions& options) {
+    std::map<std::string, std::string> family_of;
+    const auto add = [&](const std::vector<std::string>& specs, const std::string& family) {
+        for (const std::string& spec : specs) {
+            for (const Track& track : load_tracks(spec)) {
+                const auto [first, is_new] = family_of.emplace(track.name, family);
+                if (is_new) continue;
+                throw InputError(
+                    "", 0, "--family",
+                    fmt::format("course '{}' is in '{}' and in '{}'", track.name, first->second, family));
+            }
+        }
+    };
+    add(options.always, "--always");
+    for (const CourseFamily& family : options.families) add(family.tracks, family.name);
+    return family_of;
+}
+
+LearningOptions without(const CrossValidationOptions& options, const CourseFamily& held_out) {
+    LearningOptions learning = options.learning;
+    learning.tracks = options.always;
+    for (const CourseFamily& family : options.families) {
+        if (family.name != held_out.name)
+            std::ranges::copy(family.tracks, std::back_inserter(learning.tracks));
+    }
+    return learning;
+}
+
+/// What the folds depend on, for the record of the comparison.
+std::string record_of(const CrossValidationOptions& options) {
+    nlohmann::ordered_json families = nlohmann::ordered_json::object();
+    for (const CourseFamily& family : options.families) families[family.name] = family.tracks;
+    const LearningOptions& learning = options.learning;
+    return nlohmann::ordered_json{{"families", families},
+                                  {"always", options.always},
+                                  {"scenes", scene_options_json(learning.scenes)},
+                                  {"variants", learning.variants},
+                                  {"evaluations", learning.evaluations}}
+        .dump();
+}
+
+void check(const CrossValidationOptions& options) {
+    if (options.families.size() < 2) throw InvalidInput("family", "there must be two at least");
+    std::set<std::string> names;
+    for (const CourseFamily& family : options.families) {
+        if (!names.insert(family.name).second)
+            throw InvalidInput("family", fmt::format("'{}' is there twice", family.name));
+    }
+}
+
+}  // namespace
+
+std::string cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
+    check(options);
+    const auto family_of =
+        std::make_shared<const std::map<std::string, std::string>>(family_of_courses(options));
+    ComparisonOptions comparison = options.comparison;
+    comparison.tracks.clear();
+    for (const CourseFamily& family : options.families)
+        std::ranges::copy(family.tracks, std::back_inserter(comparison.tracks));
+    comparison.cross_validation = record_of(options);
+
+    const fs::path folds = directory / "folds";
+    comparison.prepare = [&] {
+        for (const CourseFamily& family : options.families) {
+            const LearningOptions learning = without(options, family);
+            fs::create_directories(folds / family.name);
+            for (const Entrant& entrant : options.comparison.entrants) {
+                const Learner* learner = entrant.outside ? nullptr : find_learner(entrant.method);
+                if (learner != nullptr) learner->learn(learning, folds / family.name);
+            }
+        }
+    };
+    for (Entrant& entrant : comparison.entrants) {
+        const Learner* learner = entrant.outside ? nullptr : find_learner(entrant.method);
+        if (learner == nullptr) continue;
+        entrant.maker = [learner, folds, family_of, &options](const RunOptions& run) -> MethodMaker {
+            std::map<std::string, MethodMaker> of_family;
+            for (const CourseFamily& family : options.families)
+                of_family.emplace(family.name, learner->maker(folds / family.name, run));
+            return [of_family = std::move(of_family), family_of](const std::string& track) {
+                return of_family.at(family_of->at(track))(track);
+            };
+        };
+    }
+    return compare(comparison, directory);
+}
+
+}  // namespace conelane::experiments

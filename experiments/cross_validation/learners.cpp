@@ -1,0 +1,232 @@
+#include "experiments/cross_validation/learners.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "experiments/files/atomic_file.hpp"
+#include "experiments/files/input_error.hpp"
+#include "experiments/files/method_parameter_file.hpp"
+#include "experiments/files/parameter_file.hpp"
+#include "experiments/files/rank_net_file.hpp"
+#include "experiments/files/step_score_file.hpp"
+#include "experiments/scenes/scene_set.hpp"
+#include "experiments/training/training_run.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "experiments/tuning/evaluation_log.hpp"
+#include "experiments/tuning/method_tuning.hpp"
+#include "experiments/tuning/tuner.hpp"
+#include "graph_search/clc_detector.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kStepScores = "step_scores.json";
+constexpr const char* kExtendedNet = "rank_net_extended.json";
+constexpr const char* kPaperNet = "rank_net_paper.json";
+constexpr const char* kDelaunayBeam = "delaunay-beam.json";
+constexpr const char* kAstarLane = "astar-lane.json";
+constexpr const char* kShape = "rld-shape.json";
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) throw InputError(file, 0, "", "cannot be read");
+    return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) {
+    AtomicFile output(file);
+    output.stream() << text;
+    output.commit();
+}
+
+/// `parse(text)` of the file, whose InvalidInput comes out as an error in that file.
+template <typename Parse>
+auto parsed(const fs::path& file, const Parse& parse) {
+    try {
+        return parse(text_of(file));
+    } catch (const InvalidInput& error) {
+        throw InputError(file, 0, error.key(), error.what());
+    }
+}
+
+// The networks and step scores of clc and clc-paper, with the options of their shipped trainings.
+
+TrainingRunOptions network_options(const LearningOptions& options) {
+    TrainingRunOptions run;
+    run.tracks = options.tracks;
+    run.scenes = options.scenes;
+    run.training.seed = options.scenes.seed;
+    run.candidates.seed = options.scenes.seed;
+    run.candidates.threads = options.scenes.threads;
+    return run;
+}
+
+void learn_steps(const LearningOptions& options, const fs::path& file) {
+    StepTrainingRunOptions run;
+    run.tracks = options.tracks;
+    run.scenes = options.scenes;
+    run.training.search = extended_search_options();
+    run.training.epochs = 3;
+    run.training.learning_rate = 0.05;
+    run.training.weight_decay = 1.0;
+    run.training.seed = options.scenes.seed;
+    const StepTrainingRun result = run_step_training(run);
+    write(file, step_scores_json(result.scores, result.record));
+}
+
+void learn_clc(const LearningOptions& options, const fs::path& folder) {
+    if (!fs::exists(folder / kStepScores)) learn_steps(options, folder / kStepScores);
+    if (fs::exists(folder / kExtendedNet)) return;
+    const std::string steps = text_of(folder / kStepScores);
+    TrainingRunOptions run = network_options(options);
+    run.variants = options.variants;
+    run.candidates.search = extended_search_options();
+    run.candidates.search.step_scores = std::make_shared<StepScores>(parse_step_scores(steps));
+    run.steps_record = step_scores_training(steps);
+    run.training.inputs = kLaneFeatureCount;
+    run.training.loss = RankLoss::choice;
+    run.training.units = 64;
+    run.training.epochs = 20;
+    run.training.scenes_a_step = 16;
+    run.training.learning_rate = 0.004;
+    run.training.weight_decay = 0.05;
+    run.training.divergence_penalty = 10.0;
+    run.training.late_divergence_penalty = 0.2;
+    const TrainingRun result = run_training(run);
+    write(folder / kExtendedNet, rank_net_json(result.weights, result.record));
+}
+
+void learn_clc_paper(const LearningOptions& options, const fs::path& folder) {
+    if (fs::exists(folder / kPaperNet)) return;
+    TrainingRunOptions run = network_options(options);
+    run.candidates.most_per_scene = 120;
+    run.training.epochs = 30;
+    const TrainingRun result = run_training(run);
+    write(folder / kPaperNet, rank_net_json(result.weights, result.record));
+}
+
+ClcOptions clc_options(const fs::path& folder) {
+    ClcOptions options = extended_clc_options();
+    options.step_scores = std::make_shared<StepScores>(
+        parsed(folder / kStepScores, [](auto text) { return parse_step_scores(text); }));
+    options.ranking =
+        make_rank_net(parsed(folder / kExtendedNet, [](auto text) { return parse_rank_net(text); }));
+    return options;
+}
+
+MethodMaker make_clc(const fs::path& folder, const RunOptions& options) {
+    return maker_of(
+        "clc", [clc = clc_options(folder)] { return make_clc_detector(clc); }, options);
+}
+
+MethodMaker make_warm_clc(const fs::path& folder, const RunOptions& options) {
+    ClcOptions clc = clc_options(folder);
+    clc.warm_start = true;
+    return maker_of(
+        "clc-warm", [clc] { return make_clc_detector(clc); }, options);
+}
+
+MethodMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
+    ClcOptions clc = paper_clc_options();
+    clc.ranking = make_rank_net(parsed(folder / kPaperNet, [](auto text) { return parse_rank_net(text); }));
+    return maker_of(
+        "clc-paper", [clc] { return make_clc_detector(clc); }, options);
+}
+
+// What is tuned has a dozen numbers at most: every fourth pose tells enough of them.
+
+SceneSet scenes_to_tune_on(const LearningOptions& options) {
+    constexpr double kPoses = 4.0;
+    SceneOptions scenes = options.scenes;
+    scenes.every_m *= kPoses;
+    return make_scene_set(options.tracks, scenes);
+}
+
+// The baselines, by random search over their parameters.
+
+void learn_parameters(std::string_view method, const LearningOptions& options, const fs::path& file) {
+    if (fs::exists(file)) return;
+    const TunableMethod& tunable = find_tunable_method(method);
+    const SceneSet set = scenes_to_tune_on(options);
+    const TunedMethod tuned =
+        tune_method(tunable, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
+    write(file, to_json_text(tunable, tuned.values));
+}
+
+void learn_delaunay_beam(const LearningOptions& options, const fs::path& folder) {
+    learn_parameters("delaunay-beam", options, folder / kDelaunayBeam);
+}
+
+void learn_astar_lane(const LearningOptions& options, const fs::path& folder) {
+    learn_parameters("astar-lane", options, folder / kAstarLane);
+}
+
+MethodMaker make_delaunay_beam(const fs::path& folder, const RunOptions& options) {
+    const fs::path file = folder / kDelaunayBeam;
+    return maker_of(
+        "delaunay-beam",
+        [parameters = parse_delaunay_beam_parameters(text_of(file), file)] {
+            return make_delaunay_beam_detector(parameters);
+        },
+        options);
+}
+
+MethodMaker make_astar_lane(const fs::path& folder, const RunOptions& options) {
+    const fs::path file = folder / kAstarLane;
+    return maker_of(
+        "astar-lane",
+        [parameters = parse_astar_lane_parameters(text_of(file), file)] {
+            return make_astar_lane_detector(parameters);
+        },
+        options);
+}
+
+// The weights of the RLD objective with the costs of the lane's shape.
+
+void learn_shape(const LearningOptions& options, const fs::path& folder) {
+    const fs::path file = folder / kShape;
+    if (fs::exists(file)) return;
+    EvaluationOptions solved;
+    solved.objective = TuningObjective::usable;
+    solved.threads = options.scenes.threads;
+    const Evaluation evaluation(scenes_to_tune_on(options), solved);
+    const Tuned tuned =
+        tune([&](const RldParameters& parameters) { return evaluation(parameters); },
+             with_shape_costs(RldParameters{}), {1, options.evaluations, options.scenes.seed});
+    write_rld_parameters(file, tuned.parameters);
+}
+
+MethodMaker make_shape(const fs::path& folder, const RunOptions& options) {
+    RunOptions learned = options;
+    learned.method.rld_parameters = read_rld_parameters(folder / kShape);
+    return maker_of(find_method("rld-shape"), learned);
+}
+
+constexpr std::array kLearners{Learner{"clc", learn_clc, make_clc},
+                               Learner{"clc-warm", learn_clc, make_warm_clc},
+                               Learner{"clc-paper", learn_clc_paper, make_paper_clc},
+                               Learner{"delaunay-beam", learn_delaunay_beam, make_delaunay_beam},
+                               Learner{"astar-lane", learn_astar_lane, make_astar_lane},
+                               Learner{"rld-shape", learn_shape, make_shape}};
+
+}  // namespace
+
+std::span<const Learner> learners() {
+    return kLearners;
+}
+
+const Learner* find_learner(std::string_view method) {
+    const auto learner = std::ranges::find(kLearners, method, &Learner::method);
+    return learner == kLearners.end() ? nullptr : &*learner;
+}
+
+}  // namespace conelane::experiments

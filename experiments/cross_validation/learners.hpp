@@ -1,0 +1,39 @@
+#pragma once
+
+#include "experiments/comparison/runner.hpp"
+#include "experiments/scenes/scene_generation.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// What a method learns from, and how much work it may take.
+struct LearningOptions {
+    std::vector<std::string> tracks;  ///< SPECs of load_tracks
+    SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
+    std::size_t variants = 1;         ///< of each track, for networks
+    std::size_t evaluations = 60;     ///< of parameters that are tuned, on every fourth pose
+};
+
+/// A method whose weights or parameters come from courses, by the recipe of those that are shipped.
+struct Learner {
+    std::string_view method;
+    /// Learns and writes its files to the folder; what is there already is not learned again, so that methods
+    /// share it and a run that was stopped goes on. Throws InputError or InvalidInput.
+    void (*learn)(const LearningOptions& options, const std::filesystem::path& folder);
+    /// What answers by these files. Throws InputError where one is missing or wrong.
+    MethodMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
+};
+
+/// clc, clc-warm, clc-paper, delaunay-beam, astar-lane and rld-shape.
+[[nodiscard]] std::span<const Learner> learners();
+
+/// None where the method learns nothing, so answers the same in every fold.
+[[nodiscard]] const Learner* find_learner(std::string_view method);
+
+}  // namespace conelane::experiments

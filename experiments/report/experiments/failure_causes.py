@@ -1,0 +1,45 @@
+"""Why lanes are not usable
+
+Claim: What goes wrong first?
+Protocol: every lane that is not usable, all rates and ranges together, by the first place where it leaves the truth. \
+Of a lane that diverges within 20 m that is its first vertex off the annotated boundary. Wrong start: the first of its \
+side. False cone taken: on no boundary of the course. Wrong leg: a cone of the course, but of another stretch of it. \
+Wrong side: of the opposite boundary of this stretch. Cone skipped: its own boundary goes there, by way of cones that \
+it left out. A lane that is too short stopped early, or before a gap, a step longer than one and a half times the \
+median step of the ground truth; it has a wrong start where most of what is missing lies before it. Leaves the path: \
+where only a driven path, or a centre line without boundaries, is known, which does not tell why.
+Source: this project.
+Command: conelane compare --out RESULTS
+"""
+
+import numpy as np
+
+from ..experiment import Missing
+from ..load import CAUSES
+from ..tables import Cell, Column, method_cell, percent, table, text
+
+
+def html(results, published):
+    rows, attributes = [], []
+    seen = [cause for cause in CAUSES if any(np.any(sample.cause == cause) for sample in results.samples)]
+    if not seen:
+        raise Missing("no score names a cause.")
+    for condition in results.conditions:
+        for sample in results.samples:
+            part = sample.at(condition=condition).known("usable")
+            if not len(part):
+                continue
+            unusable = int(np.sum(part.usable == 0.0))
+            under = [text(condition)] if results.conditions != [""] else []
+            cells = [method_cell(results.methods, sample.method, sample.label)] + under + [
+                Cell(str(unusable), unusable), percent(unusable / len(part), measure="not_usable")]
+            for cause in seen:
+                count = int(np.sum(part.cause == cause))
+                share = percent(count / unusable if unusable else None, measure=cause)
+                cells.append(Cell(share.text, share.value, str(count) if count else "", share.attributes))
+            rows.append(cells)
+            attributes.append({"method": sample.label, "condition": condition})
+    columns = [Column("method", "text")] + ([Column("condition", "text")] if results.conditions != [""] else []) + [
+        Column("not usable"), Column("of all scenes %")] + [Column(f"{CAUSES[cause]} %") for cause in seen]
+    return table("failure-causes", "", columns, rows, row_attributes=attributes,
+                 note="Causes in per cent of the scenes that are not usable; small: their number.")

@@ -1,0 +1,178 @@
+#include "experiments/tuning/method_tuning.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "experiments/files/json_node.hpp"
+#include "experiments/scoring/score.hpp"
+#include "experiments/seeded_random.hpp"
+#include "graph_search/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <fmt/format.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Share of the evaluations that look everywhere, and the steps of the others as shares of a range.
+constexpr double kEverywhere = 0.4;
+constexpr double kFirstStep = 0.25;
+constexpr double kLastStep = 0.025;
+/// Of the parameters, those that one step moves.
+constexpr double kMovedShare = 0.4;
+
+template <typename Parameters>
+TunableMethod tunable(std::string_view name, std::span<const ParameterField<Parameters>> fields,
+                      std::unique_ptr<LaneDetector> (*make)(const Parameters&)) {
+    TunableMethod method{name, {}, [fields, make](std::span<const double> values) {
+                             Parameters parameters;
+                             for (std::size_t i = 0; i < fields.size(); ++i)
+                                 parameters.*fields[i].value = values[i];
+                             return make(parameters);
+                         }};
+    for (const ParameterField<Parameters>& field : fields) {
+        method.parameters.push_back(
+            {field.key, field.lowest, field.highest, field.logarithmic, Parameters{}.*field.value});
+    }
+    return method;
+}
+
+/// Four significant digits: short numbers in files, and the same ones on every machine, whose logarithms
+/// differ in the last bits.
+double rounded(double value) {
+    return value == 0.0 ? 0.0 : std::stod(fmt::format("{:.4g}", value));
+}
+
+/// The value at a share of the range.
+double at(const TunableParameter& parameter, double share) {
+    const double inside = std::clamp(share, 0.0, 1.0);
+    const double value = parameter.logarithmic
+                             ? parameter.lowest * std::pow(parameter.highest / parameter.lowest, inside)
+                             : parameter.lowest + inside * (parameter.highest - parameter.lowest);
+    return std::clamp(rounded(value), parameter.lowest, parameter.highest);
+}
+
+double share_of(const TunableParameter& parameter, double value) {
+    return parameter.logarithmic
+               ? std::log(value / parameter.lowest) / std::log(parameter.highest / parameter.lowest)
+               : (value - parameter.lowest) / (parameter.highest - parameter.lowest);
+}
+
+std::vector<double> anywhere(const TunableMethod& method, boost::random::mt19937_64& random) {
+    boost::random::uniform_01<double> uniform;
+    std::vector<double> values;
+    for (const TunableParameter& parameter : method.parameters)
+        values.push_back(at(parameter, uniform(random)));
+    return values;
+}
+
+/// Some of the values, one at least, moved by about `step` of their ranges.
+std::vector<double> nearby(const TunableMethod& method, std::vector<double> values, double step,
+                           boost::random::mt19937_64& random) {
+    boost::random::uniform_01<double> uniform;
+    boost::random::normal_distribution<double> normal(0.0, step);
+    const std::size_t always =
+        boost::random::uniform_int_distribution<std::size_t>(0, values.size() - 1)(random);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool moved = uniform(random) < kMovedShare || i == always;
+        const double change = normal(random);
+        const TunableParameter& parameter = method.parameters[i];
+        if (moved) values[i] = at(parameter, share_of(parameter, values[i]) + change);
+    }
+    return values;
+}
+
+}  // namespace
+
+const std::vector<TunableMethod>& tunable_methods() {
+    static const std::vector<TunableMethod> kMethods{
+        tunable("delaunay-beam", delaunay_beam_fields(), make_delaunay_beam_detector),
+        tunable("astar-lane", astar_lane_fields(), make_astar_lane_detector)};
+    return kMethods;
+}
+
+const TunableMethod& find_tunable_method(std::string_view name) {
+    const auto method = std::ranges::find(tunable_methods(), name, &TunableMethod::name);
+    if (method != tunable_methods().end()) return *method;
+    std::string names;
+    for (const TunableMethod& known : tunable_methods()) {
+        names += (names.empty() ? "" : ", ") + std::string(known.name);
+    }
+    throw InvalidInput("method",
+                       fmt::format("'{}' has no parameters that are tuned so, only {} have", name, names));
+}
+
+MethodFigure evaluate(const TunableMethod& method, std::span<const double> values, const SceneSet& set,
+                      unsigned threads) {
+    std::vector<SceneScore> scores(set.scenes.size());
+    oneapi::tbb::enumerable_thread_specific<std::unique_ptr<LaneDetector>> detectors(
+        [&] { return method.make(values); });
+    oneapi::tbb::task_arena arena(
+        std::min(static_cast<int>(threads), oneapi::tbb::info::default_concurrency()));
+    arena.execute([&] {
+        oneapi::tbb::parallel_for(std::size_t{0}, set.scenes.size(), [&](std::size_t i) {
+            const AnnotatedScene& scene = set.scenes[i];
+            if (!counts(scene)) return;
+            LaneDetector& detector = *detectors.local();
+            detector.reset();
+            const LaneAnswer answer =
+                detector.detect(scene.scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});
+            scores[i] = score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
+        });
+    });
+    MethodFigure figure;
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+        if (!counts(set.scenes[i])) continue;
+        ++figure.scenes;
+        figure.usable += scores[i].usable().value_or(false) ? 1.0 : 0.0;
+        figure.iou += scores[i].iou.value_or(0.0);
+    }
+    if (figure.scenes == 0) throw InvalidInput("--tracks", "no scene has a ground truth");
+    figure.usable /= static_cast<double>(figure.scenes);
+    figure.iou /= static_cast<double>(figure.scenes);
+    return figure;
+}
+
+TunedMethod tune_method(const TunableMethod& method, const SceneSet& set, const MethodTuningOptions& options,
+                        const std::function<void()>& advance) {
+    boost::random::mt19937_64 random = generator_of(std::string(method.name), options.seed);
+    TunedMethod best;
+    for (const TunableParameter& parameter : method.parameters) best.values.push_back(parameter.start);
+    best.figure = best.figure_of_start = evaluate(method, best.values, set, options.threads);
+    if (advance) advance();
+    const auto everywhere = static_cast<std::size_t>(kEverywhere * static_cast<double>(options.evaluations));
+    for (std::size_t i = 1; i < options.evaluations; ++i) {
+        const double progress = i < everywhere ? 0.0
+                                               : static_cast<double>(i - everywhere) /
+                                                     static_cast<double>(options.evaluations - everywhere);
+        const double step = kFirstStep * std::pow(kLastStep / kFirstStep, progress);
+        std::vector<double> values =
+            i < everywhere ? anywhere(method, random) : nearby(method, best.values, step, random);
+        const MethodFigure figure = evaluate(method, values, set, options.threads);
+        if (figure.value() > best.figure.value()) {
+            best.values = std::move(values);
+            best.figure = figure;
+        }
+        if (advance) advance();
+    }
+    return best;
+}
+
+std::string to_json_text(const TunableMethod& method, std::span<const double> values) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < method.parameters.size(); ++i) {
+        json[std::string(method.parameters[i].key)] = values[i];
+    }
+    return json.dump(2) + "\n";
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "conelane/lane_detector.hpp"
+#include "experiments/scenes/scene_set.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// One number that tuning moves.
+struct TunableParameter {
+    std::string_view key;
+    double lowest;
+    double highest;
+    bool logarithmic;  ///< equal steps are equal ratios
+    double start;      ///< set by hand, so that it has seen no course that a tuning holds out
+};
+
+/// A detector whose parameters can be tuned without knowing what they mean.
+struct TunableMethod {
+    std::string_view name;
+    std::vector<TunableParameter> parameters;
+    /// A detector of these values, in the order of `parameters`.
+    std::function<std::unique_ptr<LaneDetector>(std::span<const double>)> make;
+};
+
+/// All of them: delaunay-beam and astar-lane.
+[[nodiscard]] const std::vector<TunableMethod>& tunable_methods();
+
+/// Throws InvalidInput that lists the names where there is none of that name.
+[[nodiscard]] const TunableMethod& find_tunable_method(std::string_view name);
+
+/// What values reach on scenes. Better is usable more often; what is usable equally often is better by IoU.
+struct MethodFigure {
+    std::size_t scenes = 0;
+    double usable = 0.0;  ///< share of the scenes
+    double iou = 0.0;     ///< mean
+
+    /// What tuning makes as large as it can: the share usable plus a tenth of the mean IoU, which leads where
+    /// a share of a few hundred scenes does not move.
+    [[nodiscard]] double value() const { return usable + 0.1 * iou; }
+};
+
+/// Answers every scene that counts, without a limit of time. The same for any number of threads.
+[[nodiscard]] MethodFigure evaluate(const TunableMethod& method, std::span<const double> values,
+                                    const SceneSet& set, unsigned threads);
+
+struct MethodTuningOptions {
+    std::size_t evaluations = 100;  ///< at least one, the start
+    std::uint64_t seed = 0;
+    unsigned threads = 1;
+};
+
+struct TunedMethod {
+    std::vector<double> values;  ///< four significant digits
+    MethodFigure figure;
+    MethodFigure figure_of_start;
+};
+
+/// Random search: the start, then points drawn uniformly from the ranges for two fifths of the evaluations,
+/// then around the best so far in steps that shrink from a quarter of each range to a fortieth. The best
+/// point evaluated is the answer. The same scenes, seed and options give the same answer. `advance` is called
+/// after each evaluation.
+[[nodiscard]] TunedMethod tune_method(const TunableMethod& method, const SceneSet& set,
+                                      const MethodTuningOptions& options,
+                                      const std::function<void()>& advance = {});
+
+/// One flat JSON object, as the parameter files of methods are.
+[[nodiscard]] std::string to_json_text(const TunableMethod& method, std::span<const double> values);
+
+}  // namespace conelane::experiments
