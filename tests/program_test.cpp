@@ -563,7 +563,8 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     // Scoring the stored lanes again gives the same table.
     const Outcome again =
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
-            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/clc.lanes.jsonl "
+            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
+            "results/clc.lanes.jsonl "
             "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
@@ -640,7 +641,7 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
     EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
-    EXPECT_EQ(results_in(path("stopped")).size(), 7U * 2U * 2U);  // methods, conditions, rates
+    EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // methods, conditions, rates
 }
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {

@@ -91,8 +91,8 @@ void add_compare_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
-    options->methods = {"rld-cbc",   "rld-pair",      "rld-shape", "clc",
-                        "clc-paper", "delaunay-beam", "astar-lane"};
+    options->methods = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
+                        "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
