@@ -35,7 +35,8 @@ void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
     auto options = std::make_shared<Options>();
     command
-        .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
+        .add_option("--tracks", options->tracks,
+                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
         ->required();
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep the N nearest cones ahead only");

@@ -245,7 +245,8 @@ void with_json_file(const std::filesystem::path& file, const std::function<void(
     with_json_text(text_of(file), file, read);
 }
 
-void with_json_list_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read) {
+void with_json_list_file(const std::filesystem::path& file,
+                         const std::function<void(const JsonNode&)>& read) {
     const json value = parse(text_of(file), file, 1);
     const JsonOrigin origin{file, 0};
     const JsonNode node(value, origin);
