@@ -96,7 +96,7 @@ void add_compare_command(CLI::App& program) {
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
-    scenes.every_m = 11.0;
+    scenes.every_m = 22.0;
     scenes.conditions = {"paper", "car"};
     add_shared_options(command, *options);
     command.add_flag("--full", *full,
