@@ -1,31 +1,11 @@
 #include "graph_search/front/front_detector.hpp"
+#include "tests/counted_allocations.hpp"
 #include "tests/front_fixture.hpp"
 #include "tests/no_time_limit.hpp"
-
-#include <cstdlib>
-#include <new>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
 #include <gtest/gtest.h>
-
-namespace {
-std::size_t allocations = 0;
-}  // namespace
-
-// Every allocation of this program comes through here; the other forms of operator new call this one.
-// Inlined, GCC 12 takes new and free for a mismatch.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
-    std::free(memory);
-}
 
 namespace conelane {
 namespace {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+// Replaces operator new of the whole program: a test program includes this once.
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+// Every allocation of this program comes through here; the other forms of operator new call this one.
+// Inlined, GCC 12 takes new and free for a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+    std::free(memory);
+}
