@@ -16,9 +16,13 @@ struct FrontOptions {
 [[nodiscard]] FrontOptions shipped_front_options();
 
 /// Lane detection by one front: both boundaries grow together, one cone at a time, under a learned cost that
-/// sees both of them, and a beam search finds the lane of the highest score. A boundary may step over cones
-/// that were not seen. The far ends are evened (see even_far_ends); a lane has two cones a side at least,
-/// each cone at most once, and is never closed.
+/// sees both of them, and a beam search finds the lanes of the highest score. FrontJudge takes the best of
+/// them. A boundary may step over cones that were not seen. The far ends are evened (see even_far_ends); a
+/// lane has two cones a side at least, each cone at most once, and is never closed.
+///
+/// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
+/// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
+/// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence.
 ///
 /// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none; `stopped` by
 /// iterations where none was found but the beam left some out; `stopped_by` time or memory is the best lane

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -15,6 +16,29 @@ std::size_t word_of(Vertex cone) {
 std::uint64_t bit_of(Vertex cone) {
     return std::uint64_t{1} << (cone % 64);
 }
+
+/// The scores over the best other one.
+class Margins {
+  public:
+    explicit Margins(std::span<const float> scores) {
+        for (const float score : scores) {
+            if (score > best_) {
+                second_ = std::exchange(best_, score);
+            } else {
+                second_ = std::max(second_, score);
+            }
+        }
+    }
+    /// kNoOther where there is none.
+    [[nodiscard]] float of(float score) const {
+        constexpr float kNoOther = 100.0F;
+        return std::min(kNoOther, score - (score == best_ ? second_ : best_));
+    }
+
+  private:
+    float best_ = -std::numeric_limits<float>::infinity();
+    float second_ = -std::numeric_limits<float>::infinity();
+};
 
 /// Whether two segments are surely farther apart than `gap_m`.
 bool far_apart(const Segment& a, const Segment& b, double gap_m) {
@@ -49,10 +73,11 @@ void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOp
     starts_.list(map_, options_.rules);
     left_out_ = starts_.left_out;
     const std::span<const float> scores = cost.score_starts(map_, starts_);
+    const Margins margins(scores);
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const auto& [left, right] = starts_.pairs[i];
         const FrontState state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
-        push(level_of(state), {static_cast<double>(scores[i]), kNone, {}, kLeft, i});
+        push(level_of(state), {static_cast<double>(scores[i]), kNone, {}, kLeft, i, margins.of(scores[i])});
     }
 }
 
@@ -112,6 +137,7 @@ void FrontSearch::expand(std::size_t number) {
     moves_.list(map_, nodes_[number].state, side, options_.rules);
     left_out_ = left_out_ || moves_.left_out;
     const std::span<const float> scores = cost_->score_moves(map_, nodes_[number].state, side, moves_);
+    const Margins margins(scores);
     const Node& from = nodes_[number];
     const std::size_t level = level_number();
     for (std::size_t i = 0; i < moves_.extensions.size(); ++i) {
@@ -121,12 +147,14 @@ void FrontSearch::expand(std::size_t number) {
         const double progress_m =
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
         push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
-             {from.score + static_cast<double>(scores[i]), number, move, side, from.start});
+             {from.score + static_cast<double>(scores[i]), number, move, side, from.start,
+              margins.of(scores[i])});
     }
     if (!moves_.stops) return;
     const double score = from.score + static_cast<double>(scores.back());
     if (!from.state.ends[opposite(side)].stopped) {
-        push(level_after(level, from.state), {score, number, {}, side, from.start});
+        push(level_after(level, from.state),
+             {score, number, {}, side, from.start, margins.of(scores.back())});
     } else if (from.state.is_lane()) {
         finished_.push_back({number, side, score});
         best_finished_ = std::max(best_finished_, score);
@@ -150,6 +178,7 @@ std::size_t FrontSearch::add(const Candidate& candidate) {
     node.move = candidate.move;
     node.side = candidate.side;
     node.start = candidate.start;
+    node.margin = candidate.margin;
     if (candidate.parent == kNone) {
         const auto& [left, right] = starts_.pairs[candidate.start];
         node.state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);

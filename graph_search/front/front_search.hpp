@@ -44,6 +44,7 @@ class FrontSearch {
         FrontMove move;      ///< that led here
         Side side;           ///< that moved
         std::size_t start;   ///< place in FrontStarts::pairs
+        float margin;        ///< see Candidate
         std::array<std::uint64_t, 4>
             bits;  ///< of the lane's cones; each stands for all cones of the same remainder
     };
@@ -55,6 +56,7 @@ class FrontSearch {
         FrontMove move;
         Side side;
         std::size_t start;
+        float margin = 0.0F;  ///< score of the move over that of the best other one, or start
     };
 
     /// Keeps the references as long as it runs, and memory from call to call.
@@ -69,6 +71,8 @@ class FrontSearch {
     [[nodiscard]] FrontMap& map() { return map_; }
     [[nodiscard]] const FrontMap& map() const { return map_; }
     [[nodiscard]] const Node& node(std::size_t number) const { return nodes_[number]; }
+    /// How many there are.
+    [[nodiscard]] std::size_t nodes() const { return nodes_.size(); }
     /// The states kept on the level before, best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
     /// Lanes whose both sides have stopped, in the order in which they were found.
