@@ -93,7 +93,7 @@ void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const Front
     const FrontTruth::Cones& lane = lanes_[chosen];
     const std::array<std::size_t, 2> right_cones = truth_.right_cones(lane, boundaries);
     std::array<std::size_t, 2> place{};
-    double trust = 1.0;
+    double trust = loss.confidence;
     for (const std::uint32_t number : judge.path(chosen)) {
         const FrontJudge::Step& step = judge.steps()[number];
         const FrontSearch::Node& node = front_.node(step.node);

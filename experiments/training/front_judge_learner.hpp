@@ -26,8 +26,8 @@ class FrontJudgeLearner {
         bool is_usable = false;
         double confidence = 0.0;
         double risk = 0.0;  ///< of the lane that is answered
-        /// Of the lane that is answered, the probability that it is right up to its first cone that is not,
-        /// that one included; below 0 where all are right.
+        /// Of the lane that is answered, what FrontWeights::least_trust is held against at its first cone
+        /// that is not right; below 0 where all are.
         double trust_where_wrong = -1.0;
     };
 

@@ -15,21 +15,17 @@
 namespace conelane::experiments {
 
 struct FrontTrainingOptions {
-    /// A narrower beam than the detector's: quicker, and the weights are as good for a wider one. FrontJudge
-    /// learns on what the detector's finds.
-    FrontTrainingOptions() { loss.search.beam_width = 15; }
-
     FrontSceneOptions scenes;
     FrontLossOptions loss;
-    std::size_t draws_per_step = 8;      ///< changed courses to a step of Adam
-    std::size_t imitation_steps = 1500;  ///< of teacher forcing
-    std::size_t search_steps = 12000;    ///< through the search, after these
-    std::size_t judge_steps = 3000;      ///< of FrontJudge, after these
-    double imitation_rate = 3e-3;        ///< learning rates of Adam, which fall to 0 along a cosine
+    std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam
+    std::size_t imitation_steps = 800;  ///< of teacher forcing
+    std::size_t search_steps = 7000;    ///< through the search, after these
+    std::size_t judge_steps = 4000;     ///< of FrontJudge, after these
+    double imitation_rate = 3e-3;       ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
     double judge_rate = 2e-3;
     /// Share of the lanes that shall be right up to their trusted length.
-    double trusted = 0.997;
+    double trusted = 0.995;
     std::size_t trust_draws = 1000;    ///< changed courses that least_trust is chosen on
     std::size_t figures_every = 1000;  ///< steps between two looks at the scenes held out
     std::uint64_t seed = 0;

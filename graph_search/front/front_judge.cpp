@@ -325,7 +325,7 @@ double FrontJudge::trusted_m(const FrontSearch& search, std::size_t contender,
                              const std::array<std::size_t, 2>& cones) const {
     std::array<double, 2> length_m{};
     std::array<std::size_t, 2> counted{1, 1};
-    double right = 1.0;
+    double right = confidence(contender);
     for (const std::uint32_t place : paths_[contender]) {
         const FrontSearch::Node& node = search.node(steps_[place].node);
         const bool is_first = node.parent == kNone;

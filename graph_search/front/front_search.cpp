@@ -40,14 +40,6 @@ class Margins {
     float second_ = -std::numeric_limits<float>::infinity();
 };
 
-/// Whether two segments are surely farther apart than `gap_m`.
-bool far_apart(const Segment& a, const Segment& b, double gap_m) {
-    return std::min(a.from.x(), a.to.x()) > std::max(b.from.x(), b.to.x()) + gap_m ||
-           std::min(b.from.x(), b.to.x()) > std::max(a.from.x(), a.to.x()) + gap_m ||
-           std::min(a.from.y(), a.to.y()) > std::max(b.from.y(), b.to.y()) + gap_m ||
-           std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
-}
-
 }  // namespace
 
 void validate(const FrontSearchOptions& options) {

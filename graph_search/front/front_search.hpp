@@ -15,7 +15,7 @@ namespace conelane {
 
 struct FrontSearchOptions {
     FrontRules rules;
-    std::size_t beam_width = 20;  ///< states kept at each level of progress
+    std::size_t beam_width = 15;  ///< states kept at each level of progress
     double drop = 4.0;            ///< those so much behind the best of their level are not kept
     double finished_drop = 4.0;   ///< nor those so much behind the best lane that has ended
     double level_m = 2.5;         ///< progress, of both boundaries together, from level to level

@@ -14,7 +14,8 @@ struct FrontWeights {
     FrontNetworkWeights rank;    ///< added to the score of a lane
     FrontNetworkWeights usable;  ///< log odds that the best lane is usable
     FrontNetworkWeights right;   ///< log odds that a cone of it is right where all before it are
-    /// A lane is trusted as far as it is right with this probability by `right`.
+    /// A lane is trusted as far as it is right by `right`, times `usable`, with this probability. Of lanes
+    /// that are not usable, most look right cone by cone.
     double least_trust = 1.0;
 
     /// All 0, of the right sizes.
