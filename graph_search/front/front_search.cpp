@@ -50,10 +50,13 @@ void validate(const FrontSearchOptions& options) {
         throw InvalidInput("level_m", "must be positive");
 }
 
-void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options) {
+void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
+                        FrontEvidence* evidence) {
     cost_ = &cost;
+    evidence_ = evidence;
     options_ = options;
     map_.build(scene);
+    if (evidence != nullptr) evidence->find_again(scene, map_);
     nodes_.clear();
     finished_.clear();
     best_finished_ = -std::numeric_limits<double>::infinity();
@@ -68,8 +71,12 @@ void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOp
     const Margins margins(scores);
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const auto& [left, right] = starts_.pairs[i];
-        const FrontState state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
-        push(level_of(state), {static_cast<double>(scores[i]), kNone, {}, kLeft, i, margins.of(scores[i])});
+        const Vertex left_cone = starts_.cones[kLeft][left];
+        const Vertex right_cone = starts_.cones[kRight][right];
+        const double score =
+            static_cast<double>(scores[i]) + bonus(kLeft, left_cone) + bonus(kRight, right_cone);
+        push(level_of(start_state(map_, left_cone, right_cone)),
+             {score, kNone, {}, kLeft, i, margins.of(scores[i])});
     }
 }
 
@@ -138,9 +145,9 @@ void FrontSearch::expand(std::size_t number) {
             static_cast<double>(map_.edges(from.state.ends[side].cones[0])[move.edge].length_m);
         const double progress_m =
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
+        const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
         push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
-             {from.score + static_cast<double>(scores[i]), number, move, side, from.start,
-              margins.of(scores[i])});
+             {score, number, move, side, from.start, margins.of(scores[i])});
     }
     if (!moves_.stops) return;
     const double score = from.score + static_cast<double>(scores.back());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "graph_search/front/front_cost.hpp"
+#include "graph_search/front/front_evidence.hpp"
 #include "graph_search/search_budget.hpp"
 
 #include <algorithm>
@@ -59,8 +60,10 @@ class FrontSearch {
         float margin = 0.0F;  ///< score of the move over that of the best other one, or start
     };
 
-    /// Keeps the references as long as it runs, and memory from call to call.
-    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options);
+    /// Keeps the references as long as it runs, and memory from call to call. With evidence, scores have its
+    /// bonuses.
+    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
+               FrontEvidence* evidence = nullptr);
     /// Keeps the best of the next level that has a state, and lets them move. Returns whether there was such
     /// a level. Where the budget is spent it returns false.
     bool advance(SearchBudget& budget);
@@ -111,12 +114,16 @@ class FrontSearch {
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex cone) const;
     /// Whether the whole lane leaves room for a segment to that cone.
     [[nodiscard]] bool is_free(std::size_t number, Side side, Vertex to) const;
+    [[nodiscard]] double bonus(Side side, Vertex cone) const {
+        return evidence_ != nullptr ? evidence_->bonus(side, cone) : 0.0;
+    }
     [[nodiscard]] bool is_kept_front(const FrontState& state) const;
     void keep_best();
     void expand(std::size_t number);
     void push(std::size_t level, const Candidate& candidate);
 
     FrontCost* cost_ = nullptr;
+    const FrontEvidence* evidence_ = nullptr;
     FrontSearchOptions options_;
     FrontMap map_;
     FrontStarts starts_;
