@@ -293,6 +293,30 @@ TEST(FrontNetwork, IsWhatItsFormulaSays) {
     }
 }
 
+/// The same numbers one at a time, in the order that the network states: what any processor gives.
+TEST(FrontNetwork, IsPlainArithmeticToTheLastBit) {
+    const FrontNetworkWeights w = random_front_weights(3).extend;
+    const FrontNetwork network(w);
+    boost::random::mt19937_64 random(6);
+    boost::random::uniform_real_distribution<float> any(-3.0F, 3.0F);
+    constexpr std::size_t kUnitsAtOnce = 8;
+    for (int round = 0; round < 200; ++round) {
+        std::vector<float> inputs(w.inputs);
+        for (float& x : inputs) x = any(random);
+        float linear = 0.0F;
+        for (std::size_t i = 0; i < w.inputs; ++i) linear += w.linear[i] * inputs[i];
+        std::vector<float> parts(kUnitsAtOnce, 0.0F);
+        for (std::size_t unit = 0; unit < kFrontUnits; ++unit) {
+            float sum = w.hidden_bias[unit];
+            for (std::size_t i = 0; i < w.inputs; ++i) sum += inputs[i] * w.hidden[i * kFrontUnits + unit];
+            parts[unit % kUnitsAtOnce] += w.output[unit] * (sum > 0.0F ? sum : 0.0F);
+        }
+        float expected = w.output_bias + linear;
+        for (const float part : parts) expected += part;
+        EXPECT_EQ(network.score(inputs), expected);
+    }
+}
+
 LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = tests::kNoTimeLimit) {
     return make_front_detector(shipped_front_options())->detect(scene, limits);
 }

@@ -106,6 +106,36 @@ TEST_F(Program, BadOptionsAreNamed) {
     }
     expect_refused("train --tracks generated:circle --out n.json --iterations 0", {"--iterations"});
     expect_refused("train --tracks generated:nowhere --out nowhere/n.json", {"nowhere/n.json"});
+    expect_refused("train front --tracks generated:circle --draws 0 --out f.json", {"--draws"});
+    expect_refused("train front --tracks generated:circle --trusted 1.5 --out f.json", {"trusted"});
+    expect_refused("train front --tracks generated:nowhere --out f.json", {"nowhere"});
+    expect_refused("train front --tracks generated:circle --hold-out generated:circle --out f.json",
+                   {"circle"});
+}
+
+TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
+    const std::string command =
+        "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
+        "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
+        "--seed 3 --out ";
+    const Outcome whole = run(command + "whole.json");
+    ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+    EXPECT_THAT(whole.output, HasSubstr("step 12 of 12, judging"));
+    EXPECT_THAT(whole.output, HasSubstr("usable"));
+    ASSERT_EQ(run(command + "first.json --checkpoint c.json").exit_code, 0);
+    const Outcome again = run(command + "again.json --checkpoint c.json --threads 2");
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
+    const auto weights = [&](const std::string& file) {
+        auto json = nlohmann::json::parse(text_of(path(file)));
+        json.erase("training");  // the figures of a run that has nothing left to do are missing
+        return json;
+    };
+    EXPECT_EQ(weights("again.json"), weights("whole.json"));
+    const Outcome other = run(command + "other.json --checkpoint c.json --beam 7");
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.errors, HasSubstr("c.json"));
+    EXPECT_FALSE(std::filesystem::exists(path("other.json")));
 }
 
 TEST_F(Program, TimeLimitsAreAboveZero) {

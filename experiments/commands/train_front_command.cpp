@@ -96,6 +96,8 @@ void add_train_front_command(CLI::App& train_command) {
     add_number_option(command, "--judge-rate", training.judge_rate, "learning rate of the judge");
     add_number_option(command, "--trusted", training.trusted,
                       "share of the lanes that shall be right as far as they are trusted");
+    add_count_option(command, "--trust-draws", training.trust_draws,
+                     "changed courses on which that is made so, after the training");
     add_count_option(command, "--draws", training.draws_per_step, "changed courses to a step");
     add_count_option(command, "--scenes-a-draw", training.scenes.scenes_per_draw, "scenes of each");
     add_count_option(command, "--beam", training.loss.search.beam_width, "width of the beam in training");

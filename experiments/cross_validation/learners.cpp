@@ -224,7 +224,8 @@ void learn_front(const LearningOptions& options, const fs::path& folder) {
     FrontTrainingRunOptions run;
     run.tracks = options.tracks;
     FrontTrainingOptions& training = run.training;
-    for (std::size_t* steps : {&training.imitation_steps, &training.search_steps, &training.judge_steps})
+    for (std::size_t* steps :
+         {&training.imitation_steps, &training.search_steps, &training.judge_steps, &training.trust_draws})
         *steps = static_cast<std::size_t>(std::lround(options.front_steps * static_cast<double>(*steps)));
     training.seed = options.scenes.seed;
     training.threads = options.scenes.threads;
