@@ -1,6 +1,7 @@
 #include "conelane/drivable_lane.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/detail/inferred_boundary.hpp"
 #include "detectors/detail/lane_boundary.hpp"
 #include "detectors/detail/lane_rungs.hpp"
 #include "detectors/detail/smoothing_spline.hpp"
@@ -43,6 +44,7 @@ void validate(const DrivableOptions& options) {
     };
     require(options.step_m, 0.01, 100.0, "step_m");
     require(options.smoothing_m, 0.25, 5.0, "smoothing_m");
+    require(options.usual_width_m, 1.0, kWidestLane_m, "usual_width_m");
     if (!(options.longest_gap_m > 0.0)) throw InvalidInput("longest_gap_m", "is not above 0");
 }
 
@@ -95,6 +97,16 @@ void require_boundary(const LaneBoundary& boundary, bool closed, const char* key
         throw InvalidInput(key, "has fewer than three cones, yet the lane is closed");
     }
     if (boundary.length_m() > kLongestBoundary_m) throw InvalidInput(key, "is longer than 20 km");
+}
+
+/// Fills an empty side from the other one. Returns whether it did.
+bool infer(std::vector<Point>& empty, const std::vector<Point>& known, bool known_is_left, bool closed,
+           const DrivableOptions& options) {
+    if (!empty.empty() || known.empty() || closed) return false;
+    const LaneBoundary boundary(known, false);
+    require_boundary(boundary, false, known_is_left ? "left" : "right");
+    empty = inferred_boundary(boundary, known_is_left, options.usual_width_m);
+    return !empty.empty();
 }
 
 /// The smoothed centre line of a lane with both boundaries, in the coordinates that the boundaries have.
@@ -370,7 +382,9 @@ std::vector<BridgedGap> seen_from(const std::vector<BridgedGap>& gaps, double fo
 
 DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOptions& options) {
     validate(options);
-    const Sides sides = positions(lane, scene);
+    Sides sides = positions(lane, scene);
+    const bool left_inferred = infer(sides.left, sides.right, false, lane.closed, options);
+    const bool right_inferred = !left_inferred && infer(sides.right, sides.left, true, lane.closed, options);
     if (sides.left.empty() || sides.right.empty()) return {};
     const LaneBoundary left(sides.left, lane.closed);
     const LaneBoundary right(sides.right, lane.closed);
@@ -383,6 +397,8 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
     const double usable_m = line.usable_length_m(foot_m);
 
     DrivableLane result;
+    result.left_inferred = left_inferred;
+    result.right_inferred = right_inferred;
     result.closed = line.closed() && usable_m >= line.length_m();
     double step_m = options.step_m;
     std::size_t count = 0;

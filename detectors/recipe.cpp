@@ -55,7 +55,7 @@ std::unique_ptr<LaneDetector> astar_lane() {
 constexpr std::array kRecipes{
     DetectorRecipe{"front",
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
-                   "missed cones",
+                   "missed cones, answers with one boundary where it sees one alone",
                    OtherRecipe{front}},
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
                    OtherRecipe{warm_front}},

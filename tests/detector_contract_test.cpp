@@ -77,11 +77,14 @@ std::vector<Scene> random_scenes() {
     return scenes;
 }
 
-void expect_cones_of(const Scene& scene, const Lane& lane) {
+void expect_cones_of(const Scene& scene, const Lane& lane, bool may_be_one_sided = false) {
     std::set<ConeId> ids;
     for (const Cone& cone : scene.cones) ids.insert(cone.id);
+    EXPECT_FALSE(lane.left.empty() && lane.right.empty());
+    if (!may_be_one_sided) {
+        EXPECT_FALSE(lane.left.empty() || lane.right.empty());
+    }
     for (const std::vector<ConeId>& side : {lane.left, lane.right}) {
-        EXPECT_FALSE(side.empty());
         for (const ConeId id : side) EXPECT_EQ(ids.erase(id), 1U) << "cone " << id << " unknown or twice";
         if (lane.closed) {
             EXPECT_GE(side.size(), 3U);
@@ -90,10 +93,10 @@ void expect_cones_of(const Scene& scene, const Lane& lane) {
 }
 
 /// What holds for every answer.
-void expect_consistent(const Scene& scene, const LaneAnswer& answer) {
+void expect_consistent(const Scene& scene, const LaneAnswer& answer, bool may_be_one_sided) {
     SCOPED_TRACE(to_string(answer.status));
     if (answer.status == LaneStatus::found) {
-        expect_cones_of(scene, answer.lane);
+        expect_cones_of(scene, answer.lane, may_be_one_sided);
     } else {
         EXPECT_EQ(answer.lane, Lane{});
         EXPECT_FALSE(answer.uncut);
@@ -141,6 +144,8 @@ void expect_same(const LaneAnswer& a, const LaneAnswer& b) {
 
 class DetectorContract : public testing::TestWithParam<std::string> {
   protected:
+    /// Whether it answers with a boundary that is seen alone.
+    static bool answers_one_boundary() { return GetParam().starts_with("front"); }
     static std::unique_ptr<LaneDetector> make(const DetectorOptions& options = {}) {
         return is_in_library(GetParam()) ? make_detector(GetParam(), options)
                                          : make_detector(experiments::find_method(GetParam()), options);
@@ -148,7 +153,7 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     static LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
         LaneAnswer answer;
         EXPECT_NO_THROW(answer = detector.detect(scene, limits));
-        expect_consistent(scene, answer);
+        expect_consistent(scene, answer, answers_one_boundary());
         return answer;
     }
     static LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = tests::kNoTimeLimit) {
@@ -204,6 +209,28 @@ TEST_P(DetectorContract, FewConesHaveNoLaneByProof) {
     for (const Cone& cone : straight(2).cones) {
         EXPECT_EQ(detect(scene).status, LaneStatus::none) << scene.cones.size() << " cones";
         scene.cones.push_back(cone);
+    }
+}
+
+TEST_P(DetectorContract, ABoundarySeenAloneIsAnsweredAsOneOrNotAtAll) {
+    const Scene both = straight(7);
+    for (const int seen : {0, 1}) {
+        Scene scene = both;
+        std::erase_if(scene.cones, [&](const Cone& cone) { return cone.id % 2 != seen; });
+        const LaneAnswer answer = detect(scene);
+        if (!answers_one_boundary()) {
+            EXPECT_NE(answer.status, LaneStatus::found);
+            continue;
+        }
+        ASSERT_EQ(answer.status, LaneStatus::found);
+        const std::vector<ConeId>& known = seen == 0 ? answer.lane.left : answer.lane.right;
+        EXPECT_EQ(known.size(), scene.cones.size());
+        EXPECT_TRUE(std::ranges::is_sorted(known));
+        const DrivableLane lane = drivable(answer, scene);
+        EXPECT_EQ(lane.left_inferred, seen == 1);
+        EXPECT_EQ(lane.right_inferred, seen == 0);
+        EXPECT_GT(lane.length_m, 15.0);
+        for (const DrivablePoint& point : lane.points) EXPECT_NEAR(point.position.y(), 0.0, 0.1);
     }
 }
 
@@ -313,7 +340,8 @@ TEST_P(DetectorContract, AnswersForTheNearestConesOnRequest) {
     for (const Scene& scene : {straight(6), tests::random_scene(1, 20), tests::random_scene(2, 20)}) {
         const LaneAnswer answer = detect(*detector, scene, tests::kNoTimeLimit);
         ASSERT_NE(answer.status, LaneStatus::error) << answer.message;
-        if (answer.status == LaneStatus::found) expect_cones_of(nearest_ahead(scene, 6), answer.lane);
+        if (answer.status == LaneStatus::found)
+            expect_cones_of(nearest_ahead(scene, 6), answer.lane, answers_one_boundary());
     }
 }
 

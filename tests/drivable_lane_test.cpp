@@ -476,6 +476,80 @@ TEST(DrivableLane, DoubledAndCoincidentConesChangeLittle) {
     }
 }
 
+TEST(DrivableLane, InfersABoundaryOfWhichNoConeIsKnown) {
+    for (const bool on_left : {true, false}) {
+        SCOPED_TRACE(on_left);
+        const double side = on_left ? 1.0 : -1.0;
+        Course course = straight(range(1.0, 25.0, 4.0), range(1.0, 25.0, 4.0));
+        (on_left ? course.lane.right : course.lane.left).clear();
+        for (const double width_m : {3.0, 3.5, 4.5}) {
+            const DrivableLane lane = course.driven({.usual_width_m = width_m});
+            EXPECT_EQ(lane.left_inferred, !on_left);
+            EXPECT_EQ(lane.right_inferred, on_left);
+            EXPECT_NEAR(lane.length_m, 24.0, 0.6);
+            for (const DrivablePoint& point : lane.points) {
+                EXPECT_NEAR(point.position.y(), side * (1.75 - 0.5 * width_m), 1e-6);
+                EXPECT_NEAR(point.width_left_m, 0.5 * width_m, 1e-6);
+                EXPECT_NEAR(point.width_right_m, 0.5 * width_m, 1e-6);
+            }
+        }
+    }
+    const DrivableLane both = straight(range(1.0, 25.0, 4.0), range(1.0, 25.0, 4.0)).driven();
+    EXPECT_FALSE(both.left_inferred || both.right_inferred);
+}
+
+TEST(DrivableLane, AnInferredBoundaryFollowsBends) {
+    for (const double turn : {1.0, -1.0}) {
+        for (const double radius_m : {6.0, 10.0, 25.0}) {
+            for (const bool on_left : {true, false}) {
+                SCOPED_TRACE(testing::Message()
+                             << "radius " << radius_m << " turn " << turn << " left " << on_left);
+                const double angle = std::min(3.0, 30.0 / radius_m);
+                Course course = circle(radius_m, turn, 2.5, angle, false, 1.75);
+                (on_left ? course.lane.right : course.lane.left).clear();
+                const DrivableLane lane = course.driven();
+                EXPECT_EQ(lane.right_inferred, on_left);
+                EXPECT_GT(lane.length_m, 0.8 * angle * radius_m);
+                for (const DrivablePoint& point : lane.points) {
+                    const double off_m = (point.position - Point(0.0, turn * radius_m)).norm() - radius_m;
+                    EXPECT_NEAR(off_m, 0.0, 0.4) << point.s_m;
+                    EXPECT_GT(std::min(point.width_left_m, point.width_right_m), 1.2) << point.s_m;
+                }
+            }
+        }
+    }
+}
+
+TEST(DrivableLane, AnyBoundaryAloneGivesALineBesideIt) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> turn(-1.3, 1.3);
+    std::uniform_real_distribution<double> step_m(0.2, 7.0);
+    std::size_t lanes = 0;
+    for (int i = 0; i < 300; ++i) {
+        SCOPED_TRACE(i);
+        Course course;
+        Point at(1.0, i % 2 == 0 ? 1.75 : -1.75);
+        double heading = 0.0;
+        for (int cone = 0; cone < 2 + i % 9; ++cone) {
+            course.add(at, i % 2 == 0);
+            heading += turn(random);
+            at += step_m(random) * Point(std::cos(heading), std::sin(heading));
+        }
+        const DrivableLane lane = course.driven();
+        ASSERT_TRUE(all_finite(lane));
+        EXPECT_FALSE(lane.closed);
+        if (lane.points.empty()) continue;
+        ++lanes;
+        EXPECT_NE(lane.left_inferred, lane.right_inferred);
+        for (std::size_t k = 1; k < lane.points.size(); ++k) {
+            const Segment step{lane.points[k - 1].position, lane.points[k].position};
+            for (const Segment& known : segments(i % 2 == 0 ? course.left() : course.right(), false))
+                EXPECT_FALSE(segments_intersect(step, known)) << k;
+        }
+    }
+    EXPECT_GT(lanes, 200U);
+}
+
 TEST(DrivableLane, ALaneWithoutExtentHasNoPoints) {
     const auto expect_none = [](const Course& course) {
         const DrivableLane lane = course.driven();
@@ -484,8 +558,8 @@ TEST(DrivableLane, ALaneWithoutExtentHasNoPoints) {
         EXPECT_FALSE(lane.closed);
     };
     expect_none({});
-    expect_none(straight({}, range(0.0, 20.0, 4.0)));
-    expect_none(straight(range(0.0, 20.0, 4.0), {}));
+    expect_none(straight({}, {4.0}));
+    expect_none(straight({4.0, 4.0}, {}));
     expect_none(straight({4.0}, {4.0}));
     expect_none(straight({4.0, 4.0, 4.0}, {4.0, 4.0}));
     expect_none(straight({4.0, 4.1}, {4.0, 4.2}));

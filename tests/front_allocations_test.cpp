@@ -32,5 +32,18 @@ TEST(FrontAllocations, OnlyTheAnswersBoundariesOnceMemoryIsWarm) {
     }
 }
 
+TEST(FrontAllocations, OnlyTheBoundaryThatIsSeenAlone) {
+    Scene scene = tests::straight_front_scene(10);
+    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id >= 100; });
+    const auto detector = make_front_detector(shipped_front_options());
+    const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);
+    ASSERT_EQ(first.status, LaneStatus::found);
+    ASSERT_EQ(first.lane.left.size(), 10U);
+    const std::size_t before = allocations;
+    const LaneAnswer again = detector->detect(scene, tests::kNoTimeLimit);
+    EXPECT_EQ(allocations - before, 1U);
+    EXPECT_EQ(again.lane, first.lane);
+}
+
 }  // namespace
 }  // namespace conelane

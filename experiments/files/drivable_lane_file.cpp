@@ -20,6 +20,7 @@ ordered_json to_json(const DrivableRecord& record) {
                       {"closed", lane.closed},
                       {"length_m", lane.length_m}};
     if (lane.trusted_m) json["trusted_m"] = *lane.trusted_m;
+    if (lane.left_inferred || lane.right_inferred) json["inferred"] = lane.left_inferred ? "left" : "right";
     ordered_json& bridged = json["bridged"] = ordered_json::array();
     for (const BridgedGap& gap : lane.bridged) {
         bridged.push_back(

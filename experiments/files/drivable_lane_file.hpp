@@ -17,7 +17,8 @@ struct DrivableRecord {
     DrivableLane lane;
 };
 
-/// One JSON object a line, with all that a DrivableLane holds; without points where it has none. Throws
+/// One JSON object a line, with all that a DrivableLane holds; without points where it has none. `inferred`,
+/// "left" or "right", is there where that boundary is. Throws
 /// InputError where the file cannot be written; then an old file stays as it was. So do the other writers.
 void write_drivable_lanes(const std::filesystem::path& file, std::span<const DrivableRecord> records);
 

@@ -57,6 +57,7 @@ CentreLine centre_line_of(const LaneOutline& outline, const Pose& pose, double l
     add(outline.left, lane.left);
     add(outline.right, lane.right);
     CentreLine line;
+    if (lane.left.empty() || lane.right.empty()) return line;
     try {
         const DrivableLane driven = drivable(lane, scene, {.step_m = kCentreLineStep_m});
         const std::size_t count = std::min(points_of(length_m), driven.points.size());

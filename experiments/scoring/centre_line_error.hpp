@@ -27,7 +27,7 @@ struct CentreLinePoint {
 using CentreLine = std::vector<CentreLinePoint>;
 
 /// The centre line of a lane as a car would drive it (see `drivable`), the first `length_m` of it. Empty
-/// where the lane cannot be driven.
+/// where the lane cannot be driven, and where a boundary is empty: what is inferred is not scored.
 [[nodiscard]] CentreLine centre_line_of(const LaneOutline& lane, const Pose& pose,
                                         double length_m = kCentreLineStretch_m + 5.0);
 

@@ -343,7 +343,7 @@ SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double l
     const Truth truth(scene, boundaries);
     const ConePositions positions(scene.scene);
     const bool found =
-        answer.status == LaneStatus::found && !(answer.lane.left.empty() && answer.lane.right.empty());
+        answer.status == LaneStatus::found && !answer.lane.left.empty() && !answer.lane.right.empty();
 
     SceneScore result = truth.nothing_found(latency_ms);
     result.error = answer.status == LaneStatus::error;
@@ -372,7 +372,7 @@ SceneScore score_outline(const AnnotatedScene& scene, const LaneOutline& lane, d
                          const TrackBoundaries* boundaries) {
     const Truth truth(scene, boundaries);
     SceneScore result = truth.nothing_found(latency_ms);
-    if (!(lane.left.empty() && lane.right.empty())) truth.judge(lane, false, result);
+    if (!lane.left.empty() && !lane.right.empty()) truth.judge(lane, false, result);
     return result;
 }
 

@@ -115,7 +115,8 @@ struct SceneScore {
 /// diverges where that path leaves it, and the ground truth's length is that of the path. IoU and accuracy
 /// are absent.
 ///
-/// An answer that is not found, or found without any cone, is category none. Ids that repeat in a lane are
+/// An answer that is not found, or found with an empty side, is category none: one boundary alone is no lane
+/// that is scored, whatever a car can make of it. Ids that repeat in a lane are
 /// scored as they stand.
 /// Throws InvalidInput naming the key where the scene does not count, a lane or candidate names a cone that
 /// is not in the scene, or the boundary of a side is empty.

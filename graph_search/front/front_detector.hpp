@@ -31,11 +31,16 @@ struct FrontOptions {
 /// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
 /// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence.
 ///
-/// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none; `stopped` by
-/// iterations where none was found but the beam left some out; `stopped_by` time or memory is the best lane
-/// met until then. Once memory is warm, `detect` allocates the two boundaries of the answer and nothing else.
-/// With FrontOptions::repeat_bonus the last lane that was found is carried from scene to scene until `reset`;
-/// without it nothing is. Throws InvalidInput where an option is out of its range.
+/// Where no lane was found before time or memory was spent, a boundary is looked for that is seen alone (see
+/// BoundarySearch): three cones at least, the other side of the answer empty. The bonus of the last lane has
+/// no part in it, and it is not remembered as one.
+///
+/// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none, nor a boundary
+/// alone; `stopped` by iterations where none was found but the beam left some out; `stopped_by` time or
+/// memory is the best lane met until then. Once memory is warm, `detect` allocates the two boundaries of the
+/// answer and nothing else. With FrontOptions::repeat_bonus the last lane that was found is carried from
+/// scene to scene until `reset`; without it nothing is. Throws InvalidInput where an option is out of its
+/// range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 
 /// The cones of a lane without its far ends, as even_far_ends, on positions. For training too.

@@ -42,6 +42,10 @@ struct DrivableLane {
     /// Arc length up to which the detector trusts the lane, at most length_m; absent where it does not know.
     std::optional<double> trusted_m;
     std::vector<BridgedGap> bridged;  ///< left ones first, then by from_s_m
+    /// No cone of this boundary is known: it is taken to lie DrivableOptions::usual_width_m from the other
+    /// one, and the widths to that side say no more than that. At most one of both.
+    bool left_inferred = false;
+    bool right_inferred = false;
 };
 
 struct DrivableOptions {
@@ -50,6 +54,9 @@ struct DrivableOptions {
     /// it are taken out, a bend whose radius is twice as long keeps it within 2 %.
     double smoothing_m = 1.75;
     double longest_gap_m = 5.5;  ///< longer ones are bridged; 5 m by the rules and a margin for noise; > 0
+    /// Width of a lane of which one boundary alone is known, in [1, 6.5]. The rules ask for 3 m at least;
+    /// recorded courses are about 3.5 m wide.
+    double usual_width_m = 3.5;
 };
 
 /// The centre line of a lane from the car's foot point on.
@@ -65,12 +72,15 @@ struct DrivableOptions {
 /// pass the line between both ends. Any lane ends before the first place where it is narrower than about 0.8
 /// m, where its boundaries cross or where left and right are swapped; a closed one is then open.
 ///
-/// A lane without extent has no points: one with an empty side, with one cone on either side, shorter than
-/// 0.5 m, or unusable at the foot point. Throws InvalidInput naming the key where an option is out of its
-/// range, the pose is not finite, the lane names a cone twice or one that the scene has not (`left[2]`), a
-/// cone of it is not finite or farther than 1000 km from the car, a boundary is longer than 20 km, or a
-/// closed lane has fewer than three cones on a side. Cones at one place count as one. The same input gives
-/// the same output.
+/// Where one side of an open lane is empty and the other has two cones at least, the empty one is inferred:
+/// beside the known boundary, at the usual width. `left_inferred` or `right_inferred` says so.
+///
+/// A lane without extent has no points: one without cones, with one cone on either side, with an empty side
+/// that is closed, shorter than 0.5 m, or unusable at the foot point. Throws InvalidInput naming the key
+/// where an option is out of its range, the pose is not finite, the lane names a cone twice or one that the
+/// scene has not (`left[2]`), a cone of it is not finite or farther than 1000 km from the car, a boundary is
+/// longer than 20 km, or a closed lane has fewer than three cones on a side. Cones at one place count as one.
+/// The same input gives the same output.
 [[nodiscard]] DrivableLane drivable(const Lane& lane, const Scene& scene,
                                     const DrivableOptions& options = {});
 

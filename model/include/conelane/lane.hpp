@@ -7,7 +7,8 @@
 
 namespace conelane {
 
-/// Both boundaries of a lane, as cone ids in driving order from the car outward.
+/// Both boundaries of a lane, as cone ids in driving order from the car outward. One of them may be empty
+/// where the other alone was found; then the lane is not closed.
 struct Lane {
     std::vector<ConeId> left;
     std::vector<ConeId> right;

@@ -47,7 +47,9 @@ struct UncutLane {
     std::optional<Optimality> optimality;
 };
 
-/// A detector's answer. `lane` is empty unless status is found. What a method does not know stays absent.
+/// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, but for detectors
+/// that say otherwise of scenes which show one boundary alone (front). What a method does not know stays
+/// absent.
 struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
     Lane lane;

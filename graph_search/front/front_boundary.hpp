@@ -1,0 +1,79 @@
+#pragma once
+
+#include "graph_search/front/front_map.hpp"
+#include "graph_search/search_budget.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace conelane {
+
+/// What a single boundary may look like. Chosen by hand: the networks of the front judge a boundary by the
+/// other one, and have learned from scenes with both.
+struct BoundaryRules {
+    // Of the first cone, in the frame of the car.
+    double start_behind_m = 0.6;
+    double start_ahead_m = 12.0;
+    double start_aside_m = 6.0;
+    double shortest_segment_m = 0.5;
+    double largest_first_turn_rad = 1.4;  ///< from the heading to the first segment
+    double largest_turn_rad = 1.0;        ///< from segment to segment
+    double largest_turn_change_rad = 1.0;
+    double largest_length_ratio = 2.5;       ///< of successive segments
+    double largest_bridging_turn_rad = 0.5;  ///< onto a segment over kShortSegment_m
+    /// Of the car from the boundary, which is taken to go back to it along an arc.
+    double nearest_m = 0.4;
+    double farthest_m = 4.5;
+    double usual_distance_m = 1.75;  ///< half a usual lane
+    std::size_t fewest_cones = 3;
+    std::size_t most_cones = 100;
+    // Of all segments together, and of their mean: three cones must be nearly perfect, more need not.
+    double least_score = 1.6;
+    double least_mean_score = 0.6;
+    std::size_t beam_width = 64;
+};
+
+/// Finds the boundary that a scene shows where it shows but one: the longest smooth chain of cones that
+/// begins beside the car. A segment counts 1, less for uneven spacing, for a turn and for a change of it,
+/// less for being shorter than 2 m. The side is that on which it passes the car: the arc through its first
+/// three cones is followed back to where the car stands, so in a bend the outer boundary may begin on the
+/// other side of the heading. Cones are bridged as in a lane, from the third cone on. Keeps memory from call
+/// to call.
+class BoundarySearch {
+  public:
+    /// Puts the boundary into `cones` and returns its side. Returns nothing where there is none, or where the
+    /// budget was spent before the end. A deterministic beam; of equal chains the one found first.
+    std::optional<Side> find(FrontMap& map, SearchBudget& budget, std::vector<Vertex>& cones);
+
+  private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+
+    struct Chain {
+        Vertex last;
+        std::size_t parent;
+        std::size_t count;
+        double score;
+        Point direction;
+        double segment_m;
+        double turn_rad;
+        Side side;  ///< known from the third cone on
+    };
+
+    [[nodiscard]] bool is_boundary(const Chain& chain) const;
+    void start(const FrontMap& map);
+    void extend(FrontMap& map, std::size_t number);
+    /// The distance of the car to the left of the chain, taken back along the arc through the last two
+    /// segments, of which the first begins at `first`.
+    [[nodiscard]] static double car_to_left_m(const Point& first, const Chain& chain, double turn_rad,
+                                              double segment_m);
+    /// Whether a chain has the cone that it would be extended to, or a segment that the new one meets.
+    [[nodiscard]] bool meets(const FrontMap& map, std::size_t number, const Segment& added, Vertex to) const;
+    void keep_best(std::size_t first);
+
+    BoundaryRules rules_;
+    std::vector<Chain> chains_;
+    std::vector<Chain> next_;
+};
+
+}  // namespace conelane
