@@ -322,6 +322,7 @@ TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
     scenes.false_positive_rates = {0.5};
     scenes.ranges_m = {50.0};
     scenes.every_m = 15.0;
+    scenes.conditions = {"car"};
     const SceneSet set = make_scene_set({"generated:hairpins@99"}, scenes);
     CandidateListOptions options;
     options.search = extended_search_options();
