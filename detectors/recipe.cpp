@@ -26,6 +26,10 @@ std::unique_ptr<LaneDetector> front() {
     return make_front_detector(shipped_front_options());
 }
 
+std::unique_ptr<LaneDetector> warm_front() {
+    return make_front_detector(warm_front_options());
+}
+
 std::unique_ptr<LaneDetector> clc() {
     return make_clc_detector(extended_clc_options());
 }
@@ -53,6 +57,8 @@ constexpr std::array kRecipes{
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
                    "missed cones",
                    OtherRecipe{front}},
+    DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
+                   OtherRecipe{warm_front}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
                    "search, a network on all features trained for usable lanes",

@@ -8,7 +8,7 @@ std::set<std::string> training_courses(std::string_view method) {
         const std::set<std::string>& of_weights = courses_of_weights().at(weights);
         courses.insert(of_weights.begin(), of_weights.end());
     };
-    if (method == "front") {
+    if (method == "front" || method == "front-warm") {
         add("front");
     } else if (method == "clc-paper" || method == "clc-delaunay") {
         add("rank_net_paper");

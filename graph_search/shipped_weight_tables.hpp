@@ -37,10 +37,14 @@ struct FrontNetworkTable {
     std::span<const double> output_bias;  ///< one number
 };
 struct FrontTable {
-    std::span<const std::string_view> features;  ///< of the state, a move, a stop, a start
+    std::span<const std::string_view> features;  ///< of the state, a move, a stop, a start, a cone, a lane
     FrontNetworkTable extend;
     FrontNetworkTable stop;
     FrontNetworkTable start;
+    FrontNetworkTable rank;
+    FrontNetworkTable usable;
+    FrontNetworkTable right;
+    double least_trust;
 };
 extern const FrontTable kFront;
 

@@ -1,6 +1,7 @@
 #include "graph_search/shipped_weights.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "graph_search/front/front_judge_features.hpp"
 #include "graph_search/lane_features.hpp"
 #include "graph_search/shipped_weight_tables.hpp"
 
@@ -103,8 +104,12 @@ FrontWeights shipped_front_weights() {
     add(extend_feature_table());
     add(stop_feature_table());
     add(start_feature_table());
+    add(cone_feature_table());
+    add(whole_lane_feature_table());
     require(std::ranges::equal(kFront.features, known), "features", "are not those of the library");
-    FrontWeights result{weights(kFront.extend), weights(kFront.stop), weights(kFront.start)};
+    FrontWeights result{weights(kFront.extend), weights(kFront.stop),   weights(kFront.start),
+                        weights(kFront.rank),   weights(kFront.usable), weights(kFront.right),
+                        kFront.least_trust};
     validate(result);
     return result;
 }

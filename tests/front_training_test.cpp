@@ -18,6 +18,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,12 +32,24 @@ std::vector<Track> courses() {
     return {generate_track("hairpins", 1), generate_track("kidney", 2)};
 }
 
+FrontNetworkWeights random_network(std::size_t inputs, std::uint64_t seed) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::normal_distribution<float> any(0.0F, 0.3F);
+    FrontNetworkWeights network = FrontNetworkWeights::zero(inputs);
+    for (std::vector<float>* numbers :
+         {&network.hidden, &network.hidden_bias, &network.output, &network.linear})
+        for (float& number : *numbers) number = any(random);
+    return network;
+}
+
 FrontTrainingOptions quick() {
     FrontTrainingOptions options;
     options.draws_per_step = 3;
     options.scenes.scenes_per_draw = 2;
     options.imitation_steps = 6;
     options.search_steps = 6;
+    options.judge_steps = 4;
+    options.trust_draws = 5;
     options.figures_every = 6;
     options.loss.search.beam_width = 6;
     return options;
@@ -105,6 +119,59 @@ TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
     constexpr double kStep = 1e-3;
     const double slope = (step_by(kStep) - step_by(-kStep)) / (2.0 * kStep);
     EXPECT_NEAR(slope / std::sqrt(squared), 1.0, 0.02);
+}
+
+/// So does that of the judge, by each network alone; `right` is an input of the others.
+TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
+    const FrontScenes scenes(courses(), {}, 3);
+    const FrontScenes::Drawn drawn = scenes.draw(5);
+    ASSERT_FALSE(drawn.scenes.empty());
+    FrontWeights weights = random_front_weights(2);
+    for_each_block(weights, [](std::span<float> block) {
+        for (float& number : block) number *= 0.3F;
+    });
+    weights.rank = weights.usable = random_network(kWholeLaneFeatures, 7);
+    weights.right = random_network(kRightInputs, 8);
+    FrontJudgeLossOptions options;
+    options.listwise = 0.0;  // is no part of the sum
+    FrontJudgeLearner learner;
+    const auto loss_of = [&](const FrontWeights& at, FrontWeights* derivatives) {
+        FrontCost cost(at);
+        FrontJudge judge(at);
+        return learner.judge(drawn.scenes.front(), drawn.boundaries, at, cost, judge, options, derivatives)
+            .sum;
+    };
+    FrontWeights derivatives = FrontWeights::zero();
+    ASSERT_GT(loss_of(weights, &derivatives), 0.0);
+    for (auto network : {&FrontWeights::rank, &FrontWeights::usable}) {
+        const FrontNetworkWeights& slopes = derivatives.*network;
+        const auto step_by = [&](float step) {
+            FrontWeights moved = weights;
+            for (std::size_t i = 0; i < slopes.linear.size(); ++i)
+                (moved.*network).linear[i] += step * slopes.linear[i];
+            return loss_of(moved, nullptr);
+        };
+        double squared = 0.0;
+        for (const float slope : slopes.linear)
+            squared += static_cast<double>(slope) * static_cast<double>(slope);
+        ASSERT_GT(squared, 0.0);
+        const auto step = static_cast<float>(0.01 / std::sqrt(squared));
+        const double slope = (step_by(step) - step_by(-step)) / (2.0 * static_cast<double>(step));
+        EXPECT_NEAR(slope / squared, 1.0, 0.02);
+    }
+}
+
+TEST(FrontTraining, TrustsNoFartherThanItsShareOfScenesAllows) {
+    FrontTrainingOptions options = quick();
+    const auto least_trust = [&](double trusted) {
+        options.trusted = trusted;
+        return train_front(courses(), {}, options, {}).least_trust;
+    };
+    EXPECT_EQ(least_trust(0.01), 0.0) << "nearly all lanes may be wrong";
+    const double strict = least_trust(1.0);
+    EXPECT_GT(strict, 0.0);
+    EXPECT_LE(strict, 1.0);
+    EXPECT_LE(least_trust(0.7), strict);
 }
 
 TEST(FrontScenes, DrawTheSameForTheSameNumber) {
@@ -236,7 +303,7 @@ TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
         ++reports;
         EXPECT_EQ(progress.held_out.size(), 2U);
     });
-    EXPECT_EQ(reports, 2U);
+    EXPECT_EQ(reports, 3U);  // after 6, 12 and all 16 steps
     EXPECT_THAT(run.record, testing::HasSubstr(R"("tracks":["slalom@1"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("hold_out_tracks":["kidney@2"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("beam":6)"));

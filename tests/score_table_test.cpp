@@ -55,6 +55,29 @@ TEST(SummariseByKey, GroupsMethodsInOrderOfAppearanceThenRateThenRange) {
     EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou.value(), 0.5);
 }
 
+TEST(SummaryJson, HoldsWhatMethodsSayOfTheirLanesWhereTheyDo) {
+    std::vector<KeyedScore> scores{keyed("silent", 0.3, 30, Category::ground_truth, 1),
+                                   keyed("front", 0.3, 30, Category::ground_truth, 1),
+                                   keyed("front", 0.3, 30, Category::diverging_below_20, 0.5)};
+    scores[1].score.confidence = 0.96;
+    scores[1].score.lane_length_m = 20.0;
+    scores[1].score.trusted_m = 20.0;
+    scores[2].score.confidence = 0.92;
+    scores[2].score.lane_length_m = 20.0;
+    scores[2].score.trusted_m = 10.0;
+    scores[2].score.divergence_distance_m = 9.0;
+    const std::vector<ScoreRow> rows = summarise_by_key(scores);
+    EXPECT_THAT(summary_json(rows[0]), Not(HasSubstr("calibration")));
+    const auto said = nlohmann::json::parse(summary_json(rows[1])).at("calibration");
+    EXPECT_NEAR(said.at("error").get<double>(), 0.94 - 0.5, 1e-12);
+    EXPECT_EQ(said.at("sure_share"), 0.0);
+    EXPECT_FALSE(said.contains("usable_where_sure_share"));
+    EXPECT_EQ(said.at("right_where_trusted_share"), 0.5);
+    EXPECT_EQ(said.at("trusted_share"), 0.75);
+    EXPECT_EQ(said.at("bins").size(), 1u);
+    EXPECT_EQ(said.at("bins")[0][0], 2);
+}
+
 TEST(ScoreTable, HasARowForEachKeyAndThePublishedOnesOfTheSameRates) {
     const std::vector<ScoreRow> rows = summarise_by_key(std::vector<KeyedScore>{
         keyed("clc", 0.3, 30, Category::near_ground_truth, 0.9),

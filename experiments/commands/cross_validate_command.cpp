@@ -70,7 +70,7 @@ void add_cross_validate_command(CLI::App& program) {
         "cross-validate",
         "compares methods on courses that none of them has learned from: a fold for each family of courses");
     auto options = std::make_shared<Options>();
-    options->methods = {"rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam", "astar-lane"};
+    options->methods = {"front", "rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->run.comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0, 50.0};
@@ -100,6 +100,11 @@ void add_cross_validate_command(CLI::App& program) {
         ->capture_default_str();
     command.add_option("--evaluations", options->run.learning.evaluations, "of parameters that are tuned")
         ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command
+        .add_option("--front-steps", options->run.learning.front_steps,
+                    "of the training of front, as a share of those of the shipped weights")
+        ->check(CLI::PositiveNumber)
         ->capture_default_str();
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);

@@ -21,19 +21,30 @@ struct Options {
 };
 
 void print(const std::string& of, const FrontFigures& figures) {
-    fmt::print("  {:<6} {:>6} scenes  usable {:.2f} %, IoU {:.2f} %, exact {:.1f} %\n", of, figures.scenes,
-               100.0 * figures.usable, 100.0 * figures.iou, 100.0 * figures.exact);
+    const auto percent = [](std::optional<double> share) { return 100.0 * share.value_or(0.0); };
+    const Calibration& said = figures.calibration;
+    fmt::print(
+        "  {:<6} {:>6} scenes  usable {:.2f} %, IoU {:.2f} %, exact {:.1f} %; confidence off by {:.2f} %, "
+        "{:.1f} % sure, of these usable {:.2f} %; trusted {:.1f} %, right there {:.2f} %\n",
+        of, figures.scenes, 100.0 * figures.usable, 100.0 * figures.iou, 100.0 * figures.exact,
+        percent(said.error()), percent(said.sure()), percent(said.usable_where_sure()),
+        percent(said.trusted_share()), percent(said.right_where_trusted()));
 }
 
 void print(const FrontProgress& progress, const FrontTrainingRunOptions& run) {
+    using Stage = FrontProgress::Stage;
     fmt::print("step {} of {}, {}: loss {:.4f}", progress.step, progress.steps,
-               progress.through_search ? "through the search" : "move by move", progress.loss);
-    if (progress.through_search) {
-        fmt::print(", true lane allowed {:.1f} %, kept {:.1f} %, answered {:.1f} %, risk {:.4f}\n",
-                   100.0 * progress.reached, 100.0 * progress.kept, 100.0 * progress.found, progress.risk);
-    } else {
-        fmt::print(", true lane allowed {:.1f} %\n", 100.0 * progress.reached);
-    }
+               progress.stage == Stage::move_by_move     ? "move by move"
+               : progress.stage == Stage::through_search ? "through the search"
+                                                         : "judging",
+               progress.loss);
+    if (progress.stage != Stage::judging)
+        fmt::print(", true lane allowed {:.1f} %", 100.0 * progress.reached);
+    if (progress.stage == Stage::through_search)
+        fmt::print(", kept {:.1f} %, answered {:.1f} %", 100.0 * progress.kept, 100.0 * progress.found);
+    if (progress.stage == Stage::judging) fmt::print(", usable {:.1f} %", 100.0 * progress.found);
+    if (progress.stage != Stage::move_by_move) fmt::print(", risk {:.4f}", progress.risk);
+    fmt::print("\n");
     for (std::size_t i = 0; i < progress.held_out.size(); ++i) print(run.conditions[i], progress.held_out[i]);
     std::fflush(stdout);
 }
@@ -78,8 +89,13 @@ void add_train_front_command(CLI::App& train_command) {
         ->capture_default_str();
     add_count_option(command, "--imitation-steps", training.imitation_steps, "steps of Adam move by move", 0);
     add_count_option(command, "--search-steps", training.search_steps, "steps of Adam through the search", 0);
+    add_count_option(command, "--judge-steps", training.judge_steps,
+                     "steps of Adam of the judge of whole lanes", 0);
     add_number_option(command, "--imitation-rate", training.imitation_rate, "learning rate move by move");
     add_number_option(command, "--search-rate", training.search_rate, "learning rate through the search");
+    add_number_option(command, "--judge-rate", training.judge_rate, "learning rate of the judge");
+    add_number_option(command, "--trusted", training.trusted,
+                      "share of the lanes that shall be right as far as they are trusted");
     add_count_option(command, "--draws", training.draws_per_step, "changed courses to a step");
     add_count_option(command, "--scenes-a-draw", training.scenes.scenes_per_draw, "scenes of each");
     add_count_option(command, "--beam", training.loss.search.beam_width, "width of the beam in training");

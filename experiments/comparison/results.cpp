@@ -56,6 +56,8 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
         put_if_known("heading_error_rad", error.heading_rad);
     }
     put_if_known("steady", score.steady);
+    put_if_known("confidence", score.confidence);
+    put_if_known("trusted_m", score.trusted_m);
     if (score.accuracy) {
         line["accurate"] = score.accurate();
         line["accuracy"] = {{"cones", score.accuracy->cones},

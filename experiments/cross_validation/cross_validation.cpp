@@ -58,7 +58,8 @@ std::string record_of(const CrossValidationOptions& options) {
                                   {"always", options.always},
                                   {"scenes", scene_options_json(learning.scenes)},
                                   {"variants", learning.variants},
-                                  {"evaluations", learning.evaluations}}
+                                  {"evaluations", learning.evaluations},
+                                  {"front_steps", learning.front_steps}}
         .dump();
 }
 

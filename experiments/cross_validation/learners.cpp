@@ -3,21 +3,25 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/front_weights_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/method_parameter_file.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/files/rank_net_file.hpp"
 #include "experiments/files/step_score_file.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "experiments/training/front_training_run.hpp"
 #include "experiments/training/training_run.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
 #include "experiments/tuning/method_tuning.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc_detector.hpp"
+#include "graph_search/front/front_detector.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -33,6 +37,8 @@ constexpr const char* kPaperNet = "rank_net_paper.json";
 constexpr const char* kDelaunayBeam = "delaunay-beam.json";
 constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
+constexpr const char* kFront = "front.json";
+constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 
 std::string text_of(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -212,7 +218,36 @@ MethodMaker make_shape(const fs::path& folder, const RunOptions& options) {
     return maker_of(find_method("rld-shape"), learned);
 }
 
-constexpr std::array kLearners{Learner{"clc", learn_clc, make_clc},
+// The weights of front. It draws its scenes itself, so that of the options only seed and threads count.
+
+void learn_front(const LearningOptions& options, const fs::path& folder) {
+    if (fs::exists(folder / kFront)) return;
+    FrontTrainingRunOptions run;
+    run.tracks = options.tracks;
+    FrontTrainingOptions& training = run.training;
+    for (std::size_t* steps : {&training.imitation_steps, &training.search_steps, &training.judge_steps})
+        *steps = static_cast<std::size_t>(std::lround(options.front_steps * static_cast<double>(*steps)));
+    training.seed = options.scenes.seed;
+    training.threads = options.scenes.threads;
+    training.checkpoint = folder / kFrontCheckpoint;
+    const FrontTrainingRun result = run_front_training(run, {});
+    write(folder / kFront, front_weights_json(result.weights, result.record));
+    fs::remove(training.checkpoint);
+}
+
+FrontOptions front_options(const fs::path& folder) {
+    FrontOptions front = shipped_front_options();
+    front.weights = parsed(folder / kFront, [](auto text) { return parse_front_weights(text); });
+    return front;
+}
+
+MethodMaker make_front(const fs::path& folder, const RunOptions& options) {
+    return maker_of(
+        "front", [front = front_options(folder)] { return make_front_detector(front); }, options);
+}
+
+constexpr std::array kLearners{Learner{"front", learn_front, make_front},
+                               Learner{"clc", learn_clc, make_clc},
                                Learner{"clc-warm", learn_clc, make_warm_clc},
                                Learner{"clc-paper", learn_clc_paper, make_paper_clc},
                                Learner{"delaunay-beam", learn_delaunay_beam, make_delaunay_beam},

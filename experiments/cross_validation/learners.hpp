@@ -18,6 +18,7 @@ struct LearningOptions {
     SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
     std::size_t variants = 1;         ///< of each track, for networks
     std::size_t evaluations = 60;     ///< of parameters that are tuned, on every fourth pose
+    double front_steps = 1.0;  ///< of the training of `front`, as a share of those of the shipped weights
 };
 
 /// A method whose weights or parameters come from courses, by the recipe of those that are shipped.
@@ -30,7 +31,7 @@ struct Learner {
     MethodMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
 };
 
-/// clc, clc-warm, clc-paper, delaunay-beam, astar-lane and rld-shape.
+/// front, clc, clc-warm, clc-paper, delaunay-beam, astar-lane and rld-shape.
 [[nodiscard]] std::span<const Learner> learners();
 
 /// None where the method learns nothing, so answers the same in every fold.

@@ -1,6 +1,7 @@
 #include "experiments/files/front_weights_file.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "graph_search/front/front_judge_features.hpp"
 
 #include <cstdint>
 #include <span>
@@ -29,10 +30,9 @@ Json feature_names() {
         for (const FrontFeature& feature : table) list.push_back(std::string(feature.name));
         return list;
     };
-    return {{"state", names(state_feature_table())},
-            {"extend", names(extend_feature_table())},
-            {"stop", names(stop_feature_table())},
-            {"start", names(start_feature_table())}};
+    return {{"state", names(state_feature_table())}, {"extend", names(extend_feature_table())},
+            {"stop", names(stop_feature_table())},   {"start", names(start_feature_table())},
+            {"cone", names(cone_feature_table())},   {"lane", names(whole_lane_feature_table())}};
 }
 
 std::vector<float> numbers(const Json& file, const std::string& key, std::size_t size) {
@@ -53,6 +53,9 @@ void for_each_network(Weights& weights, const Use& use) {
     use("extend", weights.extend);
     use("stop", weights.stop);
     use("start", weights.start);
+    use("rank", weights.rank);
+    use("usable", weights.usable);
+    use("right", weights.right);
 }
 
 }  // namespace
@@ -74,6 +77,9 @@ FrontWeights parse_front_weights(std::string_view json) {
         network.linear = numbers(file, name + "_linear", network.linear.size());
         network.output_bias = numbers(file, name + "_output_bias", 1).front();
     });
+    const Json& least_trust = member(file, "least_trust");
+    if (!least_trust.is_number()) throw InvalidInput("least_trust", "must be a number");
+    weights.least_trust = least_trust.get<double>();
     validate(weights);
     return weights;
 }
@@ -102,7 +108,7 @@ std::string front_weights_json(const FrontWeights& weights, std::string_view tra
         write(name + "_linear", network.linear);
         write(name + "_output_bias", std::span(&network.output_bias, 1));
     });
-    return text + "\n}\n";
+    return text + fmt::format(",\n\"least_trust\": {}\n}}\n", weights.least_trust);
 }
 
 }  // namespace conelane::experiments

@@ -50,8 +50,10 @@ Enumeration read_enumeration(const JsonNode& json) {
         const std::size_t size = candidates->array_size();
         for (std::size_t i = 0; i < size; ++i) {
             const JsonNode candidate = candidates->element(i);
-            enumeration.candidates.push_back(
-                {read_lane(candidate), candidate.member("iteration").non_negative_integer()});
+            LaneCandidate& read = enumeration.candidates.emplace_back(
+                LaneCandidate{read_lane(candidate), candidate.member("iteration").non_negative_integer()});
+            if (const auto confidence = candidate.find("confidence"))
+                read.confidence = confidence->number_in(0.0, 1.0);
         }
     }
     return enumeration;
@@ -179,10 +181,11 @@ ordered_json to_json(const LaneRecord& record, const std::string& key) {
         json["complete"] = enumeration->complete;
         if (!enumeration->candidates.empty()) {
             ordered_json& candidates = json["candidates"] = ordered_json::array();
-            for (const auto& [lane, iteration] : enumeration->candidates) {
+            for (const auto& [lane, iteration, confidence] : enumeration->candidates) {
                 ordered_json candidate{{"left", lane.left}, {"right", lane.right}};
                 if (lane.closed) candidate["closed"] = true;
                 candidate["iteration"] = iteration;
+                if (confidence) candidate["confidence"] = require_finite(*confidence, key + "candidates");
                 candidates.push_back(std::move(candidate));
             }
         }

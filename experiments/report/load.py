@@ -274,6 +274,8 @@ def _read_rows(path):
                 require(path, number, row, key, (int, float))
         if "condition" in row:
             require(path, number, row, "condition", (str,))
+        if "calibration" in row:
+            require(path, number, row, "calibration", (dict,))
         rows.append(row)
     if not rows:
         raise InputError(f"{path}: has no line")

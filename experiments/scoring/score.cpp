@@ -368,6 +368,8 @@ SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double l
 
     const LaneOutline lane = positions.outline(answer.lane, "");
     truth.judge(lane, answer.lane == scene.ground_truth, result);
+    result.confidence = answer.confidence;
+    result.trusted_m = answer.trusted_m;
     if (of_cone_set) result.accuracy = accuracy_of(answer.lane, lane, *of_cone_set, scene.scene.pose);
     return result;
 }
@@ -411,6 +413,13 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
         if (score.enumeration) best_iou_sum += score.enumeration->best_iou.value_or(0.0);
         if (score.iou) ious.push_back(*score.iou);
         steering.add(score);
+        if (const auto usable = score.usable()) {
+            if (score.confidence) result.calibration.add(*score.confidence, *usable);
+            if (score.trusted_m) {
+                result.calibration.add_trust(*score.trusted_m, score.lane_length_m,
+                                             score.divergence_distance_m);
+            }
+        }
         latencies_ms.push_back(score.latency_ms);
     }
     const auto count = static_cast<double>(scores.size());

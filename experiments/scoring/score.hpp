@@ -2,6 +2,7 @@
 
 #include "conelane/lane_detector.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/calibration.hpp"
 #include "experiments/scoring/centre_line_error.hpp"
 #include "experiments/scoring/lane_polygon.hpp"
 #include "experiments/scoring/statistics.hpp"
@@ -87,6 +88,9 @@ struct SceneScore {
     /// Against the ground truth's centre line; absent where the lane is not usable or was not held against
     /// it.
     std::optional<CentreLineError> centre_line_error;
+    // What the method says of its lane; absent where it found none or does not say.
+    std::optional<double> confidence;
+    std::optional<double> trusted_m;
     bool trained_on = false;  ///< the method has learned from the course
     /// Whether the centre line agrees with that of the pose before; absent at the first pose of a lap.
     std::optional<bool> steady;
@@ -153,6 +157,7 @@ struct ScoreSummary {
     std::optional<double> unsteady_share;      ///< of the poses that have one before them in their lap
     std::size_t accuracy_scenes = 0;           ///< scenes whose cone set holds a ground truth
     std::optional<double> accurate_share;      ///< of accuracy_scenes
+    Calibration calibration;  ///< of the lanes that their method says something of, divergence known
     std::optional<double> solved_share;
     std::optional<double> complete_share;
     std::optional<double> best_candidate_mean_iou;

@@ -220,6 +220,29 @@ std::string ScoreKey::method_label() const {
     return nearest ? fmt::format("{} n={}", method, *nearest) : method;
 }
 
+namespace {
+
+/// Bins as [lanes, mean confidence, share usable]; those without lanes are left out.
+nlohmann::ordered_json to_json(const Calibration& calibration) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    const auto put_if_known = [&](const char* key, const auto& value) {
+        if (value) json[key] = *value;
+    };
+    put_if_known("error", calibration.error());
+    put_if_known("sure_share", calibration.sure());
+    put_if_known("usable_where_sure_share", calibration.usable_where_sure());
+    put_if_known("right_where_trusted_share", calibration.right_where_trusted());
+    put_if_known("trusted_share", calibration.trusted_share());
+    for (const Calibration::Bin& bin : calibration.bins()) {
+        if (bin.lanes == 0) continue;
+        const auto lanes = static_cast<double>(bin.lanes);
+        json["bins"].push_back({bin.lanes, bin.confidence / lanes, static_cast<double>(bin.usable) / lanes});
+    }
+    return json;
+}
+
+}  // namespace
+
 std::string summary_json(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     nlohmann::ordered_json json;
@@ -246,6 +269,7 @@ std::string summary_json(const ScoreRow& row) {
     put_if_known("heading_median_rad", summary.heading_median_rad);
     put_if_known("heading_p95_rad", summary.heading_p95_rad);
     put_if_known("unsteady_share", summary.unsteady_share);
+    if (const auto said = to_json(summary.calibration); !said.empty()) json["calibration"] = said;
     json["accuracy_scenes"] = summary.accuracy_scenes;
     put_if_known("accurate_share", summary.accurate_share);
     put_if_known("solved_share", summary.solved_share);

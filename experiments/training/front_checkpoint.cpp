@@ -57,8 +57,12 @@ std::string describe_training(const std::vector<Track>& courses, const FrontTrai
           {"minimum_risk", options.loss.minimum_risk},
           {"listwise", options.loss.listwise},
           {"risk_scale", options.loss.risk_scale},
-          {"unusable", options.loss.unusable},
-          {"cones", options.loss.cones}}}};
+          {"unusable", options.loss.risk.unusable},
+          {"cones", options.loss.risk.cones}}},
+        {"judge",
+         {{"steps", options.judge_steps},
+          {"learning_rate", options.judge_rate},
+          {"trusted", options.trusted}}}};
     return json.dump();
 }
 

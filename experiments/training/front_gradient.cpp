@@ -16,7 +16,8 @@ CONELANE_SIMD void add_scaled(float factor, const float* from, float* to) {
 
 template <typename Weights, typename Block>
 void visit(Weights& weights, const Block& use) {
-    for (auto* network : {&weights.extend, &weights.stop, &weights.start}) {
+    for (auto* network :
+         {&weights.extend, &weights.stop, &weights.start, &weights.rank, &weights.usable, &weights.right}) {
         use(std::span(network->hidden));
         use(std::span(network->hidden_bias));
         use(std::span(network->output));
@@ -58,7 +59,9 @@ void for_each_block(const FrontWeights& weights, const std::function<void(std::s
 }
 
 std::size_t parameter_count(const FrontWeights& weights) {
-    return weights.extend.size() + weights.stop.size() + weights.start.size();
+    std::size_t count = 0;
+    for_each_block(weights, [&](std::span<const float> block) { count += block.size(); });
+    return count;
 }
 
 void add(FrontWeights& a, const FrontWeights& b) {

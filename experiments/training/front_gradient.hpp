@@ -1,6 +1,6 @@
 #pragma once
 
-#include "graph_search/front/front_cost.hpp"
+#include "graph_search/front/front_weights.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -13,7 +13,7 @@ namespace conelane::experiments {
 void add_derivatives(const FrontNetworkWeights& network, std::span<const float> inputs, float factor,
                      FrontNetworkWeights& derivatives);
 
-/// All numbers of the three networks, block by block, always in the same order.
+/// All numbers of the networks, block by block, always in the same order.
 void for_each_block(FrontWeights& weights, const std::function<void(std::span<float>)>& use);
 void for_each_block(const FrontWeights& weights, const std::function<void(std::span<const float>)>& use);
 /// How many there are.

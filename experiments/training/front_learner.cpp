@@ -1,16 +1,11 @@
 #include "experiments/training/front_learner.hpp"
 
-#include "experiments/scenes/cone_index.hpp"
-#include "experiments/scoring/divergence.hpp"
-#include "experiments/scoring/lane_polygon.hpp"
-#include "experiments/scoring/score.hpp"
 #include "experiments/training/front_gradient.hpp"
+#include "experiments/training/softmax.hpp"
 #include "graph_search/front/front_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <span>
 
 namespace conelane::experiments {
@@ -20,59 +15,13 @@ constexpr std::size_t kNone = FrontSearch::kNone;
 /// A derivative below this is left out.
 constexpr double kLeastFactor = 1e-4;
 
-/// Turns scores into probabilities in place; returns the logarithm of their sum.
-template <typename Number>
-double to_probabilities(std::vector<Number>& scores) {
-    const double highest = *std::ranges::max_element(scores);
-    double sum = 0.0;
-    for (Number& score : scores) {
-        score = static_cast<Number>(std::exp(static_cast<double>(score) - highest));
-        sum += static_cast<double>(score);
-    }
-    for (Number& score : scores) score = static_cast<Number>(static_cast<double>(score) / sum);
-    return highest + std::log(sum);
-}
-
-LaneOutline outline(const FrontMap& map, const std::array<std::vector<Vertex>, 2>& cones) {
-    LaneOutline lane;
-    for (const Vertex cone : cones[kLeft]) lane.left.push_back(map.position(cone));
-    for (const Vertex cone : cones[kRight]) lane.right.push_back(map.position(cone));
-    return lane;
-}
-
-/// Cones of one lane but not of the other, as a share of the true ones.
-double cone_error(const std::array<std::vector<Vertex>, 2>& lane,
-                  const std::array<std::vector<Vertex>, 2>& truth) {
-    std::size_t shared = 0;
-    for (const Side side : {kLeft, kRight}) {
-        for (const Vertex cone : lane[side])
-            shared += static_cast<std::size_t>(std::ranges::count(truth[side], cone));
-    }
-    const std::size_t all = lane[kLeft].size() + lane[kRight].size();
-    const std::size_t right = truth[kLeft].size() + truth[kRight].size();
-    return std::min(1.0, static_cast<double>(all + right - 2 * shared) / static_cast<double>(right));
-}
-
 }  // namespace
-
-void FrontLearner::set_truth(const AnnotatedScene& scene) {
-    // From the place in the scene to that in the map.
-    std::vector<Vertex> vertex_of(front_.map().size());
-    for (Vertex cone = 0; cone < vertex_of.size(); ++cone) vertex_of[front_.map().scene_index(cone)] = cone;
-    const auto index_of = index_by_id(scene.scene);
-    for (const Side side : {kLeft, kRight}) {
-        truth_[side].clear();
-        for (const ConeId id : side == kLeft ? scene.ground_truth->left : scene.ground_truth->right) {
-            truth_[side].push_back(vertex_of[index_of.at(id)]);
-        }
-    }
-}
 
 std::size_t FrontLearner::true_start() const {
     const FrontStarts& starts = front_.starts();
     for (std::size_t i = 0; i < starts.pairs.size(); ++i) {
-        if (starts.cones[kLeft][starts.pairs[i].left] == truth_[kLeft].front() &&
-            starts.cones[kRight][starts.pairs[i].right] == truth_[kRight].front()) {
+        if (starts.cones[kLeft][starts.pairs[i].left] == truth_.cones()[kLeft].front() &&
+            starts.cones[kRight][starts.pairs[i].right] == truth_.cones()[kRight].front()) {
             return i;
         }
     }
@@ -81,7 +30,7 @@ std::size_t FrontLearner::true_start() const {
 
 FrontMove FrontLearner::true_move(const FrontState& state, Side side) const {
     const std::size_t place = state.ends[side].count;
-    return place < truth_[side].size() ? FrontMove{truth_[side][place], 0} : FrontMove{};
+    return place < truth_.cones()[side].size() ? FrontMove{truth_.cones()[side][place], 0} : FrontMove{};
 }
 
 FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const FrontWeights& weights,
@@ -89,7 +38,7 @@ FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const Fron
                                          FrontWeights& derivatives) {
     Loss loss;
     front_.begin(scene.scene, cost, search);
-    set_truth(scene);
+    truth_.set(scene, front_.map());
     const std::size_t start = true_start();
     if (start == kNone) return loss;
     const std::span<const float> rows = cost.start_features_seen();
@@ -201,42 +150,12 @@ FrontLearner::Loss& FrontLearner::add_fall_out(const Follow& truth, const FrontL
     return loss;
 }
 
-double FrontLearner::risk(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
-                          const std::array<std::vector<Vertex>, 2>& cones,
-                          const FrontLossOptions& options) const {
-    const double worst = 1.0 + options.unusable + options.cones;
-    if (cones[kLeft].size() < 2 || cones[kRight].size() < 2) return worst;
-    if (cones == truth_) return 0.0;
-    const FrontMap& map = front_.map();
-    const LaneOutline lane = outline(map, cones);
-    const LaneOutline truth = outline(map, truth_);
-    const double iou = intersection_over_union_of_simple(lane, truth);
-    double risk = 1.0 - iou + options.cones * cone_error(cones, truth_);
-    constexpr double kSurelyUsable = 0.985;
-    if (iou > kSurelyUsable) return risk;
-    // Divergence is measured in the frame of the course.
-    LaneOutline in_world;
-    LaneOutline truth_in_world;
-    const auto place = [&](const std::vector<Vertex>& from, std::vector<Point>& to) {
-        for (const Vertex cone : from) to.push_back(scene.scene.cones[map.scene_index(cone)].position);
-    };
-    place(cones[kLeft], in_world.left);
-    place(cones[kRight], in_world.right);
-    place(truth_[kLeft], truth_in_world.left);
-    place(truth_[kRight], truth_in_world.right);
-    const std::optional<double> divergence = divergence_m(in_world, truth_in_world, boundaries);
-    const double needed_m = std::min(kUsableLength_m, kTooShortShare * lane_length_m(truth));
-    const bool usable = divergence ? *divergence >= kCriticalDivergence_m : lane_length_m(lane) >= needed_m;
-    if (!usable) risk += options.unusable;
-    return risk;
-}
-
 FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
                                         const FrontWeights& weights, FrontCost& cost,
                                         const FrontLossOptions& options, FrontWeights& derivatives) {
     Loss loss;
     front_.begin(scene.scene, cost, options.search);
-    set_truth(scene);
+    truth_.set(scene, front_.map());
     const std::span<const float> rows = cost.start_features_seen();
     start_rows_.assign(rows.begin(), rows.end());
     coefficients_.clear();
@@ -268,7 +187,7 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     front_.sort_finished(options.listed);
     const std::size_t listed = std::min(options.listed, front_.finished().size());
     if (listed == 0) {
-        loss.risk = 1.0 + options.unusable + options.cones;
+        loss.risk = options.risk.worst();
         add_coefficients(weights, cost, derivatives);
         return loss;
     }
@@ -288,7 +207,7 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     for (const FrontSearch::Finished& lane : lanes) {
         front_.cones(lane.parent, cones_);
         even_far_ends(front_.map(), cones_, kWidestLane_m);
-        risks.push_back(risk(scene, boundaries, cones_, options));
+        risks.push_back(truth_.risk(cones_, boundaries, options.risk));
         probabilities.push_back(lane.score);
         wanted.push_back(-risks.back() / options.risk_scale);
     }

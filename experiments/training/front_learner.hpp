@@ -2,6 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/tracks/track_boundaries.hpp"
+#include "experiments/training/front_truth.hpp"
 #include "graph_search/front/front_search.hpp"
 
 #include <array>
@@ -17,8 +18,7 @@ struct FrontLossOptions {
     double minimum_risk = 3.0;  ///< weight of the expected risk
     double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
     double risk_scale = 0.05;   ///< lanes with so much more risk should be e times less likely
-    double unusable = 0.5;      ///< risk added for a lane that cannot be driven by
-    double cones = 0.3;         ///< risk added for cones too many and too few, as a share of the true ones
+    FrontRiskOptions risk;
 };
 
 /// The loss of the true lane in one scene and its derivatives. Keeps memory from scene to scene; one serves
@@ -31,7 +31,7 @@ class FrontLearner {
         bool reached = false;       ///< whether the rules allow the whole true lane
         bool kept = false;          ///< whether the beam kept it to its end
         bool found = false;         ///< whether it is the best of all
-        double risk = 0.0;          ///< of the best lane; 1 + unusable + cones where there is none
+        double risk = 0.0;          ///< of the best lane; FrontRiskOptions::worst where there is none
     };
 
     /// Teacher forcing: the softmax over the starts, then over the moves of each state of the true lane.
@@ -43,14 +43,10 @@ class FrontLearner {
                 FrontCost& cost, const FrontLossOptions& options, FrontWeights& derivatives);
 
   private:
-    void set_truth(const AnnotatedScene& scene);
     /// The place of the true pair among the starts, kNone where it is none.
     [[nodiscard]] std::size_t true_start() const;
     /// The true move of a state with the true cones so far; its `edge` is not set.
     [[nodiscard]] FrontMove true_move(const FrontState& state, Side side) const;
-    [[nodiscard]] double risk(const AnnotatedScene& scene, const TrackBoundaries& boundaries,
-                              const std::array<std::vector<Vertex>, 2>& cones,
-                              const FrontLossOptions& options) const;
     /// Adds the derivatives of the scores of nodes, each times its coefficient, and of what led to them.
     void add_coefficients(const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives);
     void add_move(const FrontState& state, Side side, const FrontMove& move, double factor,
@@ -71,7 +67,7 @@ class FrontLearner {
 
     FrontSearch front_;
     FrontMoves moves_;
-    std::array<std::vector<Vertex>, 2> truth_;
+    FrontTruth truth_;
     std::array<std::vector<Vertex>, 2> cones_;
     std::vector<float> start_rows_;
     std::vector<double> coefficients_;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include <boost/random/normal_distribution.hpp>
@@ -30,7 +31,8 @@ constexpr double kLongestGradient = 5.0;
 FrontWeights initial_weights(std::uint64_t seed) {
     FrontWeights weights = FrontWeights::zero();
     auto random = generator_of("front weights", seed);
-    for (FrontNetworkWeights* network : {&weights.extend, &weights.stop, &weights.start}) {
+    for (FrontNetworkWeights* network :
+         {&weights.extend, &weights.stop, &weights.start, &weights.rank, &weights.usable, &weights.right}) {
         boost::random::normal_distribution<double> of_hidden(
             0.0, std::sqrt(2.0 / static_cast<double>(network->inputs)));
         for (float& weight : network->hidden) weight = static_cast<float>(of_hidden(random));
@@ -44,6 +46,7 @@ FrontWeights initial_weights(std::uint64_t seed) {
 /// What one draw of a step gives.
 struct Slot {
     FrontLearner learner;
+    FrontJudgeLearner judge_learner;
     FrontWeights derivatives = FrontWeights::zero();
     std::vector<FrontLearner::Loss> losses;
 };
@@ -74,14 +77,19 @@ class Training {
           adam_(values_.size(), kSmallestDeviation),
           slots_(options.draws_per_step) {}
 
-    [[nodiscard]] std::size_t steps() const { return options_.imitation_steps + options_.search_steps; }
+    [[nodiscard]] std::size_t steps() const { return first_judging() + options_.judge_steps; }
     [[nodiscard]] const FrontWeights& weights() const { return weights_; }
 
+    [[nodiscard]] FrontProgress::Stage stage(std::size_t step) const {
+        if (step < options_.imitation_steps) return FrontProgress::Stage::move_by_move;
+        return step < first_judging() ? FrontProgress::Stage::through_search : FrontProgress::Stage::judging;
+    }
+
     void step(std::size_t number, FrontProgress& progress) {
-        const bool through_search = number >= options_.imitation_steps;
-        if (number == options_.imitation_steps) adam_ = Adam(values_.size(), kSmallestDeviation);
+        if (number == options_.imitation_steps || number == first_judging())
+            adam_ = Adam(values_.size(), kSmallestDeviation);
         oneapi::tbb::parallel_for(std::size_t{0}, slots_.size(), [&](std::size_t i) {
-            fill(slots_[i], static_cast<std::uint64_t>(number) * slots_.size() + i, through_search);
+            fill(slots_[i], static_cast<std::uint64_t>(number) * slots_.size() + i, stage(number));
         });
         FrontWeights sum = FrontWeights::zero();
         std::size_t scenes = 0;
@@ -95,13 +103,38 @@ class Training {
         const double length = std::sqrt(derivatives.square().sum());
         if (length > kLongestGradient) derivatives *= kLongestGradient / length;
         adam_.add(derivatives);
-        const double done = through_search
-                                ? static_cast<double>(number - options_.imitation_steps) /
-                                      static_cast<double>(options_.search_steps)
-                                : static_cast<double>(number) / static_cast<double>(options_.imitation_steps);
-        values_ -= cosine_rate(through_search ? options_.search_rate : options_.imitation_rate, done) *
-                   adam_.mean() / adam_.deviation();
+        values_ -= rate(number) * adam_.mean() / adam_.deviation();
         set(weights_, values_);
+    }
+
+    /// Sets least_trust so that on scenes drawn after all those learned from, the share of lanes asked for is
+    /// right up to their trusted length.
+    void choose_least_trust() {
+        std::vector<std::vector<double>> wrong(options_.trust_draws);
+        std::vector<std::size_t> scenes(options_.trust_draws);
+        oneapi::tbb::parallel_for(std::size_t{0}, options_.trust_draws, [&](std::size_t i) {
+            FrontJudgeLearner learner;
+            FrontCost cost(weights_);
+            FrontJudge judge(weights_);
+            const FrontScenes::Drawn drawn = scenes_.draw(steps() * slots_.size() + i);
+            scenes[i] = drawn.scenes.size();
+            for (const AnnotatedScene& scene : drawn.scenes) {
+                const FrontJudgeLearner::Loss loss =
+                    learner.judge(scene, drawn.boundaries, weights_, cost, judge, judge_options(), nullptr);
+                if (loss.trust_where_wrong >= 0.0) wrong[i].push_back(loss.trust_where_wrong);
+            }
+        });
+        std::vector<double> all;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < wrong.size(); ++i) {
+            all.insert(all.end(), wrong[i].begin(), wrong[i].end());
+            count += scenes[i];
+        }
+        std::ranges::sort(all, std::greater());
+        const auto allowed = static_cast<std::size_t>((1.0 - options_.trusted) * static_cast<double>(count));
+        // Above the first one too many.
+        weights_.least_trust = allowed < all.size() ? std::nextafter(all[allowed], 2.0) : 0.0;
+        weights_.least_trust = std::min(weights_.least_trust, 1.0);
     }
 
     [[nodiscard]] FrontCheckpoint checkpoint(std::size_t step) const {
@@ -121,18 +154,66 @@ class Training {
     Counts counts;
 
   private:
-    void fill(Slot& slot, std::uint64_t number, bool through_search) {
+    [[nodiscard]] std::size_t first_judging() const {
+        return options_.imitation_steps + options_.search_steps;
+    }
+
+    /// Of each stage it falls from its beginning to its end.
+    [[nodiscard]] double rate(std::size_t number) const {
+        const auto falling = [&](double learning_rate, std::size_t first, std::size_t steps) {
+            return cosine_rate(learning_rate,
+                               static_cast<double>(number - first) / static_cast<double>(steps));
+        };
+        switch (stage(number)) {
+            case FrontProgress::Stage::move_by_move:
+                return falling(options_.imitation_rate, 0, options_.imitation_steps);
+            case FrontProgress::Stage::through_search:
+                return falling(options_.search_rate, options_.imitation_steps, options_.search_steps);
+            case FrontProgress::Stage::judging:
+                break;
+        }
+        return falling(options_.judge_rate, first_judging(), options_.judge_steps);
+    }
+
+    [[nodiscard]] FrontJudgeLossOptions judge_options() const {
+        FrontJudgeLossOptions options;  // with the detector's search
+        options.risk = options_.loss.risk;
+        options.minimum_risk = options_.loss.minimum_risk;
+        options.listwise = options_.loss.listwise;
+        options.risk_scale = options_.loss.risk_scale;
+        return options;
+    }
+
+    void fill(Slot& slot, std::uint64_t number, FrontProgress::Stage stage) {
         set_zero(slot.derivatives);
         slot.losses.clear();
         FrontCost cost(weights_);
+        FrontJudge judge(weights_);
         const FrontScenes::Drawn drawn = scenes_.draw(number);
-        for (const AnnotatedScene& scene : drawn.scenes) {
-            slot.losses.push_back(
-                through_search
-                    ? slot.learner.search(scene, drawn.boundaries, weights_, cost, options_.loss,
-                                          slot.derivatives)
-                    : slot.learner.imitate(scene, weights_, cost, options_.loss.search, slot.derivatives));
+        for (const AnnotatedScene& scene : drawn.scenes)
+            slot.losses.push_back(loss_of(slot, scene, drawn.boundaries, cost, judge, stage));
+    }
+
+    [[nodiscard]] FrontLearner::Loss loss_of(Slot& slot, const AnnotatedScene& scene,
+                                             const TrackBoundaries& boundaries, FrontCost& cost,
+                                             FrontJudge& judge, FrontProgress::Stage stage) const {
+        switch (stage) {
+            case FrontProgress::Stage::move_by_move:
+                return slot.learner.imitate(scene, weights_, cost, options_.loss.search, slot.derivatives);
+            case FrontProgress::Stage::through_search:
+                return slot.learner.search(scene, boundaries, weights_, cost, options_.loss,
+                                           slot.derivatives);
+            case FrontProgress::Stage::judging:
+                break;
         }
+        const FrontJudgeLearner::Loss judged = slot.judge_learner.judge(
+            scene, boundaries, weights_, cost, judge, judge_options(), &slot.derivatives);
+        FrontLearner::Loss loss;
+        loss.sum = judged.sum;
+        loss.decisions = 1;
+        loss.found = judged.is_usable;
+        loss.risk = judged.risk;
+        return loss;
     }
 
     void note(const FrontLearner::Loss& loss, FrontProgress& progress) {
@@ -166,6 +247,8 @@ void validate(const FrontTrainingOptions& options) {
             "must be positive");
     require(options.search_rate > 0.0 && std::isfinite(options.search_rate), "search_rate",
             "must be positive");
+    require(options.judge_rate > 0.0 && std::isfinite(options.judge_rate), "judge_rate", "must be positive");
+    require(options.trusted > 0.0 && options.trusted <= 1.0, "trusted", "must be in (0, 1]");
     require(options.figures_every > 0, "figures_every", "must be positive");
     require(options.checkpoint_every > 0, "checkpoint_every", "must be positive");
     require(options.threads > 0, "threads", "must be positive");
@@ -177,6 +260,10 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
         bool usable = false;
         bool exact = false;
         double iou = 0.0;
+        double confidence = 0.0;
+        double trusted_m = 0.0;
+        double length_m = 0.0;
+        std::optional<double> divergence_m;
     };
     std::vector<Row> rows(set.scenes.size());
     constexpr std::size_t kAtOnce = 64;
@@ -190,10 +277,13 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
                     DetectionLimits limits;
                     limits.time_limit_ms = std::numeric_limits<double>::infinity();
                     const AnnotatedScene& scene = set.scenes[i];
-                    const SceneScore scored = score(scene, detector->detect(scene.scene, limits), 0.0,
-                                                    std::nullopt, &set.tracks.at(scene.track));
+                    const LaneAnswer answer = detector->detect(scene.scene, limits);
+                    const SceneScore scored =
+                        score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
                     rows[i] = {scored.usable().value_or(false), scored.category == Category::ground_truth,
-                               scored.iou.value_or(0.0)};
+                               scored.iou.value_or(0.0),        answer.confidence.value_or(0.0),
+                               answer.trusted_m.value_or(0.0),  scored.lane_length_m,
+                               scored.divergence_distance_m};
                 }
             });
     });
@@ -204,6 +294,8 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
         figures.usable += row.usable ? 1.0 : 0.0;
         figures.exact += row.exact ? 1.0 : 0.0;
         figures.iou += row.iou;
+        figures.calibration.add(row.confidence, row.usable);
+        figures.calibration.add_trust(row.trusted_m, row.length_m, row.divergence_m);
     }
     const auto count = static_cast<double>(rows.size());
     figures.usable /= count;
@@ -227,11 +319,14 @@ FrontWeights train_front(const std::vector<Track>& courses, const std::vector<Sc
             step = checkpoint->step;
         }
     }
+    const auto choose_least_trust = [&] { arena.execute([&] { training.choose_least_trust(); }); };
+    if (step == training.steps()) choose_least_trust();
     FrontProgress progress;
     while (step < training.steps()) {
         arena.execute([&] { training.step(step, progress); });
         ++step;
         const bool is_last = step == training.steps();
+        if (is_last) choose_least_trust();
         if (!options.checkpoint.empty() && (is_last || step % options.checkpoint_every == 0)) {
             write_front_checkpoint(options.checkpoint, identity, training.checkpoint(step));
         }
@@ -239,7 +334,7 @@ FrontWeights train_front(const std::vector<Track>& courses, const std::vector<Sc
         const auto scenes = static_cast<double>(std::max<std::size_t>(training.counts.scenes, 1));
         progress.step = step;
         progress.steps = training.steps();
-        progress.through_search = step > options.imitation_steps;
+        progress.stage = training.stage(step - 1);
         progress.loss /= static_cast<double>(std::max<std::size_t>(training.counts.decisions, 1));
         for (double* mean : {&progress.reached, &progress.kept, &progress.found, &progress.risk})
             *mean /= scenes;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "experiments/scenes/scene_set.hpp"
+#include "experiments/scoring/calibration.hpp"
+#include "experiments/training/front_judge_learner.hpp"
 #include "experiments/training/front_learner.hpp"
 #include "experiments/training/front_scenes.hpp"
 
@@ -13,16 +15,18 @@
 namespace conelane::experiments {
 
 struct FrontTrainingOptions {
-    /// A narrower beam than the detector's: quicker, and the weights are as good for a wider one.
-    FrontTrainingOptions() { loss.search.beam_width = 15; }
-
     FrontSceneOptions scenes;
     FrontLossOptions loss;
-    std::size_t draws_per_step = 8;      ///< changed courses to a step of Adam
-    std::size_t imitation_steps = 1500;  ///< of teacher forcing
-    std::size_t search_steps = 12000;    ///< through the search, after these
-    double imitation_rate = 3e-3;        ///< learning rates of Adam, which fall to 0 along a cosine
+    std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam
+    std::size_t imitation_steps = 800;  ///< of teacher forcing
+    std::size_t search_steps = 7000;    ///< through the search, after these
+    std::size_t judge_steps = 4000;     ///< of FrontJudge, after these
+    double imitation_rate = 3e-3;       ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
+    double judge_rate = 2e-3;
+    /// Share of the lanes that shall be right up to their trusted length.
+    double trusted = 0.995;
+    std::size_t trust_draws = 1000;    ///< changed courses that least_trust is chosen on
     std::size_t figures_every = 1000;  ///< steps between two looks at the scenes held out
     std::uint64_t seed = 0;
     unsigned threads = 1;                ///< the weights are the same with any number
@@ -39,6 +43,7 @@ struct FrontFigures {
     double usable = 0.0;  ///< share
     double iou = 0.0;     ///< mean
     double exact = 0.0;   ///< share of ground truths
+    Calibration calibration;
 };
 [[nodiscard]] FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights,
                                          const FrontSearchOptions& search, unsigned threads);
@@ -46,7 +51,7 @@ struct FrontFigures {
 struct FrontProgress {
     std::size_t step = 0;
     std::size_t steps = 0;
-    bool through_search = false;
+    enum class Stage { move_by_move, through_search, judging } stage = Stage::move_by_move;
     double loss = 0.0;                   ///< mean of a decision, since the last report
     double reached = 0.0;                ///< share of the scenes whose true lane the rules allow
     double kept = 0.0;                   ///< share of the scenes whose true lane the beam kept
@@ -56,9 +61,10 @@ struct FrontProgress {
 };
 
 /// Learns the weights of `front` from courses: first each move of the true lane alone, then through the
-/// search. The same courses, options but for `threads` and files, and build give the same weights to the last
-/// bit, also where a run was ended and went on from its checkpoint. Throws InvalidInput where an option is
-/// out of range, InputError where the checkpoint is not one of the same training.
+/// search, then FrontJudge on what that ends with. The same courses, options but for `threads` and files, and
+/// build give the same weights to the last bit, also where a run was ended and went on from its checkpoint.
+/// Throws InvalidInput where an option is out of range, InputError where the checkpoint is not one of the
+/// same training.
 [[nodiscard]] FrontWeights train_front(const std::vector<Track>& courses,
                                        const std::vector<SceneSet>& held_out,
                                        const FrontTrainingOptions& options,

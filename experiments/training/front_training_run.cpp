@@ -24,7 +24,11 @@ Json describe(const FrontFigures& figures) {
     return {{"scenes", figures.scenes},
             {"usable", rounded(figures.usable)},
             {"iou", rounded(figures.iou)},
-            {"exact", rounded(figures.exact)}};
+            {"exact", rounded(figures.exact)},
+            {"calibration_error", rounded(figures.calibration.error().value_or(0.0))},
+            {"usable_where_sure", rounded(figures.calibration.usable_where_sure().value_or(0.0))},
+            {"trusted", rounded(figures.calibration.trusted_share().value_or(0.0))},
+            {"right_where_trusted", rounded(figures.calibration.right_where_trusted().value_or(0.0))}};
 }
 
 }  // namespace
@@ -34,6 +38,7 @@ FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
     std::vector<Track> courses;
     for (const std::string& spec : options.tracks)
         std::ranges::move(load_tracks(spec), std::back_inserter(courses));
+    std::erase_if(courses, [](const Track& track) { return track.left.empty() || track.right.empty(); });
     std::vector<SceneSet> held_out;
     if (!options.hold_out.empty()) {
         for (const std::string& condition : options.conditions) {

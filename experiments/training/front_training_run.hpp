@@ -9,7 +9,8 @@
 namespace conelane::experiments {
 
 struct FrontTrainingRunOptions {
-    std::vector<std::string> tracks;    ///< SPECs of load_tracks
+    std::vector<std::string>
+        tracks;  ///< SPECs of load_tracks; runs without annotated boundaries are left out
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
     double hold_out_every_m = 10.0;
     std::vector<std::string> conditions{"paper", "car"};  ///< a set of held-out scenes each

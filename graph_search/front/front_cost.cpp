@@ -1,28 +1,6 @@
 #include "graph_search/front/front_cost.hpp"
 
-#include "conelane/invalid_input.hpp"
-
-#include <algorithm>
-#include <string>
-
 namespace conelane {
-
-FrontWeights FrontWeights::zero() {
-    return {FrontNetworkWeights::zero(kExtendInputs), FrontNetworkWeights::zero(kStopInputs),
-            FrontNetworkWeights::zero(kStartFeatures)};
-}
-
-void validate(const FrontWeights& weights) {
-    const auto require = [](const FrontNetworkWeights& network, std::size_t inputs, const char* name) {
-        if (network.inputs != inputs) {
-            throw InvalidInput(std::string(name) + ".inputs", "must be " + std::to_string(inputs));
-        }
-        validate(network, name);
-    };
-    require(weights.extend, kExtendInputs, "extend");
-    require(weights.stop, kStopInputs, "stop");
-    require(weights.start, kStartFeatures, "start");
-}
 
 namespace {
 

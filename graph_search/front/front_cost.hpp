@@ -2,28 +2,13 @@
 
 #include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_moves.hpp"
-#include "graph_search/front/front_network.hpp"
+#include "graph_search/front/front_weights.hpp"
 
 #include <array>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace conelane {
-
-/// The learned scores of what a lane is made of.
-struct FrontWeights {
-    FrontNetworkWeights extend;
-    FrontNetworkWeights stop;
-    FrontNetworkWeights start;  ///< of a pair, once as each boundary sees it
-
-    /// All 0, of the right sizes.
-    [[nodiscard]] static FrontWeights zero();
-    bool operator==(const FrontWeights&) const = default;
-};
-
-/// Throws InvalidInput naming the key.
-void validate(const FrontWeights& weights);
 
 /// Judges starts and moves; the score of a lane is the sum of theirs, a high one is good. Keeps memory from
 /// call to call.

@@ -1,15 +1,17 @@
 #include "graph_search/front/front_detector.hpp"
 
+#include "graph_search/front/front_judge.hpp"
 #include "graph_search/shipped_weights.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace conelane {
 namespace {
 
-/// Finished lanes looked at until one is left with two cones a side.
-constexpr std::size_t kFinishedLookedAt = 20;
+/// Anything from 0.2 to 0.45 gains about the same on recorded courses; with 0.8 usable lanes are lost again.
+constexpr double kRepeatBonus = 0.3;
 
 double distance_m(const FrontMap& map, Vertex cone, const std::vector<Vertex>& boundary) {
     const Point& at = map.position(cone);
@@ -23,8 +25,14 @@ double distance_m(const FrontMap& map, Vertex cone, const std::vector<Vertex>& b
 
 class FrontDetector final : public LaneDetector {
   public:
-    explicit FrontDetector(const FrontOptions& options) : cost_(options.weights), options_(options.search) {
+    explicit FrontDetector(const FrontOptions& options)
+        : cost_(options.weights), judge_(options.weights), options_(options.search) {
         validate(options_);
+        if (options.repeat_bonus) evidence_.emplace(*options.repeat_bonus);
+    }
+
+    void reset() override {
+        if (evidence_) evidence_->forget();
     }
 
   private:
@@ -36,33 +44,62 @@ class FrontDetector final : public LaneDetector {
             answer.stopped_by = budget.stopped_by;
             return answer;
         }
-        front_.begin(scene, cost_, options_);
+        front_.begin(scene, cost_, options_, evidence_ ? &*evidence_ : nullptr);
         front_.run(budget);
         answer.stopped_by = budget.stopped_by;
         if (choose(budget.stopped_by.has_value())) {
             answer.status = LaneStatus::found;
             answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
+            answer.confidence = judge_.confidence(chosen_);
+            answer.trusted_m =
+                judge_.trusted_m(front_, chosen_, {cones_[kLeft].size(), cones_[kRight].size()});
+            if (limits.keep_candidates) add_best_lanes(scene, answer);
+            if (evidence_) evidence_->remember(answer.lane);
         } else if (!answer.stopped_by) {
-            const bool left_out = front_.left_out() || front_.finished().size() > kFinishedLookedAt;
+            const bool left_out = front_.left_out() || front_.finished().size() > FrontJudge::kContenders;
             answer.status = left_out ? LaneStatus::stopped : LaneStatus::none;
             if (left_out) answer.stopped_by = StopReason::iterations;
         }
         return answer;
     }
 
-    /// Puts the best lane into `cones_`; returns false where there is none. `cut_off`: the search did not end
-    /// by itself, and a lane that was still growing may be better than all that had stopped.
+    /// Puts the best lane into `cones_`, its place into `chosen_`; returns false where there is none.
+    /// `cut_off`: the search did not end by itself, and a lane that was still growing may be better than all
+    /// that had stopped.
     bool choose(bool cut_off) {
-        front_.sort_finished(kFinishedLookedAt);
+        front_.sort_finished(FrontJudge::kContenders);
+        contenders_.clear();
         const std::size_t open = cut_off ? front_.open_lane() : FrontSearch::kNone;
         const auto finished = front_.finished();
         if (open != FrontSearch::kNone &&
-            (finished.empty() || front_.node(open).score > finished.front().score) && take(open)) {
-            return true;
+            (finished.empty() || front_.node(open).score > finished.front().score)) {
+            contenders_.push_back({open, front_.node(open).score, false});
         }
-        const std::size_t count = std::min(kFinishedLookedAt, finished.size());
-        return std::ranges::any_of(finished.first(count),
-                                   [&](const FrontSearch::Finished& lane) { return take(lane.parent); });
+        for (const FrontSearch::Finished& lane : finished) {
+            if (contenders_.size() == FrontJudge::kContenders) break;
+            contenders_.push_back({lane.parent, lane.score});
+        }
+        if (contenders_.empty()) return false;
+        judge_.look(front_, contenders_);
+        for (const std::size_t place : judge_.order()) {
+            chosen_ = place;
+            if (take(contenders_[place].node)) return true;
+        }
+        return false;
+    }
+
+    void add_best_lanes(const Scene& scene, LaneAnswer& answer) {
+        Enumeration& best = answer.enumeration.emplace();
+        best.iterations = front_.expanded();
+        best.complete = !answer.stopped_by && !front_.left_out();
+        for (const std::size_t place : judge_.order()) {
+            if (!take(contenders_[place].node)) continue;
+            Lane lane{ids(kLeft, scene), ids(kRight, scene)};
+            if (std::ranges::find(best.candidates, lane, &LaneCandidate::lane) != best.candidates.end())
+                continue;
+            const auto number = static_cast<std::int64_t>(best.candidates.size() + 1);
+            best.candidates.push_back({std::move(lane), number, judge_.confidence(place)});
+        }
     }
 
     bool take(std::size_t node) {
@@ -79,8 +116,12 @@ class FrontDetector final : public LaneDetector {
     }
 
     FrontCost cost_;
+    FrontJudge judge_;
     FrontSearchOptions options_;
+    std::optional<FrontEvidence> evidence_;
     FrontSearch front_;
+    std::vector<FrontJudge::Contender> contenders_;
+    std::size_t chosen_ = 0;
     std::array<std::vector<Vertex>, 2> cones_;
 };
 
@@ -101,6 +142,12 @@ void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cone
 
 FrontOptions shipped_front_options() {
     return {shipped_front_weights(), {}};
+}
+
+FrontOptions warm_front_options() {
+    FrontOptions options = shipped_front_options();
+    options.repeat_bonus = kRepeatBonus;
+    return options;
 }
 
 std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options) {

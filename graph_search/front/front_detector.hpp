@@ -4,26 +4,38 @@
 #include "graph_search/front/front_search.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace conelane {
 
 struct FrontOptions {
     FrontWeights weights;
     FrontSearchOptions search;
+    /// Score for each cone that the last answer had on the same side, see FrontEvidence. Absent: nothing is
+    /// carried from scene to scene.
+    std::optional<double> repeat_bonus = {};
 };
 
 /// The weights that come with the library, in the search that they were trained for.
 [[nodiscard]] FrontOptions shipped_front_options();
 
+/// The same with the last lane of a lap as evidence.
+[[nodiscard]] FrontOptions warm_front_options();
+
 /// Lane detection by one front: both boundaries grow together, one cone at a time, under a learned cost that
-/// sees both of them, and a beam search finds the lane of the highest score. A boundary may step over cones
-/// that were not seen. The far ends are evened (see even_far_ends); a lane has two cones a side at least,
-/// each cone at most once, and is never closed.
+/// sees both of them, and a beam search finds the lanes of the highest score. FrontJudge takes the best of
+/// them. A boundary may step over cones that were not seen. The far ends are evened (see even_far_ends); a
+/// lane has two cones a side at least, each cone at most once, and is never closed.
+///
+/// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
+/// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
+/// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence.
 ///
 /// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none; `stopped` by
 /// iterations where none was found but the beam left some out; `stopped_by` time or memory is the best lane
 /// met until then. Once memory is warm, `detect` allocates the two boundaries of the answer and nothing else.
-/// Nothing is carried from scene to scene. Throws InvalidInput where an option is out of its range.
+/// With FrontOptions::repeat_bonus the last lane that was found is carried from scene to scene until `reset`;
+/// without it nothing is. Throws InvalidInput where an option is out of its range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 
 /// The cones of a lane without its far ends, as even_far_ends, on positions. For training too.

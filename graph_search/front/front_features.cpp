@@ -126,14 +126,9 @@ double inward(Side side) {
     return side == kRight ? 1.0 : -1.0;
 }
 
-double angle(const Point& from, const Point& to) {
-    return front_angle(cross(from, to), from.dot(to));
-}
-
-double wrapped(double angle_rad) {
-    if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
-    if (angle_rad < -std::numbers::pi) return angle_rad + 2.0 * std::numbers::pi;
-    return angle_rad;
+/// From a direction to another one.
+double turn(float from_rad, float to_rad) {
+    return wrapped_angle(static_cast<double>(to_rad) - static_cast<double>(from_rad));
 }
 
 /// Of the segments of both sides, some usual ones where there are few.
@@ -225,7 +220,7 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side) 
     const Point& at = map.position(own.cones[0]);
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
-    const double skew_rad = in * angle(own.direction, other.direction);
+    const double skew_rad = in * turn(own.bearing_rad, other.bearing_rad);
     const Point along = own.direction + other.direction;
     const double along_norm = along.norm();
     const double lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0;
@@ -262,10 +257,10 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     const Point& facing = map.position(other.cones[0]);
     const double in = inward(side);
     const double length_m = edge.length_m;
-    const double turn_rad = in * angle(own.direction, edge.direction);
-    const double change_rad = own.count > 2 ? wrapped(turn_rad - in * own.turn_rad) : 0.0;
-    const double turn_other_rad = other.count > 2 ? wrapped(turn_rad - in * other.turn_rad) : 0.0;
-    const double skew_rad = in * angle(edge.direction, other.direction);
+    const double turn_rad = in * turn(own.bearing_rad, edge.bearing_rad);
+    const double change_rad = own.count > 2 ? wrapped_angle(turn_rad - in * own.turn_rad) : 0.0;
+    const double turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0;
+    const double skew_rad = in * turn(edge.bearing_rad, other.bearing_rad);
     const double width_m = facing_distance_m(map, other, at);
     const double mean_width_m = state.mean_width_m();
     const float log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F;
@@ -346,7 +341,6 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
-    const Point heading(1.0, 0.0);
     const Point& at = map.position(cone);
     StartCone start{cone, 0.0F, 2.0F, 2.0F, density(map, cone)};
     for (const FrontEdge& edge : map.edges(cone)) {
@@ -355,7 +349,7 @@ StartCone start_cone(FrontMap& map, Vertex cone) {
             start.behind = std::min(start.behind + 1.0F, kMostCounted);
         }
         if (edge.length_m > static_cast<float>(kShortSegment_m)) continue;
-        const auto bend_rad = static_cast<float>(std::abs(angle(heading, edge.direction)));
+        const auto bend_rad = std::abs(edge.bearing_rad);
         start.continuation = std::min(start.continuation, bend_rad);
         start.predecessor = std::min(start.predecessor, static_cast<float>(std::numbers::pi) - bend_rad);
     }

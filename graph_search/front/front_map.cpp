@@ -87,7 +87,7 @@ void FrontMap::find_edges(Vertex from) {
         const double squared_m2 = way.squaredNorm();
         if (squared_m2 == 0.0 || squared_m2 > kLongestSegment_m * kLongestSegment_m) continue;
         const double length_m = std::sqrt(squared_m2);
-        found_.push_back({to, static_cast<float>(length_m), 0.0F, way / length_m});
+        found_.push_back({to, static_cast<float>(length_m), 0.0F, 0.0F, way / length_m});
     }
     const auto shorter = [](const FrontEdge& a, const FrontEdge& b) {
         return std::tie(a.length_m, a.to) < std::tie(b.length_m, b.to);
@@ -108,6 +108,7 @@ void FrontMap::find_edges(Vertex from) {
     places_[from] = {used_, static_cast<std::uint32_t>(found_.size())};
     for (FrontEdge& edge : found_) {
         edge.log_length = static_cast<float>(std::log(static_cast<double>(edge.length_m)));
+        edge.bearing_rad = static_cast<float>(front_angle(edge.direction.y(), edge.direction.x()));
         neighbourhoods_[used_].known = false;
         *edge_at(used_++) = edge;
     }
@@ -149,8 +150,8 @@ void FrontMap::look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& abou
         if (next.length_m < kBeside_m)
             about.crowding = std::max(about.crowding, static_cast<float>(1.0 - next.length_m / kBeside_m));
         if (next.length_m > kShortSegment_m + 1.0) break;
-        const double bend_rad =
-            std::abs(front_angle(cross(way.direction, next.direction), way.direction.dot(next.direction)));
+        const double bend_rad = std::abs(
+            wrapped_angle(static_cast<double>(next.bearing_rad) - static_cast<double>(way.bearing_rad)));
         const auto badness = static_cast<float>(bend_rad + std::abs(next.log_length - way.log_length));
         about.continuation = std::min(about.continuation, badness);
     }

@@ -3,9 +3,11 @@
 #include "conelane/scene.hpp"
 #include "graph_search/search_graph.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -23,12 +25,28 @@ inline constexpr double kShortSegment_m = 5.8;
 /// to 2e-5 rad without the C library, hence the same on any machine.
 [[nodiscard]] double front_angle(double cross, double dot);
 
+/// The same angle in (-pi, pi], for one in (-3 pi, 3 pi).
+[[nodiscard]] inline double wrapped_angle(double angle_rad) {
+    if (angle_rad > std::numbers::pi) return angle_rad - 2.0 * std::numbers::pi;
+    if (angle_rad <= -std::numbers::pi) return angle_rad + 2.0 * std::numbers::pi;
+    return angle_rad;
+}
+
+/// Whether two segments are surely farther apart than `gap_m`.
+[[nodiscard]] inline bool far_apart(const Segment& a, const Segment& b, double gap_m) {
+    return std::min(a.from.x(), a.to.x()) > std::max(b.from.x(), b.to.x()) + gap_m ||
+           std::min(b.from.x(), b.to.x()) > std::max(a.from.x(), a.to.x()) + gap_m ||
+           std::min(a.from.y(), a.to.y()) > std::max(b.from.y(), b.to.y()) + gap_m ||
+           std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
+}
+
 /// The way from a cone to another one.
 struct FrontEdge {
     Vertex to;
     float length_m;
-    float log_length;  ///< natural logarithm of the length in metres
-    Point direction;   ///< unit vector
+    float log_length;   ///< natural logarithm of the length in metres
+    float bearing_rad;  ///< angle from the heading of the car to `direction`
+    Point direction;    ///< unit vector
 };
 
 /// What lies about the way from a cone to another one. Left and right as seen along it.

@@ -11,7 +11,8 @@ namespace {
 bool leaves_room(const FrontMap& map, const FrontEnd& other, const Segment& segment,
                  const FrontRules& rules) {
     const auto near = [&](const Segment& facing) {
-        return segment_distance(segment, facing).distance_m < rules.narrowest_m;
+        return !far_apart(segment, facing, rules.narrowest_m) &&
+               segment_distance(segment, facing).distance_m < rules.narrowest_m;
     };
     const Point& last = map.position(other.cones[0]);
     if (other.count < 2) return !near({last, last});

@@ -16,7 +16,7 @@ struct FrontRules {
     double largest_turn_rad = 110.0 * std::numbers::pi / 180.0;
     double largest_long_turn_rad = 85.0 * std::numbers::pi / 180.0;    ///< onto a segment that bridges
     double largest_first_turn_rad = 110.0 * std::numbers::pi / 180.0;  ///< from the heading
-    std::size_t long_segments = 8;    ///< segments over kShortSegment_m, those that go on straightest
+    std::size_t long_segments = 5;    ///< segments over kShortSegment_m, those that go on straightest
     std::size_t short_segments = 48;  ///< of those up to it, the shortest
     double longest_boundary_m = 300.0;
     // Of the cones that a lane may start with.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -16,13 +17,28 @@ std::uint64_t bit_of(Vertex cone) {
     return std::uint64_t{1} << (cone % 64);
 }
 
-/// Whether two segments are surely farther apart than `gap_m`.
-bool far_apart(const Segment& a, const Segment& b, double gap_m) {
-    return std::min(a.from.x(), a.to.x()) > std::max(b.from.x(), b.to.x()) + gap_m ||
-           std::min(b.from.x(), b.to.x()) > std::max(a.from.x(), a.to.x()) + gap_m ||
-           std::min(a.from.y(), a.to.y()) > std::max(b.from.y(), b.to.y()) + gap_m ||
-           std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
-}
+/// The scores over the best other one.
+class Margins {
+  public:
+    explicit Margins(std::span<const float> scores) {
+        for (const float score : scores) {
+            if (score > best_) {
+                second_ = std::exchange(best_, score);
+            } else {
+                second_ = std::max(second_, score);
+            }
+        }
+    }
+    /// kNoOther where there is none.
+    [[nodiscard]] float of(float score) const {
+        constexpr float kNoOther = 100.0F;
+        return std::min(kNoOther, score - (score == best_ ? second_ : best_));
+    }
+
+  private:
+    float best_ = -std::numeric_limits<float>::infinity();
+    float second_ = -std::numeric_limits<float>::infinity();
+};
 
 }  // namespace
 
@@ -34,10 +50,13 @@ void validate(const FrontSearchOptions& options) {
         throw InvalidInput("level_m", "must be positive");
 }
 
-void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options) {
+void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
+                        FrontEvidence* evidence) {
     cost_ = &cost;
+    evidence_ = evidence;
     options_ = options;
     map_.build(scene);
+    if (evidence != nullptr) evidence->find_again(scene, map_);
     nodes_.clear();
     finished_.clear();
     best_finished_ = -std::numeric_limits<double>::infinity();
@@ -49,10 +68,15 @@ void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOp
     starts_.list(map_, options_.rules);
     left_out_ = starts_.left_out;
     const std::span<const float> scores = cost.score_starts(map_, starts_);
+    const Margins margins(scores);
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const auto& [left, right] = starts_.pairs[i];
-        const FrontState state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
-        push(level_of(state), {static_cast<double>(scores[i]), kNone, {}, kLeft, i});
+        const Vertex left_cone = starts_.cones[kLeft][left];
+        const Vertex right_cone = starts_.cones[kRight][right];
+        const double score =
+            static_cast<double>(scores[i]) + bonus(kLeft, left_cone) + bonus(kRight, right_cone);
+        push(level_of(start_state(map_, left_cone, right_cone)),
+             {score, kNone, {}, kLeft, i, margins.of(scores[i])});
     }
 }
 
@@ -112,6 +136,7 @@ void FrontSearch::expand(std::size_t number) {
     moves_.list(map_, nodes_[number].state, side, options_.rules);
     left_out_ = left_out_ || moves_.left_out;
     const std::span<const float> scores = cost_->score_moves(map_, nodes_[number].state, side, moves_);
+    const Margins margins(scores);
     const Node& from = nodes_[number];
     const std::size_t level = level_number();
     for (std::size_t i = 0; i < moves_.extensions.size(); ++i) {
@@ -120,13 +145,15 @@ void FrontSearch::expand(std::size_t number) {
             static_cast<double>(map_.edges(from.state.ends[side].cones[0])[move.edge].length_m);
         const double progress_m =
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
+        const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
         push(std::max(level + 1, static_cast<std::size_t>(progress_m / options_.level_m)),
-             {from.score + static_cast<double>(scores[i]), number, move, side, from.start});
+             {score, number, move, side, from.start, margins.of(scores[i])});
     }
     if (!moves_.stops) return;
     const double score = from.score + static_cast<double>(scores.back());
     if (!from.state.ends[opposite(side)].stopped) {
-        push(level_after(level, from.state), {score, number, {}, side, from.start});
+        push(level_after(level, from.state),
+             {score, number, {}, side, from.start, margins.of(scores.back())});
     } else if (from.state.is_lane()) {
         finished_.push_back({number, side, score});
         best_finished_ = std::max(best_finished_, score);
@@ -150,6 +177,7 @@ std::size_t FrontSearch::add(const Candidate& candidate) {
     node.move = candidate.move;
     node.side = candidate.side;
     node.start = candidate.start;
+    node.margin = candidate.margin;
     if (candidate.parent == kNone) {
         const auto& [left, right] = starts_.pairs[candidate.start];
         node.state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "graph_search/front/front_cost.hpp"
+#include "graph_search/front/front_evidence.hpp"
 #include "graph_search/search_budget.hpp"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace conelane {
 
 struct FrontSearchOptions {
     FrontRules rules;
-    std::size_t beam_width = 20;  ///< states kept at each level of progress
+    std::size_t beam_width = 15;  ///< states kept at each level of progress
     double drop = 4.0;            ///< those so much behind the best of their level are not kept
     double finished_drop = 4.0;   ///< nor those so much behind the best lane that has ended
     double level_m = 2.5;         ///< progress, of both boundaries together, from level to level
@@ -44,6 +45,7 @@ class FrontSearch {
         FrontMove move;      ///< that led here
         Side side;           ///< that moved
         std::size_t start;   ///< place in FrontStarts::pairs
+        float margin;        ///< see Candidate
         std::array<std::uint64_t, 4>
             bits;  ///< of the lane's cones; each stands for all cones of the same remainder
     };
@@ -55,10 +57,13 @@ class FrontSearch {
         FrontMove move;
         Side side;
         std::size_t start;
+        float margin = 0.0F;  ///< score of the move over that of the best other one, or start
     };
 
-    /// Keeps the references as long as it runs, and memory from call to call.
-    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options);
+    /// Keeps the references as long as it runs, and memory from call to call. With evidence, scores have its
+    /// bonuses.
+    void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
+               FrontEvidence* evidence = nullptr);
     /// Keeps the best of the next level that has a state, and lets them move. Returns whether there was such
     /// a level. Where the budget is spent it returns false.
     bool advance(SearchBudget& budget);
@@ -69,6 +74,8 @@ class FrontSearch {
     [[nodiscard]] FrontMap& map() { return map_; }
     [[nodiscard]] const FrontMap& map() const { return map_; }
     [[nodiscard]] const Node& node(std::size_t number) const { return nodes_[number]; }
+    /// How many there are.
+    [[nodiscard]] std::size_t nodes() const { return nodes_.size(); }
     /// The states kept on the level before, best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
     /// Lanes whose both sides have stopped, in the order in which they were found.
@@ -107,12 +114,16 @@ class FrontSearch {
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex cone) const;
     /// Whether the whole lane leaves room for a segment to that cone.
     [[nodiscard]] bool is_free(std::size_t number, Side side, Vertex to) const;
+    [[nodiscard]] double bonus(Side side, Vertex cone) const {
+        return evidence_ != nullptr ? evidence_->bonus(side, cone) : 0.0;
+    }
     [[nodiscard]] bool is_kept_front(const FrontState& state) const;
     void keep_best();
     void expand(std::size_t number);
     void push(std::size_t level, const Candidate& candidate);
 
     FrontCost* cost_ = nullptr;
+    const FrontEvidence* evidence_ = nullptr;
     FrontSearchOptions options_;
     FrontMap map_;
     FrontStarts starts_;

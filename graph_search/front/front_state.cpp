@@ -51,10 +51,11 @@ FrontState moved(FrontMap& map, const FrontState& state, Side side, const FrontM
     const FrontEdge& edge = map.edges(end.cones[0])[move.edge];
     if (end.count > 1) {
         end.turn_rad = static_cast<float>(
-            front_angle(cross(end.direction, edge.direction), end.direction.dot(edge.direction)));
+            wrapped_angle(static_cast<double>(edge.bearing_rad) - static_cast<double>(end.bearing_rad)));
     }
     end.cones = {move.to, end.cones[0], end.cones[1]};
     end.direction = edge.direction;
+    end.bearing_rad = edge.bearing_rad;
     end.segment_m = edge.length_m;
     end.log_segment = edge.log_length;
     end.length_m += static_cast<double>(edge.length_m);

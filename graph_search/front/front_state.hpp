@@ -11,6 +11,7 @@ namespace conelane {
 struct FrontEnd {
     std::array<Vertex, 3> cones{kNoCone, kNoCone, kNoCone};  ///< the last ones, the last one first
     Point direction{1.0, 0.0};  ///< of the last segment; the heading before there is one
+    float bearing_rad = 0.0F;   ///< of `direction`, see FrontEdge
     float segment_m = 0.0F;
     float log_segment = 0.0F;
     float turn_rad = 0.0F;  ///< between the last two segments, positive to the left; 0 before there are two

@@ -166,6 +166,7 @@ class ReportPage(unittest.TestCase):
                                                           "accurate_share", "solved_share", "complete_share")},
                       "steering": {k: row.get(k) for k in ("lateral_median_m", "lateral_p95_m", "heading_median_rad",
                                                            "heading_p95_rad", "unsteady_share")},
+                      "calibration-table": row["calibration"],
                       "latencies": {**row["latency_ms"], "within_budget_share": row["within_budget_share"]},
                       "categories": row["share"]}
             for table, values in stored.items():

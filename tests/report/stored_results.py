@@ -128,7 +128,10 @@ class _Row:
                 row[name] = self.sums[of] / self.known[of]
         if not setup.old:
             row |= {"lateral_median_m": 0.1, "lateral_p95_m": 0.3, "heading_median_rad": 0.01,
-                    "heading_p95_rad": 0.02, "unsteady_share": 0.125}
+                    "heading_p95_rad": 0.02, "unsteady_share": 0.125,
+                    "calibration": {"error": 0.0125, "sure_share": 0.5, "usable_where_sure_share": 0.99,
+                                    "right_where_trusted_share": 0.995, "trusted_share": 0.875,
+                                    "bins": [[1, 0.35, 0.0], [self.scenes, 0.95, 0.9]]}}
         ordered = sorted(self.latencies)
         row["latency_ms"] = {"median": ordered[len(ordered) // 2], "mean": sum(ordered) / len(ordered),
                              "p95": ordered[int(0.95 * (len(ordered) - 1))],

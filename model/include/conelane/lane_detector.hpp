@@ -27,16 +27,18 @@ struct Optimality {
     bool optimal;  ///< the gap is within the tolerance asked for
 };
 
-/// A lane that an enumerating method met, and when.
+/// A lane that an enumerating method met, and when; or one of the best of a method that has an order of them,
+/// and its place, from 1.
 struct LaneCandidate {
     Lane lane;
     std::int64_t iteration;
+    std::optional<double> confidence = {};  ///< probability that the lane is right
 };
 
 struct Enumeration {
     std::int64_t iterations;
     bool complete;                          ///< the search space was exhausted before the iteration limit
-    std::vector<LaneCandidate> candidates;  ///< in the order met; empty unless asked for
+    std::vector<LaneCandidate> candidates;  ///< in the order met, or the best first; empty unless asked for
 };
 
 /// The lane that was found among more cones than it is answered for, before it was cut to those.

@@ -1,0 +1,121 @@
+#include "experiments/training/front_judge_learner.hpp"
+
+#include "experiments/training/front_gradient.hpp"
+#include "experiments/training/softmax.hpp"
+#include "graph_search/front/front_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace conelane::experiments {
+namespace {
+
+/// -log(probability) of what came out.
+double cross_entropy(double probability, bool happened) {
+    constexpr double kLeast = 1e-9;
+    return -std::log(std::max(kLeast, happened ? probability : 1.0 - probability));
+}
+
+}  // namespace
+
+FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
+                                                 const TrackBoundaries& boundaries,
+                                                 const FrontWeights& weights, FrontCost& cost,
+                                                 FrontJudge& judge, const FrontJudgeLossOptions& options,
+                                                 FrontWeights* derivatives) {
+    Loss loss;
+    loss.risk = options.risk.worst();
+    front_.begin(scene.scene, cost, options.search);
+    SearchBudget unlimited;
+    front_.run(unlimited);
+    truth_.set(scene, front_.map());
+    front_.sort_finished(FrontJudge::kContenders);
+    contenders_.clear();
+    lanes_.clear();
+    risks_.clear();
+    for (const FrontSearch::Finished& lane : front_.finished()) {
+        if (contenders_.size() == FrontJudge::kContenders) break;
+        FrontTruth::Cones cones;
+        front_.cones(lane.parent, cones);
+        even_far_ends(front_.map(), cones, kWidestLane_m);
+        contenders_.push_back({lane.parent, lane.score});
+        risks_.push_back(truth_.risk(cones, boundaries, options.risk));
+        lanes_.push_back(std::move(cones));
+    }
+    if (contenders_.empty()) return loss;
+    judge.look(front_, contenders_);
+    add_rank(weights, judge, options, loss, derivatives);
+
+    const auto is_lane = [&](std::size_t place) {
+        return lanes_[place][kLeft].size() > 1 && lanes_[place][kRight].size() > 1;
+    };
+    const auto chosen = std::ranges::find_if(judge.order(), is_lane);
+    if (chosen == judge.order().end()) return loss;
+    loss.found = true;
+    loss.risk = risks_[*chosen];
+    loss.is_usable = truth_.is_usable(lanes_[*chosen], boundaries);
+    loss.confidence = judge.confidence(*chosen);
+    loss.sum += cross_entropy(loss.confidence, loss.is_usable);
+    if (derivatives != nullptr) {
+        const double factor = loss.confidence - (loss.is_usable ? 1.0 : 0.0);
+        add_derivatives(weights.usable, judge.features(*chosen), static_cast<float>(factor),
+                        derivatives->usable);
+    }
+    add_right(boundaries, weights, judge, *chosen, loss, derivatives);
+    return loss;
+}
+
+void FrontJudgeLearner::add_rank(const FrontWeights& weights, const FrontJudge& judge,
+                                 const FrontJudgeLossOptions& options, Loss& loss,
+                                 FrontWeights* derivatives) const {
+    std::vector<double> probabilities;
+    std::vector<double> wanted;
+    for (std::size_t i = 0; i < contenders_.size(); ++i) {
+        probabilities.push_back(contenders_[i].score + judge.rank(i));
+        wanted.push_back(-risks_[i] / options.risk_scale);
+    }
+    to_probabilities(probabilities);
+    to_probabilities(wanted);
+    double expected = 0.0;
+    for (std::size_t i = 0; i < contenders_.size(); ++i) expected += probabilities[i] * risks_[i];
+    loss.sum += options.minimum_risk * expected;
+    if (derivatives == nullptr) return;
+    for (std::size_t i = 0; i < contenders_.size(); ++i) {
+        const double factor = options.minimum_risk * probabilities[i] * (risks_[i] - expected) +
+                              options.listwise * (probabilities[i] - wanted[i]);
+        add_derivatives(weights.rank, judge.features(i), static_cast<float>(factor), derivatives->rank);
+    }
+}
+
+void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const FrontWeights& weights,
+                                  const FrontJudge& judge, std::size_t chosen, Loss& loss,
+                                  FrontWeights* derivatives) const {
+    const FrontTruth::Cones& lane = lanes_[chosen];
+    const std::array<std::size_t, 2> right_cones = truth_.right_cones(lane, boundaries);
+    std::array<std::size_t, 2> place{};
+    double trust = loss.confidence;
+    for (const std::uint32_t number : judge.path(chosen)) {
+        const FrontJudge::Step& step = judge.steps()[number];
+        const FrontSearch::Node& node = front_.node(step.node);
+        bool is_right = true;
+        if (node.parent == FrontSearch::kNone) {
+            is_right = right_cones[kLeft] > 0 && right_cones[kRight] > 0;
+            place = {1, 1};
+        } else {
+            const std::size_t cone = place[node.side]++;
+            if (cone >= lane[node.side].size()) continue;  // off the lane as it is answered
+            is_right = cone < right_cones[node.side];
+        }
+        trust *= step.right;
+        loss.sum += cross_entropy(step.right, is_right);
+        if (derivatives != nullptr) {
+            add_derivatives(weights.right, step.inputs,
+                            static_cast<float>(step.right - (is_right ? 1.0 : 0.0)), derivatives->right);
+        }
+        if (is_right) continue;
+        loss.trust_where_wrong = trust;
+        return;
+    }
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "experiments/training/front_truth.hpp"
+#include "graph_search/front/front_judge.hpp"
+
+#include <vector>
+
+namespace conelane::experiments {
+
+struct FrontJudgeLossOptions {
+    FrontSearchOptions search;
+    FrontRiskOptions risk;
+    double minimum_risk = 3.0;  ///< weight of the expected risk
+    double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
+    double risk_scale = 0.05;   ///< lanes with so much more risk should be e times less likely
+};
+
+/// The loss of FrontJudge in one scene and its derivatives: of `rank` as FrontLearner has it for the lanes of
+/// a search, of `usable` and `right` the cross-entropy for the lane that is answered. FrontCost stays as it
+/// is. Keeps memory from scene to scene; one serves one thread.
+class FrontJudgeLearner {
+  public:
+    struct Loss {
+        double sum = 0.0;
+        bool found = false;
+        bool is_usable = false;
+        double confidence = 0.0;
+        double risk = 0.0;  ///< of the lane that is answered
+        /// Of the lane that is answered, what FrontWeights::least_trust is held against at its first cone
+        /// that is not right; below 0 where all are.
+        double trust_where_wrong = -1.0;
+    };
+
+    /// `derivatives` absent: the loss alone.
+    Loss judge(const AnnotatedScene& scene, const TrackBoundaries& boundaries, const FrontWeights& weights,
+               FrontCost& cost, FrontJudge& judge, const FrontJudgeLossOptions& options,
+               FrontWeights* derivatives);
+
+  private:
+    void add_rank(const FrontWeights& weights, const FrontJudge& judge, const FrontJudgeLossOptions& options,
+                  Loss& loss, FrontWeights* derivatives) const;
+    void add_right(const TrackBoundaries& boundaries, const FrontWeights& weights, const FrontJudge& judge,
+                   std::size_t chosen, Loss& loss, FrontWeights* derivatives) const;
+
+    FrontSearch front_;
+    FrontTruth truth_;
+    std::vector<FrontJudge::Contender> contenders_;
+    std::vector<FrontTruth::Cones> lanes_;
+    std::vector<double> risks_;
+};
+
+}  // namespace conelane::experiments

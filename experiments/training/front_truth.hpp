@@ -1,0 +1,51 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/lane_polygon.hpp"
+#include "experiments/tracks/track_boundaries.hpp"
+#include "graph_search/front/front_map.hpp"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// What a lane is worth in training.
+struct FrontRiskOptions {
+    double unusable = 0.5;  ///< added for a lane that cannot be driven by
+    double cones = 0.3;     ///< added for cones too many and too few, as a share of the true ones
+    /// Of a scene without a lane.
+    [[nodiscard]] double worst() const { return 1.0 + unusable + cones; }
+};
+
+/// The ground truth of a scene as FrontMap sees it, and what others are worth beside it. The scene and the
+/// boundaries must outlive it. Reuses the memory of the one before.
+class FrontTruth {
+  public:
+    using Cones = std::array<std::vector<Vertex>, 2>;
+
+    /// Precondition: the scene has a ground truth.
+    void set(const AnnotatedScene& scene, const FrontMap& map);
+    [[nodiscard]] const Cones& cones() const { return cones_; }
+
+    /// 1 - IoU, and what FrontRiskOptions adds; 0 for the truth itself.
+    [[nodiscard]] double risk(const Cones& lane, const TrackBoundaries& boundaries,
+                              const FrontRiskOptions& options) const;
+    /// As SceneScore::usable.
+    [[nodiscard]] bool is_usable(const Cones& lane, const TrackBoundaries& boundaries) const;
+    /// Of each boundary, how many cones come before the first one that is off (see boundary_divergence).
+    [[nodiscard]] std::array<std::size_t, 2> right_cones(const Cones& lane,
+                                                         const TrackBoundaries& boundaries) const;
+
+  private:
+    [[nodiscard]] LaneOutline outline(const Cones& lane) const;
+    /// In the frame of the course.
+    [[nodiscard]] LaneOutline outline_in_world(const Cones& lane) const;
+
+    const AnnotatedScene* scene_ = nullptr;
+    const FrontMap* map_ = nullptr;
+    Cones cones_;
+};
+
+}  // namespace conelane::experiments

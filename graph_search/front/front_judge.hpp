@@ -1,0 +1,92 @@
+#pragma once
+
+#include "graph_search/front/front_judge_features.hpp"
+#include "graph_search/front/front_search.hpp"
+#include "graph_search/front/front_weights.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// Looks at the best lanes of a search as wholes, side by side: which of them is the best, how sure that is,
+/// and how far. What a beam cannot see, it sees: the cone where a lane hangs by a thread, cones inside it
+/// altogether, and where the lanes part. Keeps memory from call to call.
+class FrontJudge {
+  public:
+    /// Lanes looked at.
+    static constexpr std::size_t kContenders = 20;
+
+    struct Contender {
+        std::size_t node;   ///< of the search: the last state before its last stop
+        double score;       ///< of the search
+        bool ended = true;  ///< false for a lane that still grew when time was up
+    };
+    /// A cone that a lane adds, or its first pair.
+    struct Step {
+        std::size_t node;
+        std::size_t parent;  ///< place among `steps`; FrontSearch::kNone of the first pair
+        RightInputs inputs;
+        double right;  ///< probability that it is right where all before it are
+    };
+
+    /// Throws as `validate`.
+    explicit FrontJudge(const FrontWeights& weights);
+
+    /// Precondition: one contender at least and at most kContenders, the one of the highest score first, each
+    /// with two cones a side.
+    void look(FrontSearch& search, std::span<const Contender> contenders);
+
+    /// Places of the contenders, the best first; of equal ones the one that stood first.
+    [[nodiscard]] std::span<const std::size_t> order() const { return order_; }
+    /// That the contender is usable.
+    [[nodiscard]] double confidence(std::size_t contender) const;
+    /// How far the contender is trusted, along the boundary that is shorter up to there; its whole length,
+    /// the mean of both boundaries, where all of it is. `cones`: of each boundary, those that count.
+    [[nodiscard]] double trusted_m(const FrontSearch& search, std::size_t contender,
+                                   const std::array<std::size_t, 2>& cones) const;
+
+    // For training.
+    [[nodiscard]] const WholeLaneFeatures& features(std::size_t contender) const {
+        return features_[contender];
+    }
+    [[nodiscard]] double rank(std::size_t contender) const { return rank_[contender]; }
+    [[nodiscard]] std::span<const Step> steps() const { return steps_; }
+    /// Places among `steps` of a contender's, the first pair first.
+    [[nodiscard]] const std::vector<std::uint32_t>& path(std::size_t contender) const {
+        return paths_[contender];
+    }
+
+  private:
+    /// A segment of a boundary, whichever lanes it is on.
+    struct Shared {
+        std::uint64_t segment;  ///< side and both cones
+        std::uint32_t step;
+        std::uint32_t contenders;  ///< a bit each
+    };
+    void find_steps(const FrontSearch& search, std::span<const Contender> contenders);
+    void find_shared(FrontSearch& search);
+    void see_cones(FrontSearch& search, std::span<const Contender> contenders);
+    void see_lane(FrontSearch& search, std::span<const Contender> contenders, std::size_t contender);
+
+    FrontNetwork rank_network_;
+    FrontNetwork usable_network_;
+    FrontNetwork right_network_;
+    double least_trust_;
+    std::vector<Step> steps_;
+    std::vector<std::uint32_t> step_of_node_;
+    std::vector<std::uint32_t> on_contenders_;  ///< of each step: a bit for each lane that shares its segment
+    std::vector<float> least_share_;            ///< of each step: of it and all before it
+    std::vector<Shared> shared_;
+    std::array<std::vector<std::uint32_t>, kContenders> paths_;
+    std::array<double, kContenders> probability_{};
+    std::array<double, kContenders> rank_{};
+    std::array<WholeLaneFeatures, kContenders> features_{};
+    std::vector<std::size_t> order_;
+    double expected_m_ = 0.0;  ///< length of both boundaries together, weighed by probability
+};
+
+}  // namespace conelane

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "graph_search/front/front_features.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace conelane {
+
+// What FrontJudge sees of the best lanes of a search, its contenders. Their probabilities are the softmax of
+// their scores.
+
+/// Of a cone of a lane, before what FrontCost saw of the move that added it (0 for the first pair).
+inline constexpr std::size_t kConeFeatures = 8;
+/// Of a whole lane.
+inline constexpr std::size_t kWholeLaneFeatures = 30;
+inline constexpr std::size_t kRightInputs = kConeFeatures + kExtendInputs;
+
+[[nodiscard]] std::span<const FrontFeature, kConeFeatures> cone_feature_table();
+[[nodiscard]] std::span<const FrontFeature, kWholeLaneFeatures> whole_lane_feature_table();
+
+using RightInputs = std::array<float, kRightInputs>;
+using WholeLaneFeatures = std::array<float, kWholeLaneFeatures>;
+
+}  // namespace conelane

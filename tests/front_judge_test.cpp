@@ -1,0 +1,197 @@
+// The judge of whole lanes in `front`: what it sees of lanes side by side, and what it makes of that.
+
+#include "graph_search/front/front_judge.hpp"
+
+#include "graph_search/front/front_detector.hpp"
+#include "tests/front_fixture.hpp"
+#include "tests/no_time_limit.hpp"
+#include "tests/random_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using tests::random_front_weights;
+using tests::straight_front_scene;
+using Cones = std::array<std::vector<Vertex>, 2>;
+
+/// Where features stand, by name.
+template <std::size_t count>
+std::size_t place_of(std::span<const FrontFeature, count> table, std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(table, name, &FrontFeature::name) - table.begin());
+}
+float lane_feature(const FrontJudge& judge, std::size_t contender, std::string_view name) {
+    return judge.features(contender)[place_of(whole_lane_feature_table(), name)];
+}
+float cone_feature(const FrontJudge::Step& step, std::string_view name) {
+    return step.inputs[place_of(cone_feature_table(), name)];
+}
+
+/// A search run to its end, and its best lanes judged.
+class Judged {
+  public:
+    Judged(const Scene& scene, const FrontWeights& weights) : cost_(weights), judge(weights) {
+        search.begin(scene, cost_, {});
+        SearchBudget unlimited;
+        search.run(unlimited);
+        search.sort_finished(FrontJudge::kContenders);
+        for (const FrontSearch::Finished& lane : search.finished()) {
+            if (contenders.size() == FrontJudge::kContenders) break;
+            contenders.push_back({lane.parent, lane.score});
+            search.cones(lane.parent, lanes.emplace_back());
+        }
+        if (!contenders.empty()) judge.look(search, contenders);
+    }
+
+  private:
+    FrontCost cost_;
+
+  public:
+    FrontSearch search;
+    std::vector<FrontJudge::Contender> contenders;
+    std::vector<Cones> lanes;
+    FrontJudge judge;
+};
+
+/// A segment by its side and cones; the first pair has a side of its own.
+using Segments = std::set<std::array<Vertex, 3>>;
+Segments segments_of(const Cones& lane) {
+    Segments segments{{2, lane[kLeft].front(), lane[kRight].front()}};
+    for (const Side side : {kLeft, kRight}) {
+        for (std::size_t i = 1; i < lane[side].size(); ++i)
+            segments.insert({static_cast<Vertex>(side), lane[side][i - 1], lane[side][i]});
+    }
+    return segments;
+}
+
+std::vector<double> softmax(const std::vector<FrontJudge::Contender>& contenders) {
+    std::vector<double> result;
+    double sum = 0.0;
+    for (const auto& lane : contenders)
+        sum += result.emplace_back(std::exp(lane.score - contenders.front().score));
+    for (double& probability : result) probability /= sum;
+    return result;
+}
+
+TEST(FrontJudge, WithoutWeightsKeepsTheOrderOfTheSearch) {
+    const Judged judged(tests::random_scene(3, 24), random_front_weights(1));
+    ASSERT_GT(judged.contenders.size(), 2U);
+    for (std::size_t i = 0; i < judged.judge.order().size(); ++i) EXPECT_EQ(judged.judge.order()[i], i);
+    EXPECT_DOUBLE_EQ(judged.judge.confidence(0), 0.5);
+}
+
+/// What lanes share, counted segment by segment.
+TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
+    std::size_t met = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Judged judged(tests::random_scene(seed, 24), random_front_weights(seed));
+        if (judged.contenders.empty()) continue;
+        const std::vector<double> probability = softmax(judged.contenders);
+        std::vector<Segments> segments;
+        for (const Cones& lane : judged.lanes) segments.push_back(segments_of(lane));
+        for (std::size_t i = 0; i < judged.lanes.size(); ++i) {
+            double least = 1.0;
+            for (const auto& segment : segments[i]) {
+                double share = 0.0;
+                for (std::size_t j = 0; j < segments.size(); ++j)
+                    share += segments[j].contains(segment) ? probability[j] : 0.0;
+                least = std::min(least, share);
+            }
+            EXPECT_NEAR(lane_feature(judged.judge, i, "least_share"), least, 1e-5);
+            EXPECT_NEAR(lane_feature(judged.judge, i, "probability"), probability[i], 1e-5);
+            EXPECT_EQ(judged.judge.path(i).size(), segments[i].size());
+            ++met;
+        }
+    }
+    EXPECT_GT(met, 100U);
+}
+
+TEST(FrontJudge, AllAgreeOnALaneWithoutAnyOther) {
+    const Judged judged(straight_front_scene(3), random_front_weights(4));
+    ASSERT_FALSE(judged.contenders.empty());
+    for (const FrontJudge::Step& step : judged.judge.steps()) {
+        EXPECT_LE(cone_feature(step, "least_share"), cone_feature(step, "share"));
+        EXPECT_LE(cone_feature(step, "share"), 1.0F + 1e-6F);
+    }
+    EXPECT_EQ(lane_feature(judged.judge, 0, "inside"), 0.0F);
+    EXPECT_EQ(lane_feature(judged.judge, 0, "behind"), 0.0F);
+}
+
+TEST(FrontJudge, RankLiftsALaneOverBetterScores) {
+    FrontWeights weights = random_front_weights(1);
+    // Worth more than any difference of scores for each cone that a lane has less.
+    weights.rank.linear[place_of(whole_lane_feature_table(), "cones")] = -1e4F;
+    const Judged judged(tests::random_scene(3, 24), weights);
+    ASSERT_GT(judged.contenders.size(), 2U);
+    std::size_t before = 0;
+    for (const std::size_t place : judged.judge.order()) {
+        const std::size_t cones = judged.lanes[place][kLeft].size() + judged.lanes[place][kRight].size();
+        EXPECT_GE(cones, before);
+        before = cones;
+    }
+}
+
+/// Each cone is right with probability 0.8, the lane surely usable, so three steps keep 0.512 and four 0.41.
+TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
+    FrontWeights weights = random_front_weights(4);
+    weights.right.output_bias = static_cast<float>(std::log(0.8 / 0.2));
+    weights.usable.output_bias = 50.0F;
+    const auto trusted_m = [&](double least_trust) {
+        weights.least_trust = least_trust;
+        const Judged judged(straight_front_scene(6), weights);
+        const Cones& lane = judged.lanes.front();
+        return judged.judge.trusted_m(judged.search, 0, {lane[kLeft].size(), lane[kRight].size()});
+    };
+    EXPECT_EQ(trusted_m(0.9), 0.0);  // not even the first pair
+    // The pair, the next left cone and the next right one: a segment on each side.
+    EXPECT_NEAR(trusted_m(0.5), 4.0, 0.5);
+    EXPECT_LE(trusted_m(0.5), trusted_m(0.2));
+    const Judged judged(straight_front_scene(6), weights);
+    double whole_m = 0.0;
+    for (const Side side : {kLeft, kRight}) {
+        const std::vector<Vertex>& boundary = judged.lanes.front()[side];
+        for (std::size_t i = 1; i < boundary.size(); ++i) {
+            whole_m +=
+                (judged.search.map().position(boundary[i]) - judged.search.map().position(boundary[i - 1]))
+                    .norm() /
+                2.0;
+        }
+    }
+    EXPECT_NEAR(trusted_m(0.0), whole_m, 1e-5);
+}
+
+TEST(FrontJudge, DetectorSaysWhatItThinksOfItsBestLanes) {
+    FrontWeights weights = random_front_weights(1);
+    weights.usable = FrontNetworkWeights::zero(kWholeLaneFeatures);
+    weights.usable.linear[place_of(whole_lane_feature_table(), "probability")] = 2.0F;
+    const auto detector = make_front_detector({weights, {}});
+    const Scene scene = tests::random_scene(3, 24);
+    const LaneAnswer plain = detector->detect(scene, tests::kNoTimeLimit);
+    ASSERT_EQ(plain.status, LaneStatus::found);
+    EXPECT_FALSE(plain.enumeration);
+    DetectionLimits limits = tests::kNoTimeLimit;
+    limits.keep_candidates = true;
+    const LaneAnswer answer = detector->detect(scene, limits);
+    EXPECT_EQ(answer.lane, plain.lane);
+    EXPECT_EQ(answer.confidence, plain.confidence);
+    const auto& candidates = answer.enumeration.value().candidates;
+    ASSERT_GT(candidates.size(), 1U);
+    EXPECT_LE(candidates.size(), FrontJudge::kContenders);
+    EXPECT_EQ(candidates.front().lane, answer.lane);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        EXPECT_EQ(candidates[i].iteration, static_cast<std::int64_t>(i + 1));
+        EXPECT_GT(*candidates[i].confidence, 0.5);
+        for (std::size_t j = 0; j < i; ++j) EXPECT_NE(candidates[i].lane, candidates[j].lane);
+    }
+}
+
+}  // namespace
+}  // namespace conelane
