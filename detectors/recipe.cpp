@@ -60,8 +60,8 @@ constexpr std::array kRecipes{
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
                    OtherRecipe{warm_front}},
     DetectorRecipe{"clc",
-                   "CLC led by a beam search; NVD weighs distances, a second search, a network on all "
-                   "features and consensus of the candidates that it puts first",
+                   "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
+                   "search, a network on all features trained for usable lanes",
                    OtherRecipe{clc}},
     DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
                    OtherRecipe{warm_clc}},

@@ -30,12 +30,6 @@ std::unique_ptr<LaneDetector> without_beam() {
     return make_clc_detector(clc);
 }
 
-std::unique_ptr<LaneDetector> without_consensus() {
-    ClcOptions clc = extended_clc_options();
-    clc.consensus_candidates = 0;
-    return make_clc_detector(clc);
-}
-
 std::unique_ptr<LaneDetector> on_delaunay_graph() {
     ClcOptions clc = paper_clc_options();
     clc.edge_rule = delaunay_edges;
@@ -61,8 +55,6 @@ std::vector<Method> all_methods() {
     }
     add("clc-no-beam", "clc whose first search follows no lane of a beam search", OtherRecipe{without_beam},
         true);
-    add("clc-no-consensus", "clc that answers with the candidate of the highest score",
-        OtherRecipe{without_consensus}, true);
     add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
         OtherRecipe{on_delaunay_graph}, true);
     add("clc-longest", "CLC without network: the longest of the enumerated lanes", OtherRecipe{longest_lane},

@@ -2,38 +2,32 @@
 
 #include "conelane/lane_detector.hpp"
 #include "graph_search/candidate_search.hpp"
-#include "graph_search/lane_consensus.hpp"
 #include "graph_search/ranking.hpp"
 
-#include <cstddef>
 #include <memory>
 
 namespace conelane {
 
 struct ClcOptions : CandidateSearchOptions {
     std::shared_ptr<const LaneRanking> ranking;  ///< none: the longest lane is the answer
-    /// The answer is the consensus (minimum Bayes risk) of so many candidates, those of the highest scores,
-    /// see LaneConsensus; at most LaneConsensus::kMostCandidates. 0: the highest score, as in the paper. Only
-    /// with a ranking.
-    std::size_t consensus_candidates = 0;
     /// Each search after the first starts from the last answer, section IV-F, until `reset`.
     bool warm_start = false;
 };
 
 /// The search and the ranking of the paper: equation (3), the network on eight features.
 [[nodiscard]] ClcOptions paper_clc_options();
-/// The same algorithm with five additions: the first search follows the lane of a beam search by learned
-/// scores; the next-vertex decider weighs distances; where a search is not complete a second one follows; the
-/// network sees all features; the answer is the consensus of the candidates with the highest scores. The
-/// network was trained with a cost for lanes that leave the track within 20 m: so where the scene is
-/// ambiguous there, a short lane that is certain goes before a long one that is not.
+/// The same algorithm with five additions: segments may be 10 m long, so that a lane goes on past a cone that
+/// was missed; the first search follows the lane of a beam search by learned scores; the next-vertex decider
+/// weighs distances; where a search is not complete a second one follows; the network sees all features. It
+/// was trained with a cost for lanes that cannot be driven by, whether they leave the track within 20 m or
+/// end before.
 [[nodiscard]] ClcOptions extended_clc_options();
 /// The search of these, without the ranking.
 [[nodiscard]] CandidateSearchOptions extended_search_options();
 
 /// CLC, Algorithm 1: lane detection by enumeration of path pairs. Answers the feasible lane with at least two
-/// cones a side that has the highest score of the ranking or is the consensus of those that do, or without a
-/// ranking the longest (mean length of both boundaries). Of equal ones, the one met first.
+/// cones a side that has the highest score of the ranking, or without a ranking the longest (mean length of
+/// both boundaries). Of equal ones, the one met first.
 ///
 /// LaneAnswer::status:
 /// - found: `stopped_by` is absent where every starting pair tried was searched to its end. `iterations`: the

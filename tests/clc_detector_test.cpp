@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <set>
@@ -137,6 +138,27 @@ TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
         }
         EXPECT_LE(iteration, answer.enumeration->iterations);
         EXPECT_LE(answer.enumeration->iterations, 2500);
+    }
+}
+
+// Of a straight lane the car has missed one cone: that boundary has a gap of 8 m.
+TEST(ClcDetector, GoesOnPastAMissedCone) {
+    for (std::size_t missed = 1; missed < 7; ++missed) {
+        SCOPED_TRACE(missed);
+        Scene scene;
+        for (int i = 0; i < 9; ++i) {
+            const double x = 1.0 + 4.0 * i;
+            scene.cones.push_back({2 * i, {x, 1.8}});
+            scene.cones.push_back({2 * i + 1, {x + 0.2, -1.8}});
+        }
+        scene.cones.erase(scene.cones.begin() + static_cast<std::ptrdiff_t>(2 * missed));
+        std::vector<ConeId> left{0, 2, 4, 6, 8, 10, 12, 14, 16};
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(missed));
+        const LaneAnswer answer = detect(scene, extended_clc_options());
+        EXPECT_EQ(answer.lane.left, left);
+        EXPECT_THAT(answer.lane.right, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15, 17));
+        // The 5.5 m of the paper end there.
+        EXPECT_LE(detect(scene, paper_clc_options()).lane.left.size(), missed);
     }
 }
 
@@ -295,6 +317,8 @@ TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
     for (unsigned seed = 0; seed < 30; ++seed) {
         const Scene scene = with_false_positives(winding_lane(9, 0.4, seed), 30, seed);
         ClcOptions options;
+        static_cast<CandidateSearchOptions&>(options) = extended_search_options();
+        options.second_search_discrepancies = 0;
         options.iteration_limit = 40;
         const auto has_lane = [&] {
             for (const auto& [left, right] : candidates(scene, options)) {
@@ -305,12 +329,12 @@ TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
             }
             return false;
         };
-        found_without += has_lane() ? 1 : 0;
-        options.step_scores = extended_search_options().step_scores;
         found += has_lane() ? 1 : 0;
+        options.step_scores = nullptr;
+        found_without += has_lane() ? 1 : 0;
     }
-    EXPECT_GE(found, 20u);
-    EXPECT_GE(found, found_without + 5);
+    EXPECT_GE(found, 15u);
+    EXPECT_GE(found, found_without + 10);
 }
 
 TEST(CandidateSearch, EveryCandidateHasTheFeaturesOfItsOwnStart) {
@@ -407,7 +431,6 @@ TEST(ClcDetector, RejectsOptionsOutOfRangeByName) {
     EXPECT_EQ(key_of([](ClcOptions& o) { o.start.distance_weight = -1.0; }), "distance_weight");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.starting_pairs = 0; }), "starting_pairs");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.beam_width = 0; }), "beam_width");
-    EXPECT_EQ(key_of([](ClcOptions& o) { o.consensus_candidates = 33; }), "consensus_candidates");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.step_scores = std::make_shared<StepScores>(); }), "scores");
     EXPECT_EQ(key_of([](ClcOptions& o) { o.next_vertex_distance_weight = -0.1; }),
               "next_vertex_distance_weight");

@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/files/rank_net_file.hpp"
+#include "experiments/scoring/score.hpp"
 #include "experiments/tracks/track_spec.hpp"
 #include "experiments/training/adam.hpp"
 #include "experiments/training/track_variant.hpp"
@@ -12,7 +13,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -33,6 +36,7 @@ std::vector<CandidateList> lists_by_fourth_feature(std::size_t count, std::uint6
             for (double& feature : lane) feature = 100.0 + 20.0 * uniform(random);
             list.iou.push_back(1.0 - (lane[3] - 100.0) / 20.0);
             list.divergence_m.push_back(std::numeric_limits<double>::infinity());
+            list.usable.push_back(true);
             list.lanes.push_back(lane);
         }
     }
@@ -231,6 +235,58 @@ TEST(RankNetTraining, ThePenaltyMakesDivergingLanesWorse) {
     EXPECT_LT(critical_share(), 0.1);
 }
 
+TEST(RankNetTraining, ThePenaltyMakesLanesThatAreNotUsableWorse) {
+    // The better half by the fourth feature ends too early.
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
+    for (CandidateList& list : lists) {
+        for (std::size_t i = 0; i < list.lanes.size(); ++i) list.usable[i] = list.lanes[i][3] >= 110.0;
+    }
+    RankNetTrainingOptions options = quick();
+    const auto figures = [&] {
+        return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options)));
+    };
+    options.divergence_penalty = 1.0;  // none of them diverges
+    const RankingFigures without = figures();
+    EXPECT_LT(without.usable_share, 0.1);
+    EXPECT_GT(without.most_usable_share, 0.9);
+    EXPECT_EQ(without.critical_share, 0.0);
+    options.unusable_penalty = 1.0;
+    EXPECT_GT(figures().usable_share, 0.9);
+}
+
+// One unit passes on the first feature, so the candidate with the largest one is chosen.
+TEST(RankingFigures, OfThreeScenesByHand) {
+    RankNetWeights weights{Eigen::VectorXd::Zero(8), Eigen::VectorXd::Ones(8), Eigen::MatrixXf::Zero(1, 8),
+                           Eigen::VectorXf::Zero(1), Eigen::VectorXf::Ones(1)};
+    weights.hidden(0, 0) = 1.0F;
+    const auto list = [](std::vector<double> iou, std::vector<double> divergence_m,
+                         std::vector<bool> usable) {
+        CandidateList result;
+        for (std::size_t i = 0; i < iou.size(); ++i) {
+            result.lanes.emplace_back();
+            result.lanes.back()[0] = static_cast<double>(i);
+        }
+        result.iou = std::move(iou);
+        result.divergence_m = std::move(divergence_m);
+        result.usable = std::move(usable);
+        return result;
+    };
+    constexpr double kNever_m = std::numeric_limits<double>::infinity();
+    // Chosen are a usable lane, a stub beside a usable one, and nothing.
+    const std::vector<CandidateList> lists{list({0.5, 0.99}, {5.0, kNever_m}, {false, true}),
+                                           list({0.8, 0.2}, {kNever_m, kNever_m}, {true, false}),
+                                           {}};
+    const RankingFigures figures = ranking_figures(lists, *make_rank_net(weights));
+    EXPECT_EQ(figures.scenes, 3u);
+    EXPECT_DOUBLE_EQ(figures.usable_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.most_usable_share, 2.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.mean_iou, (0.99 + 0.2) / 3.0);
+    EXPECT_DOUBLE_EQ(figures.mean_best_iou, (0.99 + 0.8) / 3.0);
+    EXPECT_DOUBLE_EQ(figures.near_best_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.critical_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.least_critical_share, 1.0 / 3.0);
+}
+
 TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     const auto key_of = [](auto change) -> std::string {
         RankNetTrainingOptions options = quick();
@@ -256,6 +312,7 @@ TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.late_divergence_penalty = -1.0; }),
               "late_divergence_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.unusable_penalty = -1.0; }), "unusable_penalty");
     EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
     EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
 }
@@ -265,6 +322,7 @@ TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
     scenes.false_positive_rates = {0.5};
     scenes.ranges_m = {50.0};
     scenes.every_m = 15.0;
+    scenes.conditions = {"car"};
     const SceneSet set = make_scene_set({"generated:hairpins@99"}, scenes);
     CandidateListOptions options;
     options.search = extended_search_options();
@@ -280,6 +338,59 @@ TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
         gained += with[i].best_iou() - without[i].best_iou();
     }
     EXPECT_GT(gained / static_cast<double>(with.size()), 0.003);
+}
+
+// A straight lane, cones 4 m apart, of which the car sees 32 m; a false positive stands 1.5 m off its left
+// boundary.
+TEST(CandidateLists, SayWhichLanesCanBeDrivenByAsTheScoringDoes) {
+    SceneSet set;
+    TrackBoundaries& boundaries = set.tracks["straight"];
+    boundaries.closed = false;
+    AnnotatedScene scene;
+    scene.track = "straight";
+    scene.ground_truth.emplace();
+    for (int i = 0; i < 9; ++i) {
+        const double x = 1.0 + 4.0 * i;
+        scene.scene.cones.push_back({2 * i, {x, 2.0}});
+        scene.scene.cones.push_back({2 * i + 1, {x + 0.2, -2.0}});
+        scene.ground_truth->left.push_back(2 * i);
+        scene.ground_truth->right.push_back(2 * i + 1);
+        boundaries.left.push_back(scene.scene.cones[static_cast<std::size_t>(2 * i)].position);
+        boundaries.right.push_back(scene.scene.cones[static_cast<std::size_t>(2 * i + 1)].position);
+    }
+    scene.scene.cones.push_back({100, {9.0, 3.5}});  // beside the third left cone
+    set.scenes.push_back(scene);
+    CandidateListOptions options;
+    options.show_progress = false;
+    const std::vector<CandidateList> lists = enumerate_candidates(set, options);
+    ASSERT_EQ(lists.size(), 1u);
+
+    CandidateSearch search(options.search);
+    const CandidateSearch::Request request;
+    (void)search.run(scene.scene, request);
+    const std::vector<PathPair>& pairs = search.pairs().found();
+    ASSERT_EQ(lists.front().usable.size(), pairs.size());
+    const auto usable = [&](const std::vector<ConeId>& left, const std::vector<ConeId>& right) {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            if (search.lane(pairs[i], scene.scene) == Lane{left, right})
+                return std::optional<bool>(lists.front().usable[i]);
+        }
+        ADD_FAILURE() << "no such candidate";
+        return std::optional<bool>();
+    };
+    EXPECT_EQ(usable({0, 2, 4, 6, 8, 10, 12, 14, 16}, {1, 3, 5, 7, 9, 11, 13, 15, 17}), true);
+    EXPECT_EQ(usable({0, 2, 4, 6, 8, 10}, {1, 3, 5, 7, 9, 11}), true) << "20 m are enough";
+    EXPECT_EQ(usable({0, 2, 4, 6, 8}, {1, 3, 5, 7, 9, 11}), false) << "18 m are not";
+    EXPECT_EQ(usable({0, 2}, {1, 3}), false) << "a stub leaves no track";
+    EXPECT_EQ(usable({0, 2, 100, 6, 8, 10, 12, 14, 16}, {1, 3, 5, 7, 9, 11, 13, 15, 17}), false)
+        << "past the false positive";
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        LaneAnswer answer;
+        answer.status = LaneStatus::found;
+        answer.lane = search.lane(pairs[i], scene.scene);
+        const SceneScore scored = score(scene, answer, 0.0, std::nullopt, &boundaries);
+        EXPECT_EQ(lists.front().usable[i], scored.usable()) << "candidate " << i;
+    }
 }
 
 TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {

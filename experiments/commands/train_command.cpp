@@ -39,11 +39,11 @@ struct Options {
 void print(const char* of, const RankingFigures& figures) {
     if (figures.scenes == 0) return;
     fmt::print(
-        "{:<9} {:>6} scenes  mean IoU {:.2f} % of at most {:.2f} %, a candidate of 98 % in {:.1f} %, "
-        "critical {:.2f} % of at least {:.2f} %\n",
-        of, figures.scenes, 100.0 * figures.mean_iou, 100.0 * figures.mean_best_iou,
-        100.0 * figures.near_best_share, 100.0 * figures.critical_share,
-        100.0 * figures.least_critical_share);
+        "{:<9} {:>6} scenes  usable {:.2f} % of at most {:.2f} %, mean IoU {:.2f} % of at most {:.2f} %, a "
+        "candidate of 98 % in {:.1f} %, critical {:.2f} % of at least {:.2f} %\n",
+        of, figures.scenes, 100.0 * figures.usable_share, 100.0 * figures.most_usable_share,
+        100.0 * figures.mean_iou, 100.0 * figures.mean_best_iou, 100.0 * figures.near_best_share,
+        100.0 * figures.critical_share, 100.0 * figures.least_critical_share);
 }
 
 void print(const char* of, const StepScoreFigures& figures) {
@@ -183,6 +183,8 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
         "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper");
     add_number_option(command, "--late-divergence-penalty", training.late_divergence_penalty,
                       "the same for a lane that leaves it later");
+    add_number_option(command, "--unusable-penalty", training.unusable_penalty,
+                      "subtracted besides where a lane cannot be driven by, be it wrong or too short");
     add_number_option(command, "--leader-share", training.leader_share,
                       "share of the pairs that hold the candidate ranked first so far");
 }

@@ -105,8 +105,9 @@ void learn_clc(const LearningOptions& options, const fs::path& folder) {
     run.training.scenes_a_step = 16;
     run.training.learning_rate = 0.004;
     run.training.weight_decay = 0.05;
-    run.training.divergence_penalty = 10.0;
+    run.candidates.most_per_scene = 200;
     run.training.late_divergence_penalty = 0.2;
+    run.training.unusable_penalty = 2.0;
     const TrainingRun result = run_training(run);
     write(folder / kExtendedNet, rank_net_json(result.weights, result.record));
 }

@@ -312,6 +312,12 @@ bool is_success(Category category) {
     return category != Category::none && category != Category::diverging_below_20;
 }
 
+bool is_usable(double lane_length_m, double ground_truth_length_m,
+               std::optional<double> divergence_distance_m) {
+    if (divergence_distance_m) return *divergence_distance_m >= kCriticalDivergence_m;
+    return lane_length_m >= std::min(kUsableLength_m, kTooShortShare * ground_truth_length_m);
+}
+
 LaneOutline outline_of(const Lane& lane, const Scene& scene) {
     return ConePositions(scene).outline(lane, "");
 }
@@ -329,13 +335,13 @@ std::optional<bool> SceneScore::usable() const {
         case Category::diverging_below_20:
             return false;
         case Category::ground_truth:
-        case Category::diverging_from_20:
             return true;
+        case Category::diverging_from_20:
         case Category::too_short:
         case Category::near_ground_truth:
             break;
     }
-    return lane_length_m >= std::min(kUsableLength_m, kTooShortShare * ground_truth_length_m);
+    return is_usable(lane_length_m, ground_truth_length_m, divergence_distance_m);
 }
 
 SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double latency_ms,

@@ -44,6 +44,10 @@ inline constexpr std::size_t kCategoryCount = 6;
 [[nodiscard]] std::string_view to_string(Category category);
 /// All but none and diverging_below_20.
 [[nodiscard]] bool is_success(Category category);
+/// Whether a lane that was found can be driven by, see SceneScore::usable. `divergence_distance_m`: absent
+/// where it does not diverge.
+[[nodiscard]] bool is_usable(double lane_length_m, double ground_truth_length_m,
+                             std::optional<double> divergence_distance_m);
 
 /// The four quality checks behind "accurate" (RLD paper, IV-B).
 struct Accuracy {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
@@ -76,6 +77,7 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             const PathPairs& pairs = search.pairs();
             const IndexById index_of = index_by_id(scene.scene);
             const LaneOutline ground_truth = outline(*scene.ground_truth, scene.scene, index_of);
+            const double ground_truth_length_m = lane_length_m(ground_truth);
             const TrackBoundaries& annotated = set.tracks.at(scene.track);
             CandidateList& list = lists[i];
             list.track = scene.track;
@@ -88,7 +90,9 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
                     outline(search.lane(pairs.found()[k], scene.scene), scene.scene, index_of);
                 // Candidates satisfy the constraints.
                 list.iou.push_back(intersection_over_union_of_simple(lane, ground_truth));
-                list.divergence_m.push_back(divergence_m(lane, ground_truth, annotated).value_or(kNever_m));
+                const std::optional<double> diverges_m = divergence_m(lane, ground_truth, annotated);
+                list.divergence_m.push_back(diverges_m.value_or(kNever_m));
+                list.usable.push_back(is_usable(lane_length_m(lane), ground_truth_length_m, diverges_m));
             }
             progress.advance();
         });

@@ -19,6 +19,7 @@ struct CandidateList {
     std::vector<LaneFeatures> lanes;
     std::vector<double> iou;           ///< of each one with the ground truth
     std::vector<double> divergence_m;  ///< of each one, see divergence.hpp; infinite where it does not
+    std::vector<bool> usable;          ///< whether each one can be driven by, see SceneScore::usable
 
     [[nodiscard]] double best_iou() const;  ///< the ceiling of any ranking; 0 where there is no candidate
 };

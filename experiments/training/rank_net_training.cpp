@@ -28,13 +28,18 @@ constexpr double kSmallestDeviation = 1e-8;
 /// All candidates, a column each, and where each list of them begins.
 struct Candidates {
     Eigen::MatrixXd inputs;
-    std::vector<double> quality;      ///< IoU, lowered where the lane diverges early
+    std::vector<double> quality;      ///< IoU, lowered where the lane diverges or is not usable
     std::vector<std::size_t> begins;  ///< one more than there are lists
 };
 
-double penalty(double divergence_m, const RankNetTrainingOptions& options) {
-    if (divergence_m < kCriticalDivergence_m) return options.divergence_penalty;
-    return std::isfinite(divergence_m) ? options.late_divergence_penalty : 0.0;
+double penalty(double divergence_m, bool usable, const RankNetTrainingOptions& options) {
+    double penalty = usable ? 0.0 : options.unusable_penalty;
+    if (divergence_m < kCriticalDivergence_m) {
+        penalty += options.divergence_penalty;
+    } else if (std::isfinite(divergence_m)) {
+        penalty += options.late_divergence_penalty;
+    }
+    return penalty;
 }
 
 Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOptions& options) {
@@ -45,7 +50,7 @@ Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOpt
         if (list.lanes.size() < 2) continue;
         all.begins.push_back(all.begins.back() + list.lanes.size());
         for (std::size_t i = 0; i < list.lanes.size(); ++i) {
-            all.quality.push_back(list.iou[i] - penalty(list.divergence_m[i], options));
+            all.quality.push_back(list.iou[i] - penalty(list.divergence_m[i], list.usable[i], options));
         }
     }
     if (all.quality.empty()) throw InvalidInput("tracks", "no scene has two candidates to compare");
@@ -260,6 +265,8 @@ void validate(const RankNetTrainingOptions& options) {
             "divergence_penalty", "must not be negative");
     require(options.late_divergence_penalty >= 0.0 && std::isfinite(options.late_divergence_penalty),
             "late_divergence_penalty", "must not be negative");
+    require(options.unusable_penalty >= 0.0 && std::isfinite(options.unusable_penalty), "unusable_penalty",
+            "must not be negative");
     require(options.leader_share >= 0.0 && options.leader_share <= 1.0, "leader_share", "must be in [0, 1]");
 }
 
@@ -352,7 +359,9 @@ RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneR
             const auto chosen = static_cast<std::size_t>(std::ranges::max_element(scores) - scores.begin());
             figures.mean_iou += list.iou[chosen];
             divergence_m = list.divergence_m[chosen];
+            if (list.usable[chosen]) figures.usable_share += 1.0;
         }
+        if (std::ranges::find(list.usable, true) != list.usable.end()) figures.most_usable_share += 1.0;
         const auto is_critical = [](double distance_m) { return distance_m < kCriticalDivergence_m; };
         if (is_critical(divergence_m)) figures.critical_share += 1.0;
         if (std::ranges::all_of(list.divergence_m, is_critical)) figures.least_critical_share += 1.0;
@@ -365,6 +374,8 @@ RankingFigures ranking_figures(std::span<const CandidateList> lists, const LaneR
     figures.mean_iou /= count;
     figures.mean_best_iou /= count;
     figures.near_best_share /= count;
+    figures.usable_share /= count;
+    figures.most_usable_share /= count;
     figures.critical_share /= count;
     figures.least_critical_share /= count;
     return figures;

@@ -67,6 +67,9 @@ struct RankNetTrainingOptions {
     double divergence_penalty = 0.0;
     /// ... and where it diverges later. 0 is the paper. A short way off the lane costs little area.
     double late_divergence_penalty = 0.0;
+    /// Subtracted besides where the lane is not usable, for whichever reason: a stub that ends before it can
+    /// go wrong is no answer either. 0 is the paper.
+    double unusable_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
     /// the epoch; the others have any of the scene. What counts in the end is who is first. Pairs only.
     double leader_share = 0.5;
@@ -85,6 +88,8 @@ struct RankingFigures {
     double mean_iou = 0.0;              ///< of the candidates chosen; 0 where a scene has none
     double mean_best_iou = 0.0;         ///< the ceiling
     double near_best_share = 0.0;       ///< scenes with a candidate of IoU >= kNearGroundTruthIou
+    double usable_share = 0.0;          ///< scenes whose chosen candidate can be driven by
+    double most_usable_share = 0.0;     ///< scenes with a candidate that can
     double critical_share = 0.0;        ///< scenes without candidate or whose chosen one diverges below 20 m
     double least_critical_share = 0.0;  ///< scenes in which every candidate does
 };

@@ -34,6 +34,8 @@ Json describe(const RankingFigures& figures) {
             {"mean_iou", rounded(figures.mean_iou)},
             {"mean_best_iou", rounded(figures.mean_best_iou)},
             {"near_best_share", rounded(figures.near_best_share)},
+            {"usable_share", rounded(figures.usable_share)},
+            {"most_usable_share", rounded(figures.most_usable_share)},
             {"critical_share", rounded(figures.critical_share)},
             {"least_critical_share", rounded(figures.least_critical_share)}};
 }
@@ -49,6 +51,7 @@ Json describe(const RankNetTrainingOptions& training) {
             {"iou_factor", training.iou_factor},
             {"divergence_penalty", training.divergence_penalty},
             {"late_divergence_penalty", training.late_divergence_penalty},
+            {"unusable_penalty", training.unusable_penalty},
             {"leader_share", training.leader_share},
             {"seed", training.seed}};
 }
