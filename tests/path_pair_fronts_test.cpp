@@ -8,6 +8,7 @@
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/onward_tables.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "tests/random_scenes.hpp"
 
@@ -55,6 +56,11 @@ struct Fronts {
 
     bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
         return fronts.build(residual, dominated, limit, most_fronts);
+    }
+
+    FrontSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
+        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
+        return search.run(fronts, edges, tables, {1e-9, width, most_labels}, stopped);
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -116,6 +122,7 @@ struct Fronts {
     DominatedEdges dominated;
     FrontGraph fronts;
     Incumbent incumbent;
+    OnwardTables tables;
     FrontSearch search;
 };
 
@@ -244,10 +251,10 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
             continue;
         }
         // Of each front the cheapest beginning alone: a lane graph, but not always the best.
-        const FrontSearch::Outcome narrow = s.search.run(s.fronts, s.edges, {1e-9, 1, kAny}, s.stopped);
+        const FrontSearch::Outcome narrow = s.run(1, kAny);
         EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
-        ASSERT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
+        ASSERT_EQ(s.run(FrontSearch::kAnyWidth, kAny),
                   FrontSearch::Outcome::exhausted);
         ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
         if (!best.objective) continue;
@@ -261,10 +268,10 @@ TEST(PathPairFrontSearch, StopsWhereToldTo) {
     Fronts s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
     s.fronts.find_onward(kUnreachable);
-    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, 5}, s.stopped),
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, 5),
               FrontSearch::Outcome::stopped);
     s.is_stopped = true;
-    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, kAny),
               FrontSearch::Outcome::stopped);
 }
 

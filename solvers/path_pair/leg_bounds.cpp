@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace conelane::path_pair {
 namespace {
@@ -19,14 +20,12 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
                         std::span<const double> start, std::vector<double>& label, std::vector<int>& before,
                         std::vector<int>& cycle) {
     const std::size_t size = graph.arc.size();
-    label.resize(size);
-    before.assign(size, -1);
+    begin_forward(graph, reduced, start, label, before);
     open_.assign((size + 63) / 64, 0);
     for (std::size_t a = 0; a < size; ++a) {
-        label[a] = start[a] + reduced[a];
         if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
     }
-    std::size_t until_check = 3 * size + 64;
+    std::size_t until_check = 2 * size + 64;
     std::size_t until_clock = kArcsPerClock;
     for (bool again = true; again;) {
         again = false;
@@ -58,6 +57,45 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
         }
     }
     return true;
+}
+
+/// The labels of the walks that `before` describes, each as far as its graph has it.
+void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
+                              std::span<const double> start, std::vector<double>& label,
+                              std::vector<int>& before) {
+    const std::size_t size = graph.arc.size();
+    label.resize(size);
+    if (before.size() != size) {
+        before.assign(size, -1);
+        for (std::size_t a = 0; a < size; ++a) label[a] = start[a] + reduced[a];
+        return;
+    }
+    enum : int { unknown, on_the_way, known };
+    colour_.assign(size, unknown);
+    for (std::size_t last = 0; last < size; ++last) {
+        walk_.clear();
+        for (auto a = static_cast<int>(last); a >= 0 && colour_[static_cast<std::size_t>(a)] == unknown;
+             a = before[static_cast<std::size_t>(a)]) {
+            colour_[static_cast<std::size_t>(a)] = on_the_way;
+            walk_.push_back(a);
+        }
+        for (; !walk_.empty(); walk_.pop_back()) {
+            const auto b = static_cast<std::size_t>(walk_.back());
+            colour_[b] = known;
+            label[b] = start[b] + reduced[b];
+            const int a = std::exchange(before[b], -1);
+            if (a < 0 || colour_[static_cast<std::size_t>(a)] != known) continue;  // a cycle is cut open
+            const auto* const first = graph.in_arc.data() + graph.in_start[b];
+            const auto* const end = graph.in_arc.data() + graph.in_start[b + 1];
+            const auto* const found = std::find(first, end, a);
+            if (found == end) continue;
+            const double turn = graph.in_cost[static_cast<std::size_t>(found - graph.in_arc.data())];
+            const double on = label[static_cast<std::size_t>(a)] + turn + reduced[b];
+            if (!(on < label[b])) continue;
+            label[b] = on;
+            before[b] = a;
+        }
+    }
 }
 
 void LegBounds::backward(const ResidualGraph& graph, std::span<const double> reduced,

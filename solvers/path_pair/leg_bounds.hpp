@@ -20,7 +20,8 @@ class LegBounds {
     void bind(SearchClock& clock) { clock_ = &clock; }
 
     /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
-    /// gains from a cycle without end; `cycle` then holds the arcs of one.
+    /// gains from a cycle without end; `cycle` then holds the arcs of one. `before`, the tree of the walks,
+    /// may come in as it was left by a call for similar costs: the labels start from its walks.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
                                std::span<const double> start, std::vector<double>& label,
                                std::vector<int>& before, std::vector<int>& cycle);
@@ -31,11 +32,14 @@ class LegBounds {
                   std::span<const char> usable, std::vector<double>& label);
 
   private:
+    void begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
+                       std::span<const double> start, std::vector<double>& label, std::vector<int>& before);
     bool find_cycle(std::span<const int> before, std::vector<int>& cycle);
 
     SearchClock* clock_ = nullptr;
     std::vector<std::uint64_t> open_;  ///< arcs whose label changed
     std::vector<int> colour_;
+    std::vector<int> walk_;
 };
 
 /// Raises the multipliers of a cycle's cones equally until the cycle costs nothing.

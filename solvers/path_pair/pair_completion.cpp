@@ -21,6 +21,7 @@ void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Inc
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
     second_multiplier_.assign(at(graph.cone_count()), 0.0);
+    second_before_.clear();
 }
 
 double PairCompletion::cutoff(double tolerance) const {

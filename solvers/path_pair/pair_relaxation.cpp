@@ -36,6 +36,7 @@ void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const 
     decisions_ = &decisions;
     clock_ = &clock;
     bounds_.bind(clock);
+    for (Legs& legs : legs_) legs.before.clear();  // the search must not depend on the one before
 }
 
 bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
