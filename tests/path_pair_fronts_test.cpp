@@ -5,10 +5,13 @@
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/front_beam.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/onward_tables.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
+#include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
@@ -55,6 +58,24 @@ struct Fronts {
 
     bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
         return fronts.build(residual, dominated, limit, most_fronts);
+    }
+
+    /// Every walk on from a front to a last one that costs less than `limit`, by plain recursion.
+    void for_each_walk_on(int f, double cost, double limit, std::vector<int>& arcs,
+                          const std::function<void(double)>& visit) const {
+        if (fronts.is_last(f)) visit(cost);
+        for (const FrontGraph::Step& step : fronts.steps(f)) {
+            const double next = cost + fronts.cost(step);
+            if (!(next + fronts.onward(step.to) < limit)) continue;
+            if (step.arc >= 0) arcs.push_back(step.arc);
+            for_each_walk_on(step.to, next, limit, arcs, visit);
+            if (step.arc >= 0) arcs.pop_back();
+        }
+    }
+
+    FrontSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
+        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
+        return search.run(fronts, edges, tables, {1e-9, width, most_labels}, stopped);
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -116,6 +137,7 @@ struct Fronts {
     DominatedEdges dominated;
     FrontGraph fronts;
     Incumbent incumbent;
+    OnwardTables tables;
     FrontSearch search;
 };
 
@@ -231,6 +253,112 @@ TEST(PathPairFrontGraph, GivesUpWhereToldTo) {
     EXPECT_FALSE(s.build());
 }
 
+/// Dominated edges that are looked for while the fronts are built leave fewer of them, no lower bound and the
+/// best pair.
+TEST(PathPairFrontGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_fronts = false});
+    int fewer = 0;
+    int with_lane = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 24), seed);
+        const std::optional<double> best = solver->solve(s.problem, {}).objective;
+        if (!best) continue;
+        ++with_lane;
+        const double cutoff = *best + 4.0;
+        const double limit = cutoff + s.relaxation.offset();
+        ASSERT_TRUE(s.build(limit));
+        const int all = s.fronts.size();
+        const double bound = s.fronts.find_onward(limit);
+        ASSERT_TRUE(s.fronts.build(s.residual, s.dominated, limit, kAny, &s.edges));
+        EXPECT_LE(s.fronts.size(), all);
+        fewer += s.fronts.size() < all ? 1 : 0;
+        EXPECT_GE(s.fronts.find_onward(limit), bound - 1e-9);
+        s.incumbent.reset(s.graph, cutoff);
+        s.run(FrontSearch::kAnyWidth, kAny);
+        EXPECT_NEAR(s.incumbent.cutoff(), *best, 1e-9);
+    }
+    EXPECT_GT(with_lane, 20);
+    EXPECT_GT(fewer, 3);
+}
+
+/// A walk on that costs x more than the cheapest one uses no edge whose regret is above x, and nothing that
+/// an arc excludes whose detour is above x.
+TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
+    std::size_t walks = 0;
+    int regrets = 0;
+    int detours = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 10), seed);
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable);
+        if (bound == kUnreachable) continue;
+        const double gap = 1.5;
+        s.fronts.drop(bound + gap);
+        s.tables.find(s.fronts, s.edges, bound + gap, true, s.stopped);
+        for (int f = 0; f < s.fronts.size(); ++f) {
+            const double onward = s.fronts.onward(f);
+            std::vector<int> arcs;
+            s.for_each_walk_on(f, 0.0, onward + gap, arcs, [&](double cost) {
+                if (!(cost < onward + gap)) return;
+                ++walks;
+                const int most = s.tables.quanta_below(cost - onward);
+                for (const int a : arcs) ASSERT_LE(s.tables.regrets(f)[s.edges.number(a)], most);
+                for (int a = 0; a < s.residual.size(); ++a) {
+                    const bool excludes = std::ranges::any_of(arcs, [&](int b) {
+                        return EdgeSets::contains(s.edges.lost_after(a), s.edges.number(b));
+                    });
+                    if (excludes) continue;
+                    ASSERT_LE(s.tables.detour(f, a), most);
+                }
+            });
+            for (int a = 0; a < s.residual.size(); ++a) {
+                const Quanta regret = s.tables.regrets(f)[s.edges.number(a)];
+                regrets += regret > 0 && regret < kTooMany ? 1 : 0;
+                const Quanta detour = s.tables.detour(f, a);
+                detours += detour > 0 && detour < kTooMany ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(walks, 500u);
+    EXPECT_GT(regrets, 100);
+    EXPECT_GT(detours, 100);
+}
+
+/// A beam of one beginning at each arc runs along both boundaries of a straight lane.
+TEST(PathPairFrontBeam, FindsTheStraightLane) {
+    Fronts s(straight_problem(), 1);
+    FrontBeam beam;
+    beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    beam.run(s.residual, s.edges, 1e-9, 1);
+    ASSERT_TRUE(s.incumbent.found());
+    EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(s.problem, {}).objective, 1e-9);
+}
+
+TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int best_found = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        FrontBeam beam;
+        beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+        beam.run(s.residual, s.edges, 1e-9, 8);
+        if (!best.objective) {
+            EXPECT_FALSE(s.incumbent.found());
+            continue;
+        }
+        ++with_lane;
+        if (!s.incumbent.found()) continue;
+        EXPECT_GE(s.incumbent.cutoff(), *best.objective - 1e-9);
+        best_found += s.incumbent.cutoff() < *best.objective + 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(2 * best_found, with_lane);
+}
+
 TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
@@ -244,11 +372,10 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
             continue;
         }
         // Of each front the cheapest beginning alone: a lane graph, but not always the best.
-        const FrontSearch::Outcome narrow = s.search.run(s.fronts, s.edges, {1e-9, 1, kAny}, s.stopped);
+        const FrontSearch::Outcome narrow = s.run(1, kAny);
         EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
-        ASSERT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
-                  FrontSearch::Outcome::exhausted);
+        ASSERT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::exhausted);
         ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
         if (!best.objective) continue;
         ++with_lane;
@@ -261,11 +388,9 @@ TEST(PathPairFrontSearch, StopsWhereToldTo) {
     Fronts s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
     s.fronts.find_onward(kUnreachable);
-    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, 5}, s.stopped),
-              FrontSearch::Outcome::stopped);
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, 5), FrontSearch::Outcome::stopped);
     s.is_stopped = true;
-    EXPECT_EQ(s.search.run(s.fronts, s.edges, {1e-9, FrontSearch::kAnyWidth, kAny}, s.stopped),
-              FrontSearch::Outcome::stopped);
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::stopped);
 }
 
 }  // namespace

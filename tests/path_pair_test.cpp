@@ -54,7 +54,7 @@ struct SceneWithMultipliers {
                 end.push_back(graph.near(residual.head[at]) ? kUnreachable : 0.25);
             }
             if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
-            raise_cycle(residual, cycle, reduced, multipliers.cone);
+            raise_cycles(residual, cycle, reduced, multipliers.cone);
             ++raised;
         } while (true);
         bounds.backward(residual, reduced, end, std::vector<char>(residual.arc.size(), 1), backward);
@@ -135,6 +135,32 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     }
 }
 
+/// What came before is a start, not more: labels are the same from the walks of other costs, from another
+/// graph's and from none.
+TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
+    LegBounds bounds;
+    std::vector<int> left_over;
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const SceneWithMultipliers s(seed);
+        std::vector<double> cold, warm;
+        std::vector<int> before, cycles;
+        ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, cold, before, cycles));
+        left_over.resize(s.residual.arc.size(), 0);
+        started += static_cast<int>(left_over.size());
+        ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, warm, left_over, cycles));
+        for (std::size_t a = 0; a < cold.size(); ++a) {
+            if (cold[a] < kUnreachable) {
+                EXPECT_NEAR(warm[a], cold[a], 1e-9);
+            } else {
+                EXPECT_EQ(warm[a], kUnreachable);
+            }
+        }
+    }
+    EXPECT_GT(started, 500);
+}
+
 /// A loop over a far square of cones costs less than 0: its multipliers rise until it costs 0, and no
 /// further.
 TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
@@ -163,7 +189,7 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
             if (residual.tail[a] == 0) start[a] = multipliers.cone[0];
         }
         if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
-        raise_cycle(residual, cycle, reduced, multipliers.cone);
+        raise_cycles(residual, cycle, reduced, multipliers.cone);
         ASSERT_LT(++raised, 20);
     }
     EXPECT_GT(raised, 0);

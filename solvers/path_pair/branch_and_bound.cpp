@@ -17,15 +17,22 @@ constexpr double kLeastEndDoubt = 0.1;
 constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
 constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
+constexpr int kRootPatience = 8;
+constexpr double kRootLeastScale = 0.05;
 constexpr double kWorthwhile = 0.8;          ///< of the gap at which the fronts were too many, to try again
 constexpr std::int64_t kFewFronts = 2000;    ///< of the first try
 constexpr std::int64_t kWorkPerFront = 30;   ///< label updates of the ascent that allow one front
-constexpr std::size_t kMostFronts = 100000;  ///< of the last try, before a node branches
-constexpr std::size_t kMostFrontWords = 4'000'000;  ///< of their sets of edges, together
-constexpr std::size_t kMostLabels = 500000;
+constexpr std::size_t kMostFronts = 300000;  ///< of the last try, before a node branches
+constexpr std::size_t kMostFrontBytes = 200'000'000;  ///< of their tables, together
+constexpr std::size_t kMostLabels = 1000000;
 constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
-constexpr int kWideFronts = 500;    ///< from here on first a narrow search, for the incumbent
+constexpr int kWideFronts = 4000;   ///< from here on first a narrow search, for the incumbent, and detours
 constexpr std::size_t kNarrow = 2;  ///< labels a front
+constexpr int kBeams = 2;
+constexpr int kBeamSteps[kBeams] = {20, 60};  ///< of the root's ascent, or later
+constexpr std::size_t kBeamWidth = 8;
+constexpr double kTargets[] = {0.3, 0.6, 1.0};  ///< shares of the gap
+constexpr double kLeastTargetGap = 1.0;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr int kLargeGraph = 250;  ///< arcs
 constexpr int kNearArcs = 100;
@@ -72,6 +79,7 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     completion_.bind(graph_, relaxation_, incumbent_, clock_);
     fronts_.bind(relaxation_, stopped_);
     front_search_.bind(graph_, relaxation_, incumbent_);
+    beam_.bind(graph_, relaxation_, incumbent_, clock_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
     index_.assign(at(graph_.cone_count()), 0);
@@ -135,6 +143,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     begin_ascent(here);
     AscentState state;
     // The root looks for an incumbent of its own, whatever its near part found.
+    state.is_root = depth == 0;
     if (depth == 0) state.first_cutoff = incumbent_.cutoff();
     for (;; ++state.step) {
         if (stopped_()) return Verdict::stopped;
@@ -148,13 +157,15 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
         count_usage(here.graph);
         if (options_.complete_walks && state.step == state.next_completion) complete_walks(here.graph, state);
         if (state.value >= cutoff()) return Verdict::closed;
-        state.last = state.step + 1 >= most_steps || state.scale < kLeastScale;
+        state.last =
+            state.step + 1 >= most_steps || state.scale < (state.is_root ? kRootLeastScale : kLeastScale);
         if (state.last) {
             take_best_multipliers(here);
             if (relaxation_.evaluate(here.graph, multipliers_) == -kUnreachable) return Verdict::stopped;
         }
         if (options_.search_fronts) {
             const Verdict verdict = try_fronts(here.graph, state);
+            bound = std::max(bound, state.best);
             if (verdict != Verdict::open) return verdict;
         }
         if (state.last) break;
@@ -213,8 +224,13 @@ BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, A
     const bool promising = due && cutoff() - state.value < kWorthwhile * state.failed_gap;
     if (!state.last && !promising) return Verdict::open;
     const auto work_done = static_cast<std::size_t>(std::max(kFewFronts, state.work / kWorkPerFront));
-    const Verdict verdict = search_fronts(graph, state.last ? kMostFronts : work_done, kMostLabels);
+    const Verdict verdict =
+        state.last ? search_fronts_by_target(graph, state) : search_fronts(graph, work_done, kMostLabels);
     if (verdict == Verdict::open) {
+        if (state.is_root && !state.last && state.beams < kBeams && state.step >= kBeamSteps[state.beams]) {
+            ++state.beams;
+            beam_.run(graph, edge_sets_, tolerance_, kBeamWidth);
+        }
         state.failed_gap = cutoff() - state.value;
         state.work = 0;
     }
@@ -222,7 +238,7 @@ BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, A
 }
 
 void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
-    if (state.since_best < kPatience) {
+    if (state.since_best < (state.is_root ? kRootPatience : kPatience)) {
         ascent_.step(multipliers_, usage_, decisions_.visited(), incumbent_.cutoff() - state.value,
                      state.scale);
         return;
@@ -234,17 +250,33 @@ void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
     ascent_.restart(multipliers_);
 }
 
-BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
-                                                      std::size_t most_labels) {
+/// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
+/// fewer below a lower target; a pair that is found there is the best one, and where there is none the target
+/// is a bound.
+BranchAndBound::Verdict BranchAndBound::search_fronts_by_target(const ResidualGraph& graph,
+                                                                AscentState& state) {
+    const double incumbent = incumbent_.cutoff();
+    for (const double share : kTargets) {
+        const double target = state.best + share * (incumbent - state.best);
+        if (share < 1.0 && incumbent - target < kLeastTargetGap) continue;
+        incumbent_.set_cutoff(target);
+        const Verdict verdict = search_fronts(graph, kMostFronts, kMostLabels);
+        const bool found = incumbent_.cutoff() < target;
+        if (!found) incumbent_.set_cutoff(incumbent);
+        if (found || verdict != Verdict::closed) return verdict;
+        state.best = std::max(state.best, target - tolerance_);
+    }
+    return Verdict::closed;
+}
+
+BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph, std::size_t most_fronts) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
     edge_sets_.assign(graph_, graph, clock_);
     if (clock_.struck()) return Verdict::stopped;
     dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, clock_);
     if (clock_.struck()) return Verdict::stopped;
-    if (most_fronts != kAny) {
-        most_fronts = std::min(most_fronts, kMostFrontWords / std::max<std::size_t>(1, edge_sets_.words()));
-    }
-    if (!fronts_.build(graph, dominated_edges_, limit(), most_fronts)) {
+    if (!fronts_.build(graph, dominated_edges_, limit(), most_fronts,
+                       options_.drop_dominated_edges ? &edge_sets_ : nullptr)) {
         return stopped_() ? Verdict::stopped : Verdict::open;
     }
     double bound = fronts_.find_onward(limit());
@@ -257,19 +289,39 @@ BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph
     if (stopped_()) return Verdict::stopped;
     if (!(bound < limit())) return Verdict::closed;
     fronts_.drop(limit());
-    const std::size_t label_limit =
-        most_labels == kAny
-            ? kAny
-            : std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
+    fronts_are_built_ = true;
+    return Verdict::open;
+}
+
+void BranchAndBound::find_tables() {
+    onward_tables_.find(fronts_, edge_sets_, cutoff() + relaxation_.offset(), fronts_.size() >= kWideFronts,
+                        stopped_);
+}
+
+BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
+                                                      std::size_t most_labels) {
+    fronts_are_built_ = false;
+    const Verdict built = build_fronts(graph, most_fronts);
+    if (!fronts_are_built_) return built;
+    if (most_fronts != kAny && at(fronts_.size()) > kMostFrontBytes / OnwardTables::row_bytes(graph)) {
+        return Verdict::open;
+    }
+    if (most_labels != kAny) {
+        most_labels = std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
+    }
+    find_tables();
     for (const std::size_t width : {kNarrow, FrontSearch::kAnyWidth}) {
         if (stopped_()) return Verdict::stopped;
         if (width == kNarrow && fronts_.size() < kWideFronts) continue;
         const double before = incumbent_.cutoff();
-        const FrontSearch::Outcome outcome =
-            front_search_.run(fronts_, edge_sets_, {tolerance_, width, label_limit}, stopped_);
+        const FrontSearch::Outcome outcome = front_search_.run(fronts_, edge_sets_, onward_tables_,
+                                                               {tolerance_, width, most_labels}, stopped_);
         if (outcome == FrontSearch::Outcome::exhausted) return Verdict::closed;
         if (outcome == FrontSearch::Outcome::stopped) break;
-        if (incumbent_.cutoff() < before) fronts_.drop(limit());
+        if (incumbent_.cutoff() < before) {
+            fronts_.drop(cutoff() + relaxation_.offset());
+            find_tables();
+        }
     }
     return stopped_() ? Verdict::stopped : Verdict::open;
 }

@@ -4,10 +4,12 @@
 #include "solvers/path_pair/clique_separation.hpp"
 #include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
+#include "solvers/path_pair/front_beam.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/multipliers.hpp"
+#include "solvers/path_pair/onward_tables.hpp"
 #include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/search_clock.hpp"
@@ -64,6 +66,8 @@ class BranchAndBound {
     /// The ascent at a node, step by step.
     struct AscentState {
         int step = 0;
+        bool is_root = false;
+        int beams = 0;                 ///< run so far
         bool last = false;             ///< the ascent ends with this step
         double value = -kUnreachable;  ///< the bound at this step's multipliers
         double best = -kUnreachable;
@@ -89,6 +93,11 @@ class BranchAndBound {
     /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
     /// Precondition: the relaxation was evaluated on the node's graph.
     Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
+    Verdict search_fronts_by_target(const ResidualGraph& graph, AscentState& state);
+    /// Builds the fronts and drops what it can. Closed where nothing is left.
+    Verdict build_fronts(const ResidualGraph& graph, std::size_t most_fronts);
+    Verdict search_labels(std::size_t width, std::size_t most_labels);
+    void find_tables();
     bool fix(Node& here);
     struct Branching {
         enum class On { nothing, end, edge } on;
@@ -116,7 +125,9 @@ class BranchAndBound {
     EdgeSets edge_sets_;
     DominatedEdges dominated_edges_;
     FrontGraph fronts_;
+    OnwardTables onward_tables_;
     FrontSearch front_search_;
+    FrontBeam beam_;
     Ascent ascent_;
     Usage usage_;
     Multipliers multipliers_;       ///< of the current step
@@ -129,6 +140,7 @@ class BranchAndBound {
     std::vector<char> keep_successor_;
     std::vector<char> edge_alive_;
     std::vector<int> walk_edges_;
+    bool fronts_are_built_ = false;
     double open_bound_ = 0.0;
     std::int64_t nodes_ = 0;
 };

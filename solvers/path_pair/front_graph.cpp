@@ -9,6 +9,7 @@ namespace {
 
 // Smaller gains are rounding.
 constexpr double kGain = 1e-12;
+constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
 constexpr int kFrontsPerClock = 256;
 constexpr std::size_t kMostFirstFronts = 1'000'000;
@@ -69,7 +70,8 @@ int FrontGraph::number(const Front& wanted) {
     now_.forward.push_back(kUnreachable);
     now_.begin.push_back(0);
     now_.end.push_back(0);  // no steps yet: the first one is at 1 or later
-    if (open_.size() * 64 < now_.fronts.size()) open_.push_back(0);
+    next_open_.push_back(kNotOpen);
+    if (edges_ != nullptr) dominated_.resize(dominated_.size() + edges_->words(), ~std::uint64_t{0});
     return size() - 1;
 }
 
@@ -99,7 +101,11 @@ void FrontGraph::begin(double limit) {
                 number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
             now_.forward[at(f)] = start;
             starts_.push_back(f);
-            open_[at(f) / 64] |= std::uint64_t{1} << (at(f) % 64);
+            if (edges_ != nullptr) {
+                intersect_with_union(dominated_.data() + at(f) * edges_->words(), edges_->lost_after(a),
+                                     edges_->lost_after(b), edges_->words());
+            }
+            open(f);
         }
     }
     stack_.clear();
@@ -140,8 +146,11 @@ void FrontGraph::add_steps(int f, double limit) {
 }
 
 bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-                       std::size_t most_fronts) {
+                       std::size_t most_fronts, const EdgeSets* edges) {
     residual_ = &residual;
+    edges_ = edges;
+    dominated_.clear();
+    if (edges_ != nullptr) nothing_.assign(edges_->words(), 0);
     dominated_of_arcs_ = &dominated;
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
         relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
@@ -149,8 +158,11 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
     now_.clear();
     now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
     starts_.clear();
-    open_.clear();
-    std::ranges::fill(table_, -1);
+    next_open_.clear();
+    open_at_.assign(residual.arc.size(), -1);
+    open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
+    moving_ = 0;
+    table_.assign(kFewSlots, -1);
     until_clock_ = 0;
     is_stopped_ = false;
     begin(limit);
@@ -158,41 +170,70 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
         stack_.clear();
         return false;
     }
-    for (bool again = true; again;) {
-        again = false;
-        for (std::size_t word = 0; word < open_.size(); ++word) {
-            while (open_[word] != 0) {
-                const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
-                open_[word] &= open_[word] - 1;
-                if (out_of_time()) return false;
-                const Front here = front(f);
-                const std::vector<double>& leg_onward = leg_onward_[at(here.moving_kind)];
-                const double forward = now_.forward[at(f)];
-                const double waiting =
-                    here.ended ? 0.0
-                               : leg_onward_[at(relaxation_->other(here.moving_kind))][at(here.waiting)];
-                if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) continue;
-                if (now_.end[at(f)] == 0) add_steps(f, limit);
-                for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
-                    const int arc = now_.steps[p].arc;
-                    const double label = forward + cost(now_.steps[p]);
-                    const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
-                    if (!(label + on + waiting < limit)) continue;
-                    if (now_.steps[p].to < 0) {
-                        now_.steps[p].to = number(after(here, arc));
-                        if (now_.fronts.size() > most_fronts) return false;
-                    }
-                    const std::size_t to = at(now_.steps[p].to);
-                    if (label < now_.forward[to] - kGain) {
-                        now_.forward[to] = label;
-                        open_[to / 64] |= std::uint64_t{1} << (to % 64);
-                        again |= to / 64 < word;
-                    }
+    // Arc by arc: steps lead to fronts whose moving arc mostly comes later.
+    for (again_ = true; again_;) {
+        again_ = false;
+        for (std::size_t word = 0; word < open_arcs_.size(); ++word) {
+            while (open_arcs_[word] != 0) {
+                moving_ = static_cast<int>(word * 64) + std::countr_zero(open_arcs_[word]);
+                open_arcs_[word] &= open_arcs_[word] - 1;
+                for (int f = std::exchange(open_at_[at(moving_)], -1); f >= 0;) {
+                    const int next = std::exchange(next_open_[at(f)], kNotOpen);
+                    if (out_of_time() || !extend(f, limit, most_fronts)) return false;
+                    f = next;
                 }
             }
         }
     }
     order();
+    return true;
+}
+
+void FrontGraph::open(int f) {
+    if (next_open_[at(f)] != kNotOpen) return;
+    const std::size_t arc = at(front(f).moving);
+    next_open_[at(f)] = std::exchange(open_at_[arc], f);
+    open_arcs_[arc / 64] |= std::uint64_t{1} << (arc % 64);
+    again_ |= arc / 64 < at(moving_) / 64;
+}
+
+/// Every walk up to a front loses these edges: one more walk comes to `to`. True where the set shrinks.
+bool FrontGraph::narrow_dominated(int from, int to, int arc) {
+    if (edges_ == nullptr) return false;
+    const std::size_t words = edges_->words();
+    const std::uint64_t* const own = arc < 0 ? nothing_.data() : edges_->lost_after(arc);
+    return intersect_with_union(dominated_.data() + at(to) * words, dominated_.data() + at(from) * words, own,
+                                words);
+}
+
+/// Lowers the forward costs of the fronts after this one. False where there are too many.
+bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
+    const Front here = front(f);
+    const std::vector<double>& leg_onward = leg_onward_[at(here.moving_kind)];
+    const double forward = now_.forward[at(f)];
+    const double waiting =
+        here.ended ? 0.0 : leg_onward_[at(relaxation_->other(here.moving_kind))][at(here.waiting)];
+    if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) return true;
+    if (now_.end[at(f)] == 0) add_steps(f, limit);
+    for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+        const int arc = now_.steps[p].arc;
+        if (edges_ != nullptr && arc >= 0 &&
+            EdgeSets::contains(dominated_.data() + at(f) * edges_->words(), edges_->number(arc))) {
+            continue;
+        }
+        const double label = forward + cost(now_.steps[p]);
+        const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
+        if (!(label + on + waiting < limit)) continue;
+        if (now_.steps[p].to < 0) {
+            now_.steps[p].to = number(after(here, arc));
+            if (now_.fronts.size() > most_fronts) return false;
+        }
+        const int to = now_.steps[p].to;
+        const bool narrowed = narrow_dominated(f, to, arc);
+        const bool cheaper = label < now_.forward[at(to)] - kGain;
+        if (cheaper) now_.forward[at(to)] = label;
+        if (cheaper || narrowed) open(to);
+    }
     return true;
 }
 

@@ -43,11 +43,11 @@ class FrontGraph {
     }
 
     /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
-    /// forward(f). False where there are more than `most_fronts`, or stopped.
-    /// Precondition: the relaxation was evaluated on the residual graph. `limit`: with offset, here and
-    /// below.
+    /// forward(f). With `edges`, steps by edges that every walk up to their front has lost are left out on
+    /// the way. False where there are more than `most_fronts`, or stopped. Precondition: the relaxation was
+    /// evaluated on the residual graph. `limit`: with offset, here and below.
     bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-               std::size_t most_fronts);
+               std::size_t most_fronts, const EdgeSets* edges = nullptr);
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
     double find_onward(double limit);
@@ -91,6 +91,9 @@ class FrontGraph {
     bool out_of_time();
 
     void begin(double limit);
+    void open(int f);
+    bool narrow_dominated(int from, int to, int arc);
+    bool extend(int f, double limit, std::size_t most_fronts);
     void add_steps(int f, double limit);
     [[nodiscard]] Front after(const Front& front, int arc) const;
     int number(const Front& wanted);
@@ -104,14 +107,19 @@ class FrontGraph {
     bool is_stopped_ = false;
     const ResidualGraph* residual_ = nullptr;
     const DominatedEdges* dominated_of_arcs_ = nullptr;
+    const EdgeSets* edges_ = nullptr;                ///< of the build, if it looks for dominated edges
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
     Arrays now_;
     std::vector<int> starts_;
 
     // Scratch.
     Arrays old_;
-    std::vector<int> table_;  ///< front by slot, linear probing
-    std::vector<std::uint64_t> open_;
+    std::vector<int> table_;      ///< front by slot, linear probing
+    std::vector<int> open_at_;    ///< by moving arc, the first of its open fronts
+    std::vector<int> next_open_;  ///< by front
+    std::vector<std::uint64_t> open_arcs_;
+    int moving_ = 0;      ///< the arc whose fronts are extended
+    bool again_ = false;  ///< an arc before it has open fronts
     std::vector<int> index_;
     std::vector<int> order_;
     std::vector<int> stack_;

@@ -35,36 +35,6 @@ bool FrontSearch::out_of_time(std::size_t work) {
     return is_stopped_;
 }
 
-void FrontSearch::find_reach() {
-    reach_.assign(at(fronts_->size()) * words_, 0);
-    changed_.assign(at(fronts_->size()), 0);
-    bool again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = fronts_->size(); f-- > 0;) {
-            if (out_of_time(1 + fronts_->steps(f).size())) return;
-            std::uint64_t* const mine = reach_.data() + at(f) * words_;
-            std::uint64_t change = 0;
-            for (const FrontGraph::Step& step : fronts_->steps(f)) {
-                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
-                const std::uint64_t* const theirs = reach_.data() + at(step.to) * words_;
-                for (std::size_t w = 0; w < words_; ++w) {
-                    change |= theirs[w] & ~mine[w];
-                    mine[w] |= theirs[w];
-                }
-                if (step.arc < 0) continue;
-                const std::size_t number = edges_->number(step.arc);
-                const std::uint64_t bit = std::uint64_t{1} << (number % 64);
-                change |= bit & ~mine[number / 64];
-                mine[number / 64] |= bit;
-            }
-            if (change == 0) continue;
-            changed_[at(f)] = sweep;
-            again = true;
-        }
-    }
-}
-
 void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
     const std::uint64_t* const more = edges_->lost_after(arc);
     for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
@@ -93,10 +63,12 @@ void FrontSearch::begin() {
     }
 }
 
-FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
+FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges,
+                                      const OnwardTables& tables, const Limits& limits,
                                       const std::function<bool()>& stopped) {
     fronts_ = &fronts;
     edges_ = &edges;
+    tables_ = &tables;
     limits_ = limits;
     words_ = edges.words();
     labels_.clear();
@@ -108,8 +80,6 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
     work_ = kWorkPerClock;
     is_stopped_ = false;
     is_narrow_ = false;
-    find_reach();
-    if (is_stopped_) return Outcome::stopped;
     begin();
     again_ = true;
     while (again_) {
@@ -140,7 +110,9 @@ void FrontSearch::settle(int f) {
         const Label& label = labels_[at(l)];
         if (!(label.reduced + fronts_->onward(f) < limit())) continue;
         if (out_of_time(1 + kept_along_heading_.size())) return;
-        if (dominated(f, label, lost(l))) continue;
+        const int most = tables_->quanta_below(limit() - label.reduced - fronts_->onward(f));
+        if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
+        if (dominated(label, lost(l), most)) continue;
         if (kept_along_heading_.size() >= limits_.width) {
             is_narrow_ = true;
             return;
@@ -156,10 +128,28 @@ void FrontSearch::settle(int f) {
     }
 }
 
-/// By one that is kept. What is expanded costs no more.
-bool FrontSearch::dominated(int f, const Label& label, const std::uint64_t* lost) {
-    const std::uint64_t* const reach = reach_.data() + at(f) * words_;
-    for (std::size_t w = 0; w < words_; ++w) wanted_[w] = any_lost_[w] & reach[w] & ~lost[w];
+/// Whether every walk on that uses none of the edges lost by some arc of the label has a detour above `most`.
+bool FrontSearch::detour_reaches_limit(int l, int most) const {
+    const int f = labels_[at(l)].front;
+    for (;; l = labels_[at(l)].before) {
+        const Label& label = labels_[at(l)];
+        if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
+        if (label.before >= 0) continue;
+        const FrontGraph::Front& start = fronts_->front(label.front);
+        return tables_->detour(f, start.moving) > most || tables_->detour(f, start.waiting) > most;
+    }
+}
+
+/// By one that is kept, which costs no more. What completes this label below the limit uses no edge whose
+/// regret is above `most`.
+bool FrontSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
+    const Quanta* regret = tables_->regrets(label.front);
+    for (std::size_t w = 0; w < words_; ++w, regret += 64) {
+        wanted_[w] = any_lost_[w] & ~lost[w];
+        for (std::uint64_t bits = wanted_[w]; bits != 0; bits &= bits - 1) {
+            if (regret[std::countr_zero(bits)] > most) wanted_[w] ^= bits & (~bits + 1);
+        }
+    }
     const std::uint64_t* rival = kept_lost_.data();
     for (const int along_heading : kept_along_heading_) {
         std::uint64_t missing = 0;

@@ -3,6 +3,7 @@
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/onward_tables.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,9 +16,11 @@ namespace conelane::path_pair {
 
 /// Pairs of legs by labels on the fronts. A label is the beginnings of both legs up to a front, with the
 /// edges that they have lost. Front by front, cheapest first; a label is dropped where
-///   - its reduced cost and the cheapest walk on reach the cutoff, or
+///   - its reduced cost and the cheapest walk on reach the cutoff, also where the walk must do without the
+///     edges that one of its arcs has lost, or
 ///   - another label of the front dominates it: that one costs no more (true costs, without multipliers), has
-///     as many edges along the heading, and has lost no edge on any walk on that this one still has.
+///     as many edges along the heading, and has lost no edge that this one still has and that a walk on below
+///     the cutoff uses.
 /// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
 class FrontSearch {
   public:
@@ -35,9 +38,10 @@ class FrontSearch {
         std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
         std::size_t most_labels;
     };
-    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found.
-    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const Limits& limits,
-                const std::function<bool()>& stopped);
+    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
+    /// the tables are theirs.
+    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
+                const Limits& limits, const std::function<bool()>& stopped);
 
   private:
     struct Label {
@@ -50,13 +54,13 @@ class FrontSearch {
         double reduced;
     };
 
-    void find_reach();
     void begin();
     void take(int arc, Label& label, std::uint64_t* lost) const;
     void wait(Label label);
     [[nodiscard]] bool out_of_time(std::size_t work);
     void settle(int f);
-    [[nodiscard]] bool dominated(int f, const Label& label, const std::uint64_t* lost);
+    [[nodiscard]] bool detour_reaches_limit(int label, int most) const;
+    [[nodiscard]] bool dominated(const Label& label, const std::uint64_t* lost, int most);
     void expand(int label);
     void offer(int label);
     /// With offset.
@@ -70,6 +74,7 @@ class FrontSearch {
     Incumbent* incumbent_ = nullptr;
     const FrontGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
+    const OnwardTables* tables_ = nullptr;
     Limits limits_{};
     const std::function<bool()>* stopped_ = nullptr;
     std::size_t work_ = 0;  ///< since the clock was looked at
@@ -77,8 +82,6 @@ class FrontSearch {
     bool is_narrow_ = false;  ///< the width left a label out
 
     std::size_t words_ = 0;
-    std::vector<std::uint64_t> reach_;  ///< by front: edges on some walk on
-    std::vector<int> changed_;          ///< by front, the sweep that changed its reach last
     std::vector<Label> labels_;
     std::vector<std::uint64_t> lost_;  ///< by label
     std::vector<int> waiting_;         ///< by front, the label that came last

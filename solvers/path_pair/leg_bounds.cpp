@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace conelane::path_pair {
 namespace {
@@ -17,16 +18,14 @@ constexpr std::size_t kWorkPerArc = 50;
 
 bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> reduced,
                         std::span<const double> start, std::vector<double>& label, std::vector<int>& before,
-                        std::vector<int>& cycle) {
+                        std::vector<int>& cycles) {
     const std::size_t size = graph.arc.size();
-    label.resize(size);
-    before.assign(size, -1);
+    begin_forward(graph, reduced, start, label, before);
     open_.assign((size + 63) / 64, 0);
     for (std::size_t a = 0; a < size; ++a) {
-        label[a] = start[a] + reduced[a];
         if (label[a] < kUnreachable) open_[a / 64] |= std::uint64_t{1} << (a % 64);
     }
-    std::size_t until_check = 3 * size + 64;
+    std::size_t until_check = size + 64;
     std::size_t until_clock = kArcsPerClock;
     for (bool again = true; again;) {
         again = false;
@@ -35,8 +34,8 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
                 const std::size_t a = word * 64 + static_cast<std::size_t>(std::countr_zero(open_[word]));
                 open_[word] &= open_[word] - 1;
                 if (--until_check == 0) {
-                    if (find_cycle(before, cycle)) return false;
-                    until_check = size;
+                    if (find_cycles(before, cycles)) return false;
+                    until_check = size / 2 + 1;
                 }
                 if (--until_clock == 0) {
                     if (clock_ != nullptr && clock_->out_of_time(kArcsPerClock * kWorkPerArc)) return true;
@@ -58,6 +57,45 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
         }
     }
     return true;
+}
+
+/// The labels of the walks that `before` describes, each as far as its graph has it.
+void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
+                              std::span<const double> start, std::vector<double>& label,
+                              std::vector<int>& before) {
+    const std::size_t size = graph.arc.size();
+    label.resize(size);
+    if (before.size() != size) {
+        before.assign(size, -1);
+        for (std::size_t a = 0; a < size; ++a) label[a] = start[a] + reduced[a];
+        return;
+    }
+    enum : int { unknown, on_the_way, known };
+    colour_.assign(size, unknown);
+    for (std::size_t last = 0; last < size; ++last) {
+        walk_.clear();
+        for (auto a = static_cast<int>(last); a >= 0 && colour_[static_cast<std::size_t>(a)] == unknown;
+             a = before[static_cast<std::size_t>(a)]) {
+            colour_[static_cast<std::size_t>(a)] = on_the_way;
+            walk_.push_back(a);
+        }
+        for (; !walk_.empty(); walk_.pop_back()) {
+            const auto b = static_cast<std::size_t>(walk_.back());
+            colour_[b] = known;
+            label[b] = start[b] + reduced[b];
+            const int a = std::exchange(before[b], -1);
+            if (a < 0 || colour_[static_cast<std::size_t>(a)] != known) continue;  // a cycle is cut open
+            const auto* const first = graph.in_arc.data() + graph.in_start[b];
+            const auto* const end = graph.in_arc.data() + graph.in_start[b + 1];
+            const auto* const found = std::find(first, end, a);
+            if (found == end) continue;
+            const double turn = graph.in_cost[static_cast<std::size_t>(found - graph.in_arc.data())];
+            const double on = label[static_cast<std::size_t>(a)] + turn + reduced[b];
+            if (!(on < label[b])) continue;
+            label[b] = on;
+            before[b] = a;
+        }
+    }
 }
 
 void LegBounds::backward(const ResidualGraph& graph, std::span<const double> reduced,
@@ -98,7 +136,8 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
     }
 }
 
-bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle) {
+bool LegBounds::find_cycles(std::span<const int> before, std::vector<int>& cycles) {
+    cycles.clear();
     colour_.assign(before.size(), -1);
     for (std::size_t first = 0; first < before.size(); ++first) {
         auto a = static_cast<int>(first);
@@ -107,32 +146,45 @@ bool LegBounds::find_cycle(std::span<const int> before, std::vector<int>& cycle)
             a = before[static_cast<std::size_t>(a)];
         }
         if (a < 0 || colour_[static_cast<std::size_t>(a)] != static_cast<int>(first)) continue;
-        cycle.clear();
+        const auto begin = static_cast<std::ptrdiff_t>(cycles.size());
         int member = a;
         do {
-            cycle.push_back(member);
+            cycles.push_back(member);
             member = before[static_cast<std::size_t>(member)];
         } while (member != a);
-        std::ranges::reverse(cycle);
-        return true;
+        std::reverse(cycles.begin() + begin, cycles.end());
+        cycles.push_back(-1);
     }
-    return false;
+    return !cycles.empty();
 }
 
-void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
-                 std::vector<double>& cone_multiplier) {
-    double cost = 0.0;
-    for (std::size_t k = 0; k < cycle.size(); ++k) {
-        const auto a = static_cast<std::size_t>(cycle[k]);
-        const int next = cycle[(k + 1) % cycle.size()];
-        const auto* const first = graph.out_arc.data() + graph.out_start[a];
-        const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];
-        cost += reduced[a] +
+void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::span<const double> reduced,
+                  std::vector<double>& cone_multiplier) {
+    const auto head = [&](int arc) { return graph.head[static_cast<std::size_t>(arc)]; };
+    for (std::size_t begin = 0; begin < cycles.size();) {
+        const auto past = static_cast<std::size_t>(
+            std::find(cycles.begin() + static_cast<std::ptrdiff_t>(begin), cycles.end(), -1) -
+            cycles.begin());
+        const std::span<const int> before = cycles.first(begin);
+        const std::span<const int> cycle = cycles.subspan(begin, past - begin);
+        begin = past + 1;
+        const bool shares_cone = std::ranges::any_of(cycle, [&](int arc) {
+            return std::ranges::any_of(before,
+                                       [&](int other) { return other >= 0 && head(other) == head(arc); });
+        });
+        if (shares_cone) continue;
+        double cost = 0.0;
+        for (std::size_t k = 0; k < cycle.size(); ++k) {
+            const auto a = static_cast<std::size_t>(cycle[k]);
+            const int next = cycle[(k + 1) % cycle.size()];
+            const auto* const first = graph.out_arc.data() + graph.out_start[a];
+            const auto* const last = graph.out_arc.data() + graph.out_start[a + 1];
+            cost +=
+                reduced[a] +
                 graph.out_cost[static_cast<std::size_t>(std::find(first, last, next) - graph.out_arc.data())];
-    }
-    const double raise = std::max(kAboveZero - cost, kAboveZero) / static_cast<double>(cycle.size());
-    for (const int a : cycle) {
-        cone_multiplier[static_cast<std::size_t>(graph.head[static_cast<std::size_t>(a)])] += raise;
+        }
+        const double raise = std::max(kAboveZero - cost, kAboveZero) / static_cast<double>(cycle.size());
+        for (const int arc : cycle) cone_multiplier[static_cast<std::size_t>(head(arc))] += raise;
     }
 }
 

@@ -20,10 +20,12 @@ class LegBounds {
     void bind(SearchClock& clock) { clock_ = &clock; }
 
     /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
-    /// gains from a cycle without end; `cycle` then holds the arcs of one.
+    /// gains from a cycle without end; `cycles` then holds the arcs of one or more, each followed by -1.
+    /// `before`, the tree of the walks, may come in as it was left by a call for similar costs: the labels
+    /// start from its walks.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
                                std::span<const double> start, std::vector<double>& label,
-                               std::vector<int>& before, std::vector<int>& cycle);
+                               std::vector<int>& before, std::vector<int>& cycles);
 
     /// `end` by arc: the cost of ending with it. Arcs that `usable` does not mark are as if absent.
     /// Precondition: no cycle of usable arcs has a negative cost.
@@ -31,15 +33,19 @@ class LegBounds {
                   std::span<const char> usable, std::vector<double>& label);
 
   private:
-    bool find_cycle(std::span<const int> before, std::vector<int>& cycle);
+    void begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
+                       std::span<const double> start, std::vector<double>& label, std::vector<int>& before);
+    bool find_cycles(std::span<const int> before, std::vector<int>& cycles);
 
     SearchClock* clock_ = nullptr;
     std::vector<std::uint64_t> open_;  ///< arcs whose label changed
     std::vector<int> colour_;
+    std::vector<int> walk_;
 };
 
-/// Raises the multipliers of a cycle's cones equally until the cycle costs nothing.
-void raise_cycle(const ResidualGraph& graph, std::span<const int> cycle, std::span<const double> reduced,
-                 std::vector<double>& cone_multiplier);
+/// Raises the multipliers of each cycle's cones equally until the cycle costs nothing. A cycle that shares a
+/// cone with one before it is left as it is: it may no longer gain.
+void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::span<const double> reduced,
+                  std::vector<double>& cone_multiplier);
 
 }  // namespace conelane::path_pair

@@ -21,6 +21,7 @@ void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Inc
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
     second_multiplier_.assign(at(graph.cone_count()), 0.0);
+    second_before_.clear();
 }
 
 double PairCompletion::cutoff(double tolerance) const {
@@ -97,10 +98,10 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
         offset = reduce_second_costs(residual, second_kind);
         budget -= residual.size();
         const bool bounded = bounds_.forward(residual, second_reduced_, second_start_, second_forward_,
-                                             second_before_, cycle_);
+                                             second_before_, cycles_);
         if (clock_->out_of_time(residual.out_arc.size())) return false;
         if (!bounded) {
-            raise_cycle(residual, cycle_, second_reduced_, second_multiplier_);
+            raise_cycles(residual, cycles_, second_reduced_, second_multiplier_);
             continue;
         }
         ++round;

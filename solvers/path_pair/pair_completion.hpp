@@ -49,7 +49,7 @@ class PairCompletion {
     std::vector<double> second_forward_;
     std::vector<int> second_before_;
     std::vector<int> second_walk_;
-    std::vector<int> cycle_;
+    std::vector<int> cycles_;
     std::vector<int> visits_;
     std::vector<char> taken_;
     std::vector<std::uint64_t> blocked_;

@@ -36,6 +36,7 @@ void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const 
     decisions_ = &decisions;
     clock_ = &clock;
     bounds_.bind(clock);
+    for (Legs& legs : legs_) legs.before.clear();  // the search must not depend on the one before
 }
 
 bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
@@ -64,13 +65,13 @@ double PairRelaxation::evaluate(const ResidualGraph& residual, Multipliers& mult
     for (int kind = 0; kind < system_->kind_count; ++kind) {
         Legs& legs = legs_[at(kind)];
         const bool bounded =
-            bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycle_);
+            bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycles_);
         if (clock_->out_of_time(residual.out_arc.size())) return -kUnreachable;
         if (bounded) {
             pick_ends(residual, kind);
             continue;
         }
-        raise_cycle(residual, cycle_, reduced_, multipliers.cone);
+        raise_cycles(residual, cycles_, reduced_, multipliers.cone);
         reduce_arc_costs(residual, multipliers);
         kind = -1;  // the multipliers rose: all kinds again
     }

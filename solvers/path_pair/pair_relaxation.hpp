@@ -128,7 +128,7 @@ class PairRelaxation {
     std::array<Legs, 2> legs_;
     std::vector<double> reduced_;
     std::vector<double> edge_multiplier_;
-    std::vector<int> cycle_;
+    std::vector<int> cycles_;
     std::vector<char> reachable_;
     std::vector<double> onward_end_;
     std::array<std::vector<int>, 2> walks_;
