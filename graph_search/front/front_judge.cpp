@@ -78,6 +78,11 @@ float score_input(double score) {
     return std::clamp(static_cast<float>(score) / kScore, -kMost, kMost);
 }
 
+/// Without what the search adds for FrontEvidence.
+double plain(const FrontSearch::Node& node) {
+    return node.score - node.bonus;
+}
+
 double probability_of(double log_odds) {
     return 1.0 / (1.0 + std::exp(-log_odds));
 }
@@ -103,17 +108,19 @@ FrontJudge::FrontJudge(const FrontWeights& weights)
       least_trust_(weights.least_trust) {}
 
 void FrontJudge::look(FrontSearch& search, std::span<const Contender> contenders) {
+    scores_.clear();
+    for (const Contender& lane : contenders) scores_.push_back(lane.score - search.node(lane.node).bonus);
     double sum = 0.0;
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        probability_[i] = std::exp(contenders[i].score - contenders.front().score);
+        probability_[i] = std::exp(scores_[i] - scores_.front());
         sum += probability_[i];
     }
     for (std::size_t i = 0; i < contenders.size(); ++i) probability_[i] /= sum;
     find_steps(search, contenders);
     find_shared(search);
-    see_cones(search, contenders);
+    see_cones(search);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
-        see_lane(search, contenders, i);
+        see_lane(search, contenders[i], i);
         rank_[i] = static_cast<double>(rank_network_.score(features_[i]));
     }
     order_.resize(contenders.size());
@@ -183,10 +190,10 @@ void FrontJudge::find_shared(FrontSearch& search) {
     }
 }
 
-void FrontJudge::see_cones(FrontSearch& search, std::span<const Contender> contenders) {
+void FrontJudge::see_cones(FrontSearch& search) {
     least_share_.resize(steps_.size());
-    const double lane_lead = contenders.size() > 1 ? contenders[0].score - contenders[1].score
-                                                   : static_cast<double>(kMost * kScore);
+    const double lane_lead =
+        scores_.size() > 1 ? scores_[0] - scores_[1] : static_cast<double>(kMost * kScore);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         Step& step = steps_[i];
         const FrontSearch::Node& node = search.node(step.node);
@@ -197,10 +204,10 @@ void FrontJudge::see_cones(FrontSearch& search, std::span<const Contender> conte
             share += probability_[static_cast<std::size_t>(std::countr_zero(rest))];
         const auto best = static_cast<std::size_t>(std::countr_zero(with));
         const auto rival = static_cast<std::size_t>(std::countr_one(with));
-        const double lead = rival < contenders.size() ? contenders[best].score - contenders[rival].score
-                                                      : static_cast<double>(kMost * kScore);
+        const double lead =
+            rival < scores_.size() ? scores_[best] - scores_[rival] : static_cast<double>(kMost * kScore);
         least_share_[i] = std::min(static_cast<float>(share), is_first ? 1.0F : least_share_[step.parent]);
-        const double own_score = is_first ? node.score : node.score - search.node(node.parent).score;
+        const double own_score = is_first ? plain(node) : plain(node) - plain(search.node(node.parent));
         step.inputs = {is_first ? 1.0F : 0.0F,
                        score_input(own_score),
                        score_input(static_cast<double>(node.margin)),
@@ -221,8 +228,7 @@ void FrontJudge::see_cones(FrontSearch& search, std::span<const Contender> conte
     }
 }
 
-void FrontJudge::see_lane(FrontSearch& search, std::span<const Contender> contenders, std::size_t contender) {
-    const Contender& lane = contenders[contender];
+void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_t contender) {
     const FrontSearch::Node& end = search.node(lane.node);
     const std::vector<std::uint32_t>& path = paths_[contender];
     float least_lead = kMost;
@@ -283,13 +289,13 @@ void FrontJudge::see_lane(FrontSearch& search, std::span<const Contender> conten
     const double both_m = length_m[kLeft] + length_m[kRight];
     const auto moves = static_cast<float>(path.size());
     const double view_m = std::max(search.map().view_radius_m(), 1.0);
-    features_[contender] = {score_input(contenders.front().score - lane.score),
+    features_[contender] = {score_input(scores_.front() - scores_[contender]),
                             static_cast<float>(probability_[contender]),
                             static_cast<float>(shared_m / both_m),
                             static_cast<float>(shared_m / expected_m_),
                             least_lead,
                             least_share,
-                            score_input(lane.score / static_cast<double>(moves)),
+                            score_input(scores_[contender] / static_cast<double>(moves)),
                             least_score,
                             least_margin,
                             static_cast<float>(right_near),

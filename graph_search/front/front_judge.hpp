@@ -36,6 +36,9 @@ class FrontJudge {
     /// Throws as `validate`.
     explicit FrontJudge(const FrontWeights& weights);
 
+    /// What a search adds for FrontEvidence counts where the contenders are ordered, and nowhere else: the
+    /// networks know of none.
+    ///
     /// Precondition: one contender at least and at most kContenders, the one of the highest score first, each
     /// with two cones a side.
     void look(FrontSearch& search, std::span<const Contender> contenders);
@@ -69,8 +72,8 @@ class FrontJudge {
     };
     void find_steps(const FrontSearch& search, std::span<const Contender> contenders);
     void find_shared(FrontSearch& search);
-    void see_cones(FrontSearch& search, std::span<const Contender> contenders);
-    void see_lane(FrontSearch& search, std::span<const Contender> contenders, std::size_t contender);
+    void see_cones(FrontSearch& search);
+    void see_lane(FrontSearch& search, const Contender& lane, std::size_t contender);
 
     FrontNetwork rank_network_;
     FrontNetwork usable_network_;
@@ -82,6 +85,7 @@ class FrontJudge {
     std::vector<float> least_share_;            ///< of each step: of it and all before it
     std::vector<Shared> shared_;
     std::array<std::vector<std::uint32_t>, kContenders> paths_;
+    std::vector<double> scores_;  ///< of the contenders, without bonus
     std::array<double, kContenders> probability_{};
     std::array<double, kContenders> rank_{};
     std::array<WholeLaneFeatures, kContenders> features_{};

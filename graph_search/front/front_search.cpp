@@ -181,6 +181,8 @@ std::size_t FrontSearch::add(const Candidate& candidate) {
     if (candidate.parent == kNone) {
         const auto& [left, right] = starts_.pairs[candidate.start];
         node.state = start_state(map_, starts_.cones[kLeft][left], starts_.cones[kRight][right]);
+        node.bonus =
+            bonus(kLeft, node.state.ends[kLeft].cones[0]) + bonus(kRight, node.state.ends[kRight].cones[0]);
         node.bits.fill(0);
         for (const FrontEnd& end : node.state.ends) node.bits[word_of(end.cones[0])] |= bit_of(end.cones[0]);
     } else {
@@ -188,6 +190,8 @@ std::size_t FrontSearch::add(const Candidate& candidate) {
             return kNone;
         node.state = moved(map_, nodes_[candidate.parent].state, candidate.side, candidate.move);
         node.bits = nodes_[candidate.parent].bits;
+        node.bonus = nodes_[candidate.parent].bonus;
+        if (!candidate.move.stops()) node.bonus += bonus(candidate.side, candidate.move.to);
         if (!candidate.move.stops()) node.bits[word_of(candidate.move.to)] |= bit_of(candidate.move.to);
     }
     nodes_.push_back(node);

@@ -46,6 +46,7 @@ class FrontSearch {
         Side side;           ///< that moved
         std::size_t start;   ///< place in FrontStarts::pairs
         float margin;        ///< see Candidate
+        double bonus;        ///< what of the score is FrontEvidence
         std::array<std::uint64_t, 4>
             bits;  ///< of the lane's cones; each stands for all cones of the same remainder
     };
