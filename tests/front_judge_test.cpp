@@ -176,7 +176,7 @@ TEST(FrontJudge, DetectorSaysWhatItThinksOfItsBestLanes) {
     const Scene scene = tests::random_scene(3, 24);
     const LaneAnswer plain = detector->detect(scene, tests::kNoTimeLimit);
     ASSERT_EQ(plain.status, LaneStatus::found);
-    EXPECT_FALSE(plain.enumeration);
+    EXPECT_TRUE(plain.enumeration.value().candidates.empty());
     DetectionLimits limits = tests::kNoTimeLimit;
     limits.keep_candidates = true;
     const LaneAnswer answer = detector->detect(scene, limits);

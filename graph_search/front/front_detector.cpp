@@ -49,13 +49,14 @@ class FrontDetector final : public LaneDetector {
         front_.begin(scene, cost_, options_, evidence_ ? &*evidence_ : nullptr);
         front_.run(budget);
         answer.stopped_by = budget.stopped_by;
+        answer.enumeration = {front_.expanded(), !answer.stopped_by && !front_.left_out(), {}};
         if (choose(budget.stopped_by.has_value())) {
             answer.status = LaneStatus::found;
             answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
             answer.confidence = judge_.confidence(chosen_);
             answer.trusted_m =
                 judge_.trusted_m(front_, chosen_, {cones_[kLeft].size(), cones_[kRight].size()});
-            if (limits.keep_candidates) add_best_lanes(scene, answer);
+            if (limits.keep_candidates) add_best_lanes(scene, *answer.enumeration);
             if (evidence_) evidence_->remember(answer.lane);
         } else if (!answer.stopped_by) {
             const bool left_out = front_.left_out() || front_.finished().size() > FrontJudge::kContenders;
@@ -104,10 +105,7 @@ class FrontDetector final : public LaneDetector {
         return false;
     }
 
-    void add_best_lanes(const Scene& scene, LaneAnswer& answer) {
-        Enumeration& best = answer.enumeration.emplace();
-        best.iterations = front_.expanded();
-        best.complete = !answer.stopped_by && !front_.left_out();
+    void add_best_lanes(const Scene& scene, Enumeration& best) {
         for (const std::size_t place : judge_.order()) {
             if (!take(contenders_[place].node)) continue;
             Lane lane{ids(kLeft, scene), ids(kRight, scene)};

@@ -29,7 +29,8 @@ struct FrontOptions {
 ///
 /// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
 /// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
-/// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence.
+/// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence. Enumeration counts
+/// the states that moved, and says `complete` where no lane that the rules allow was left out.
 ///
 /// Where no lane was found before time or memory was spent, a boundary is looked for that is seen alone (see
 /// BoundarySearch): three cones at least, the other side of the answer empty. The bonus of the last lane has

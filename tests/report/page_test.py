@@ -117,7 +117,7 @@ class ReportPage(unittest.TestCase):
             self.assertTrue(name in self.page.ids, name)
         absent = "".join(re.findall(r'<div class="absent">(.*?)</div>', self.text, flags=re.S))
         self.assertEqual(re.findall(r"<b>(.*?)</b>", absent),
-                         ["Methods from outside"] + ["Update against rebuild"] * (not BENCHMARKED))
+                         ["Confidence and trusted length", "Methods from outside"] + ["Update against rebuild"] * (not BENCHMARKED))
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
@@ -166,7 +166,6 @@ class ReportPage(unittest.TestCase):
                                                           "accurate_share", "solved_share", "complete_share")},
                       "steering": {k: row.get(k) for k in ("lateral_median_m", "lateral_p95_m", "heading_median_rad",
                                                            "heading_p95_rad", "unsteady_share")},
-                      "calibration-table": row["calibration"],
                       "latencies": {**row["latency_ms"], "within_budget_share": row["within_budget_share"]},
                       "categories": row["share"]}
             for table, values in stored.items():
@@ -355,6 +354,10 @@ class ReportPage(unittest.TestCase):
             self.assertIn('class="missed"', text)
             self.assertIn('class="driven"', text)
             self.assertIn("IoU unknown", text)
+            for condition in ("paper", "car"):
+                self.assertIn(f'id="calibration-{condition}"', text)
+            said = re.search(r'<div class="table" id="calibration-table">.*?</table>', text, flags=re.S)[0]
+            self.assertEqual(said.count(">99.50<"), 12)  # right where trusted: three methods, conditions and rates
             by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
             self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
             headline = re.search(r'<div class="table" id="headline">.*?</table>', text, flags=re.S)[0]
@@ -366,6 +369,7 @@ class ReportPage(unittest.TestCase):
             text, data = self.made_of(folder, Setup(conditions=("",), old=True))
             self.assertIn("success in ", text)
             self.assertNotIn('id="failure-causes"', text)
+            self.assertNotIn('id="calibration-table"', text)
             self.assertNotIn(">condition<", text)
             self.assertEqual({lap["condition"] for lap in data["laps"]}, {""})
 
