@@ -98,11 +98,10 @@ class FrontDetector final : public LaneDetector {
         }
         if (contenders_.empty()) return false;
         judge_.look(front_, contenders_);
-        for (const std::size_t place : judge_.order()) {
+        return std::ranges::any_of(judge_.order(), [&](std::size_t place) {
             chosen_ = place;
-            if (take(contenders_[place].node)) return true;
-        }
-        return false;
+            return take(contenders_[place].node);
+        });
     }
 
     void add_best_lanes(const Scene& scene, Enumeration& best) {

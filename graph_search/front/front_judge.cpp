@@ -263,7 +263,7 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
         if (std::min(length_m[kLeft], length_m[kRight]) < kNear_m) right_near = right;
         if (node.parent == kNone) continue;
         const float* const move = cone.data() + kConeFeatures + kStateFeatures;
-        const double segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
+        const auto segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
         length_m[node.side] += segment_m;
         shared_m += static_cast<double>(cone[3]) * segment_m;
         longest = std::max(longest, move[kLength]);
