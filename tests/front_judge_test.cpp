@@ -81,6 +81,21 @@ std::vector<double> softmax(const std::vector<FrontJudge::Contender>& contenders
     return result;
 }
 
+TEST(FrontJudge, LooksUpWhatTheTableNames) {
+    const auto name = [](std::size_t place) { return extend_feature_table()[place].name; };
+    EXPECT_EQ(name(ExtendPlace::kLength), "length");
+    EXPECT_EQ(name(ExtendPlace::kLogRatioOwnSize), "log_ratio_own_size");
+    EXPECT_EQ(name(ExtendPlace::kTurnSize), "turn_size");
+    EXPECT_EQ(name(ExtendPlace::kTurnChangeSize), "turn_change_size");
+    EXPECT_EQ(name(ExtendPlace::kWidth), "width");
+    EXPECT_EQ(name(ExtendPlace::kWidthDeviation), "width_deviation");
+    EXPECT_EQ(name(ExtendPlace::kInside), "inside");
+    EXPECT_EQ(name(ExtendPlace::kBesideInward), "beside_inward");
+    EXPECT_EQ(name(ExtendPlace::kBesideOutward), "beside_outward");
+    EXPECT_EQ(name(ExtendPlace::kBridges), "bridges");
+    EXPECT_EQ(name(ExtendPlace::kViewLeft), "view_left");
+}
+
 TEST(FrontJudge, WithoutWeightsKeepsTheOrderOfTheSearch) {
     const Judged judged(tests::random_scene(3, 24), random_front_weights(1));
     ASSERT_GT(judged.contenders.size(), 2U);

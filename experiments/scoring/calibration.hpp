@@ -26,7 +26,6 @@ class Calibration {
 
     /// By confidence, from [0, 0.1) to [0.9, 1].
     [[nodiscard]] const std::array<Bin, kBins>& bins() const { return bins_; }
-    [[nodiscard]] std::size_t lanes() const { return lanes_; }
     /// Expected calibration error: mean over the lanes of |confidence - share usable| of their bin.
     [[nodiscard]] std::optional<double> error() const;
     /// Of the lanes with a confidence of kSure at least, the share that is usable.

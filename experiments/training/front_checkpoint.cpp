@@ -62,7 +62,8 @@ std::string describe_training(const std::vector<Track>& courses, const FrontTrai
         {"judge",
          {{"steps", options.judge_steps},
           {"learning_rate", options.judge_rate},
-          {"trusted", options.trusted}}}};
+          {"trusted", options.trusted},
+          {"trust_draws", options.trust_draws}}}};
     return json.dump();
 }
 

@@ -260,8 +260,8 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
         bool usable = false;
         bool exact = false;
         double iou = 0.0;
-        double confidence = 0.0;
-        double trusted_m = 0.0;
+        std::optional<double> confidence;
+        std::optional<double> trusted_m;
         double length_m = 0.0;
         std::optional<double> divergence_m;
     };
@@ -280,9 +280,12 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
                     const LaneAnswer answer = detector->detect(scene.scene, limits);
                     const SceneScore scored =
                         score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
-                    rows[i] = {scored.usable().value_or(false), scored.category == Category::ground_truth,
-                               scored.iou.value_or(0.0),        answer.confidence.value_or(0.0),
-                               answer.trusted_m.value_or(0.0),  scored.lane_length_m,
+                    rows[i] = {scored.usable().value_or(false),
+                               scored.category == Category::ground_truth,
+                               scored.iou.value_or(0.0),
+                               scored.confidence,
+                               scored.trusted_m,
+                               scored.lane_length_m,
                                scored.divergence_distance_m};
                 }
             });
@@ -294,8 +297,8 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
         figures.usable += row.usable ? 1.0 : 0.0;
         figures.exact += row.exact ? 1.0 : 0.0;
         figures.iou += row.iou;
-        figures.calibration.add(row.confidence, row.usable);
-        figures.calibration.add_trust(row.trusted_m, row.length_m, row.divergence_m);
+        if (row.confidence) figures.calibration.add(*row.confidence, row.usable);
+        if (row.trusted_m) figures.calibration.add_trust(*row.trusted_m, row.length_m, row.divergence_m);
     }
     const auto count = static_cast<double>(rows.size());
     figures.usable /= count;

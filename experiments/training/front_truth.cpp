@@ -5,7 +5,6 @@
 #include "experiments/scoring/score.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace conelane::experiments {
 namespace {
@@ -70,9 +69,8 @@ bool FrontTruth::is_usable(const Cones& lane, const TrackBoundaries& boundaries)
     if (lane[kLeft].size() < 2 || lane[kRight].size() < 2) return false;
     const LaneOutline predicted = outline_in_world(lane);
     const LaneOutline truth = outline_in_world(cones_);
-    if (const std::optional<double> divergence = divergence_m(predicted, truth, boundaries))
-        return *divergence >= kCriticalDivergence_m;
-    return lane_length_m(predicted) >= std::min(kUsableLength_m, kTooShortShare * lane_length_m(truth));
+    return experiments::is_usable(lane_length_m(predicted), lane_length_m(truth),
+                                  divergence_m(predicted, truth, boundaries));
 }
 
 std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,

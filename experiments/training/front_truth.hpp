@@ -20,7 +20,7 @@ struct FrontRiskOptions {
 };
 
 /// The ground truth of a scene as FrontMap sees it, and what others are worth beside it. The scene and the
-/// boundaries must outlive it. Reuses the memory of the one before.
+/// map must outlive it. Reuses the memory of the one before.
 class FrontTruth {
   public:
     using Cones = std::array<std::vector<Vertex>, 2>;

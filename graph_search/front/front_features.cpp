@@ -320,9 +320,8 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     float smoothest = 2.0F;
     for (std::size_t i = 0; i < moves; ++i) {
         const float* const extension = extensions.data() + i * kExtendFeatures;
-        constexpr std::size_t kLogRatioSize = 2;
-        constexpr std::size_t kTurnChangeSize = 8;
-        smoothest = std::min(smoothest, extension[kTurnChangeSize] + extension[kLogRatioSize]);
+        smoothest = std::min(
+            smoothest, extension[ExtendPlace::kTurnChangeSize] + extension[ExtendPlace::kLogRatioOwnSize]);
     }
     const double distance_m = at.norm();
     return {scaled(next.norm() - view_m, kLength_m, kFarBeyond),

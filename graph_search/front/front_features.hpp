@@ -26,6 +26,23 @@ inline constexpr std::size_t kStartFeatures = 24;
 inline constexpr std::size_t kExtendInputs = kStateFeatures + kExtendFeatures;
 inline constexpr std::size_t kStopInputs = kStateFeatures + kStopFeatures;
 
+/// Where ExtendFeatures has what others look up.
+struct ExtendPlace {
+    enum : std::size_t {
+        kLength = 0,
+        kLogRatioOwnSize = 2,
+        kTurnSize = 6,
+        kTurnChangeSize = 8,
+        kWidth = 13,
+        kWidthDeviation = 14,
+        kInside = 18,
+        kBesideInward = 19,
+        kBesideOutward = 20,
+        kBridges = 25,
+        kViewLeft = 26,
+    };
+};
+
 [[nodiscard]] std::span<const FrontFeature, kStateFeatures> state_feature_table();
 [[nodiscard]] std::span<const FrontFeature, kExtendFeatures> extend_feature_table();
 [[nodiscard]] std::span<const FrontFeature, kStopFeatures> stop_feature_table();

@@ -55,21 +55,6 @@ constexpr std::array<FrontFeature, kWholeLaneFeatures> kWholeLaneTable{{
     {"cones_off", "1", "logarithm of the cones of the scene over those of the lane"},
 }};
 
-// Where ExtendFeatures has what a lane is judged by.
-enum Extend : std::size_t {
-    kLength = 0,
-    kLogRatioOwnSize = 2,
-    kTurnSize = 6,
-    kTurnChangeSize = 8,
-    kWidth = 13,
-    kWidthDeviation = 14,
-    kInside = 18,
-    kBesideInward = 19,
-    kBesideOutward = 20,
-    kBridges = 25,
-    kViewLeft = 26,
-};
-
 constexpr double kNear_m = 20.0;
 constexpr float kScore = 4.0F;
 constexpr float kMost = 2.0F;
@@ -266,18 +251,18 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
         const auto segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
         length_m[node.side] += segment_m;
         shared_m += static_cast<double>(cone[3]) * segment_m;
-        longest = std::max(longest, move[kLength]);
-        bridges += move[kBridges];
-        inside += move[kInside];
-        inward += move[kBesideInward];
-        outward += move[kBesideOutward];
-        narrowest = std::min(narrowest, move[kWidth]);
-        widest = std::max(widest, move[kWidth]);
-        deviation += move[kWidthDeviation];
-        turn_change += move[kTurnChangeSize];
-        largest_turn = std::max(largest_turn, move[kTurnSize]);
-        log_ratio += move[kLogRatioOwnSize];
-        view_left[node.side] = move[kViewLeft];
+        longest = std::max(longest, move[ExtendPlace::kLength]);
+        bridges += move[ExtendPlace::kBridges];
+        inside += move[ExtendPlace::kInside];
+        inward += move[ExtendPlace::kBesideInward];
+        outward += move[ExtendPlace::kBesideOutward];
+        narrowest = std::min(narrowest, move[ExtendPlace::kWidth]);
+        widest = std::max(widest, move[ExtendPlace::kWidth]);
+        deviation += move[ExtendPlace::kWidthDeviation];
+        turn_change += move[ExtendPlace::kTurnChangeSize];
+        largest_turn = std::max(largest_turn, move[ExtendPlace::kTurnSize]);
+        log_ratio += move[ExtendPlace::kLogRatioOwnSize];
+        view_left[node.side] = move[ExtendPlace::kViewLeft];
     }
     // Of both stops the last one is no state of its own.
     double worst_stop = lane.ended ? lane.score - end.score : 0.0;
