@@ -28,19 +28,17 @@ inline constexpr std::size_t kStopInputs = kStateFeatures + kStopFeatures;
 
 /// Where ExtendFeatures has what others look up.
 struct ExtendPlace {
-    enum : std::size_t {
-        kLength = 0,
-        kLogRatioOwnSize = 2,
-        kTurnSize = 6,
-        kTurnChangeSize = 8,
-        kWidth = 13,
-        kWidthDeviation = 14,
-        kInside = 18,
-        kBesideInward = 19,
-        kBesideOutward = 20,
-        kBridges = 25,
-        kViewLeft = 26,
-    };
+    static constexpr std::size_t kLength = 0;
+    static constexpr std::size_t kLogRatioOwnSize = 2;
+    static constexpr std::size_t kTurnSize = 6;
+    static constexpr std::size_t kTurnChangeSize = 8;
+    static constexpr std::size_t kWidth = 13;
+    static constexpr std::size_t kWidthDeviation = 14;
+    static constexpr std::size_t kInside = 18;
+    static constexpr std::size_t kBesideInward = 19;
+    static constexpr std::size_t kBesideOutward = 20;
+    static constexpr std::size_t kBridges = 25;
+    static constexpr std::size_t kViewLeft = 26;
 };
 
 [[nodiscard]] std::span<const FrontFeature, kStateFeatures> state_feature_table();
