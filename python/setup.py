@@ -1,5 +1,7 @@
 """Builds the module of the package with the CMake project around this folder."""
+import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +10,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 PROJECT = Path(__file__).resolve().parent.parent
+BUILD = PROJECT / "build" / "pip"  # all that is made on the way, so that this folder stays clean
 
 
 def project_version() -> str:
@@ -19,18 +22,25 @@ def project_version() -> str:
 
 
 class CMakeBuild(build_ext):
-    """The one extension is a target of CMake."""
+    """The one extension is a target of CMake, made in CONELANE_BUILD_DIR where that names a configured build."""
 
     def build_extension(self, ext: Extension) -> None:
-        build = Path(self.build_temp).resolve() / "cmake"
-        module = Path(self.get_ext_fullpath(ext.name)).resolve()
+        build = Path(os.environ.get("CONELANE_BUILD_DIR", BUILD / f"cmake-{sys.implementation.cache_tag}"))
+        if "CONELANE_BUILD_DIR" not in os.environ:
+            self.configure(build)
+        subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python", "--parallel"], check=True)
+        target = Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(build / "python" / "conelane" / target.name, target)
+
+    @staticmethod
+    def configure(build: Path) -> None:
         options = [
             "-DCMAKE_BUILD_TYPE=Release",
             "-DCONELANE_PYTHON=ON",
             "-DCONELANE_BUILD_EXPERIMENTS=OFF",
             "-DBUILD_TESTING=OFF",
             f"-DPython_EXECUTABLE={sys.executable}",
-            f"-DCONELANE_PYTHON_MODULE_DIR={module.parent}",
         ]
         try:
             import pybind11  # of pip's build environment; else CMake finds the system's
@@ -39,8 +49,12 @@ class CMakeBuild(build_ext):
         except ImportError:
             pass
         subprocess.run(["cmake", "-S", str(PROJECT), "-B", str(build), *options], check=True)
-        subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python", "--parallel"], check=True)
 
 
-setup(version=project_version(), ext_modules=[Extension("conelane._core", sources=[])],
-      cmdclass={"build_ext": CMakeBuild})
+(BUILD / "info").mkdir(parents=True, exist_ok=True)
+setup(
+    version=project_version(),
+    ext_modules=[Extension("conelane._core", sources=[])],
+    cmdclass={"build_ext": CMakeBuild},
+    options={"build": {"build_base": str(BUILD)}, "egg_info": {"egg_base": str(BUILD / "info")}},
+)

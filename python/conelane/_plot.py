@@ -7,6 +7,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from numpy.typing import NDArray
 
     from . import Lane
 
@@ -17,7 +18,7 @@ _CONE = "#8a8a8a"
 _CENTRE = "#00936f"
 
 
-def _draw_boundary(ax: Axes, points: np.ndarray, closed: bool, color: str, label: str) -> None:
+def _draw_boundary(ax: Axes, points: NDArray[np.float64], closed: bool, color: str, label: str) -> None:
     if closed:
         points = np.vstack([points, points[:1]])
     ax.plot(points[:, 0], points[:, 1], "o-", color=color, label=label, markersize=5)

@@ -12,6 +12,7 @@ from enum import IntEnum
 from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import Color, Detector, Lane
 
@@ -52,7 +53,9 @@ _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _STEP_M = 0.1  # of the line that a path is read off
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
 
-Intermediate = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Intermediate = Tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, IntArray, IntArray]
 
 
 class _ConeMemory:
@@ -63,7 +66,7 @@ class _ConeMemory:
         self._ids = np.zeros(0, dtype=np.int64)
         self._next = 0
 
-    def ids_of(self, cones: np.ndarray) -> np.ndarray:
+    def ids_of(self, cones: FloatArray) -> IntArray:
         ids = np.full(len(cones), -1, dtype=np.int64)
         distance = np.linalg.norm(cones[:, None, :] - self._places[None, :, :], axis=2)
         new, old = np.nonzero(distance <= _SAME_CONE_M)
@@ -104,9 +107,13 @@ class PathPlanner:
 
     Notes
     -----
-    What differs from ft-fsd-path-planning: the path begins at the car's foot point on the centre line, and at the car
-    itself only where the lane begins ahead of it; where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
-    where no cone is; no virtual cones are made up, so the arrays with virtual cones are those of the sorted ones.
+    What differs from ft-fsd-path-planning:
+
+    - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
+      ahead of it.
+    - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
+      where no cone is. The path ends too where a cone of a side has the colour of the other one.
+    - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones.
 
     Examples
     --------
@@ -141,15 +148,15 @@ class PathPlanner:
         self._points = points
         self._time_limit_ms = time_limit_ms
         self._memory = _ConeMemory()
-        self._last_path: Optional[np.ndarray] = None
+        self._last_path: Optional[FloatArray] = None
 
     def calculate_path_in_global_frame(
         self,
-        cones: Sequence[np.ndarray],
-        vehicle_position: np.ndarray,
-        vehicle_direction: Union[np.ndarray, float],
+        cones: Sequence[FloatArray],
+        vehicle_position: FloatArray,
+        vehicle_direction: Union[FloatArray, float],
         return_intermediate_results: bool = False,
-    ) -> Union[np.ndarray, Intermediate]:
+    ) -> Union[FloatArray, Intermediate]:
         """Path ahead of the car.
 
         Parameters
@@ -195,8 +202,8 @@ class PathPlanner:
         left, right = lane.left_points, lane.right_points
         return path, left, right, left.copy(), right.copy(), _nearest(left, right), _nearest(right, left)
 
-    def _path_of(self, lane: Lane) -> Optional[np.ndarray]:
-        line = lane.centre_line(step_m=_STEP_M)
+    def _path_of(self, lane: Lane) -> Optional[FloatArray]:
+        line = _as_coloured(lane.centre_line(step_m=_STEP_M), lane)
         if len(line) < 2:
             return None
         rows = np.vstack([_way_to(line[0], lane.pose), line[:, [0, 1, 2, 4]]])  # s, x, y, curvature
@@ -204,17 +211,17 @@ class PathPlanner:
         s = np.linspace(0.0, min(self._length_m, rows[-1, 0]), self._points)
         return np.column_stack([s] + [np.interp(s, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
 
-    def _straight(self, pose: Tuple[float, float, float]) -> np.ndarray:
+    def _straight(self, pose: Tuple[float, float, float]) -> FloatArray:
         x, y, yaw = pose
         s = np.linspace(0.0, self._length_m, self._points)
         return np.column_stack([s, x + s * np.cos(yaw), y + s * np.sin(yaw), np.zeros_like(s)])
 
 
-def _merge(cones: Sequence[np.ndarray]) -> Tuple[np.ndarray, np.ndarray]:
+def _merge(cones: Sequence[FloatArray]) -> Tuple[FloatArray, IntArray]:
     """All cones as one array, with their colours."""
     if len(cones) != len(ConeTypes):
         raise ValueError(f"cones: {len(cones)} arrays, not {len(ConeTypes)} in the order of ConeTypes")
-    arrays: List[np.ndarray] = []
+    arrays: List[FloatArray] = []
     for kind, given in zip(ConeTypes, cones):
         array = np.asarray(given, dtype=float)
         if array.size and (array.ndim != 2 or array.shape[1] != 2):
@@ -226,7 +233,7 @@ def _merge(cones: Sequence[np.ndarray]) -> Tuple[np.ndarray, np.ndarray]:
     return np.concatenate(arrays), colors
 
 
-def _pose(position: np.ndarray, direction: Union[np.ndarray, float]) -> Tuple[float, float, float]:
+def _pose(position: FloatArray, direction: Union[FloatArray, float]) -> Tuple[float, float, float]:
     place = np.asarray(position, dtype=float)
     if place.shape != (2,):
         raise ValueError(f"vehicle_position: has shape {place.shape}, not (2,)")
@@ -238,7 +245,24 @@ def _pose(position: np.ndarray, direction: Union[np.ndarray, float]) -> Tuple[fl
     return float(place[0]), float(place[1]), float(np.arctan2(along[1], along[0]))
 
 
-def _way_to(start: np.ndarray, pose: np.ndarray) -> np.ndarray:
+def _as_coloured(line: FloatArray, lane: Lane) -> FloatArray:
+    """A centre line as far as colours bear it out, since detectors do not look at them.
+
+    It ends beside the last cone of a side before the first one of the other side's colour; there is none where that is
+    the first or the second cone.
+    """
+    colors, places = lane.colors, lane.cones
+    for side, other in ((lane.left, Color.yellow), (lane.right, Color.blue)):
+        wrong = np.flatnonzero(colors[side] == other)
+        if len(wrong) and wrong[0] < 2:
+            return line[:0]
+        if len(wrong) and len(line):
+            last = places[side[wrong[0] - 1]]
+            line = line[: np.linalg.norm(line[:, 1:3] - last, axis=1).argmin() + 1]
+    return line
+
+
+def _way_to(start: FloatArray, pose: FloatArray) -> FloatArray:
     """Rows from the car up to the first row of a centre line that begins ahead of it; none where it does not.
 
     A cubic that leaves along the car and arrives along the lane.
@@ -258,7 +282,7 @@ def _way_to(start: np.ndarray, pose: np.ndarray) -> np.ndarray:
     return np.column_stack([np.zeros(len(t)), places, curvature])
 
 
-def _nearest(of: np.ndarray, among: np.ndarray) -> np.ndarray:
+def _nearest(of: FloatArray, among: FloatArray) -> IntArray:
     if not len(of) or not len(among):
         return np.full(len(of), -1)
     distance = np.linalg.norm(of[:, None, :] - among[None, :, :], axis=2)

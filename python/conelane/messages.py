@@ -14,9 +14,10 @@ array([0, 2])
 """
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Sequence, Union
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import Color
 
@@ -30,7 +31,7 @@ __all__ = [
     "to_pacsim",
 ]
 
-ArrayLike = Union[np.ndarray, Sequence[Any]]
+FloatArray = NDArray[np.float64]
 
 
 class Cones(NamedTuple):
@@ -48,10 +49,10 @@ class Cones(NamedTuple):
         None where the message has none.
     """
 
-    cones: np.ndarray
-    colors: np.ndarray
-    confidences: Optional[np.ndarray] = None
-    ids: Optional[np.ndarray] = None
+    cones: FloatArray
+    colors: NDArray[np.uint8]
+    confidences: Optional[FloatArray] = None
+    ids: Optional[NDArray[np.int64]] = None
 
 
 def _field(message: Any, path: str) -> Any:
@@ -69,27 +70,33 @@ def _has(message: Any, name: str) -> bool:
     return name in message if isinstance(message, dict) else hasattr(message, name)
 
 
-def _positions(points: Iterable[Any]) -> np.ndarray:
+def _positions(points: Iterable[Any]) -> FloatArray:
     rows = [(float(_field(point, "x")), float(_field(point, "y"))) for point in points]
     return np.array(rows, dtype=np.float64).reshape(-1, 2)
 
 
-def _point(position: np.ndarray) -> Dict[str, float]:
+def _point(position: FloatArray) -> Dict[str, float]:
     return {"x": float(position[0]), "y": float(position[1]), "z": 0.0}
 
 
-def _given(cones: ArrayLike, colors: Optional[ArrayLike]) -> "tuple[np.ndarray, List[Color]]":
+def _color(color: Any) -> Color:
+    return Color[color] if isinstance(color, str) else Color(int(color))
+
+
+def _given(cones: ArrayLike, colors: Optional[ArrayLike]) -> Tuple[FloatArray, List[Color]]:
     """Positions and colours of what is to become a message."""
-    positions = np.asarray(cones, dtype=np.float64).reshape(-1, 2) if np.size(cones) == 0 else np.asarray(
-        cones, dtype=np.float64)
+    positions = np.asarray(cones, dtype=np.float64)
+    if positions.size == 0:
+        positions = positions.reshape(0, 2)
     if positions.ndim != 2 or positions.shape[1] != 2:
         raise ValueError(f"cones: has shape {positions.shape}, not (N, 2)")
     if colors is None:
         return positions, [Color.unknown] * len(positions)
-    if len(colors) != len(positions):
-        raise ValueError(f"colors: {len(colors)} of them, not {len(positions)} as cones")
+    given = np.asarray(colors).tolist()
+    if len(given) != len(positions):
+        raise ValueError(f"colors: {len(given)} of them, not {len(positions)} as cones")
     try:
-        return positions, [Color[color] if isinstance(color, str) else Color(int(color)) for color in colors]
+        return positions, [_color(color) for color in given]
     except (KeyError, ValueError):
         raise ValueError("colors: only " + ", ".join(color.name for color in Color) + " and their codes") from None
 
@@ -134,7 +141,7 @@ def from_eufs(message: Any) -> Cones:
     >>> cones.cones.tolist(), cones.colors.tolist()
     ([[3.0, 1.0], [3.0, -2.0]], [1, 3])
     """
-    positions: List[np.ndarray] = []
+    positions: List[FloatArray] = []
     colors: List[int] = []
     for name, color in _EUFS_LISTS.items():
         of_list = _positions(_field(cone, "point") for cone in _field(message, name))
@@ -318,7 +325,8 @@ def to_pacsim(cones: ArrayLike, colors: Optional[ArrayLike] = None, confidences:
     """
     positions, kinds = _given(cones, colors)
     sure = np.ones(len(positions)) if confidences is None else np.asarray(confidences, dtype=np.float64)
-    if sure.shape != (len(positions),) or (ids is not None and len(ids) != len(positions)):
+    names = None if ids is None else np.asarray(ids)
+    if sure.shape != (len(positions),) or (names is not None and names.shape != (len(positions),)):
         raise ValueError(f"confidences and ids: not {len(positions)} of them as cones")
     detections: List[Dict[str, Any]] = []
     for i, (position, color) in enumerate(zip(positions, kinds)):
@@ -330,7 +338,7 @@ def to_pacsim(cones: ArrayLike, colors: Optional[ArrayLike] = None, confidences:
             "class_probabilities": probabilities,
             "detection_probability": float(sure[i]),
         }
-        if ids is not None:
-            detection["id"] = int(ids[i])
+        if names is not None:
+            detection["id"] = int(names[i])
         detections.append(detection)
     return {"detections": detections}

@@ -209,7 +209,7 @@ class Threads(unittest.TestCase):
             self.assertEqual(lanes, alone)
 
     def test_python_goes_on_while_a_search_runs(self):
-        cones = np.random.default_rng(1).uniform(-15.0, 15.0, (150, 2))  # no lane: the proof takes longer than the limit
+        cones = np.random.default_rng(1).uniform(-15.0, 15.0, (150, 2))  # the proof takes longer than the limit
         searched = threading.Event()
         lane = []
 

@@ -24,8 +24,9 @@ class InFolder(unittest.TestCase):
 
 class Scenes(InFolder):
     def test_a_scene_is_read_as_it_was_written(self):
-        scene = conelane.Scene(CONES, (0.5, -0.25, 0.1), ids=np.arange(7) + 3, colors=["blue", "yellow"] * 3 + ["orange"],
-                               confidences=np.linspace(0, 1, 7), id="a", ground_truth=TRUTH, track="t")
+        scene = conelane.Scene(CONES, (0.5, -0.25, 0.1), ids=np.arange(7) + 3,
+                               colors=["blue", "yellow"] * 3 + ["orange"], confidences=np.linspace(0, 1, 7),
+                               id="a", ground_truth=TRUTH, track="t")
         conelane.write_scenes(self.folder / "s.scenes.jsonl", [scene])
         again, = conelane.read_scenes(self.folder / "s.scenes.jsonl")
         for one in (scene, again):
@@ -47,7 +48,8 @@ class Scenes(InFolder):
         self.assertEqual((again[0].condition, again[0].false_positive_rate, again[0].range_m), ("car", 0.3, 30.0))
 
     def test_a_fault_is_named_with_file_line_and_key(self):
-        file = self.write("bad.scenes.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": "far", "y": 1}]}\n')
+        file = self.write("bad.scenes.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, '
+                          '"cones": [{"id": 1, "x": "far", "y": 1}]}\n')
         with self.assertRaisesRegex(ValueError, r"bad\.scenes\.jsonl:1: cones\[0\]\.x: "):
             conelane.read_scenes(file)
         with self.assertRaisesRegex(ValueError, "nowhere"):
@@ -93,7 +95,8 @@ class Lanes(InFolder):
         np.testing.assert_allclose(lane.centre_line()[:, 2], 0.5, atol=1e-9)
 
     def test_faults(self):
-        line = '{"scene": "%s", "method": "m", "status": "found", "left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n'
+        line = ('{"scene": "%s", "method": "m", "status": "found", '
+                '"left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n')
         for text, message in ((line % ("b", 10), r"l\.lanes\.jsonl:1: scene: 'b' is none of the scenes given"),
                               (line % ("a", 99), r"l\.lanes\.jsonl:1: .*99"),
                               ("{}\n", r"l\.lanes\.jsonl:1: ")):
@@ -176,7 +179,8 @@ class Rld(unittest.TestCase):
 
     def test_infeasible_and_stopped(self):
         none = conelane.solve_rld(CONES[:3], (0, 0, 0))
-        self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)), ("infeasible", (0, 2), None, 0))
+        self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)),
+                         ("infeasible", (0, 2), None, 0))
         self.assertEqual(conelane.solve_rld(CONES, (0, 0, 0), time_limit_ms=0).status, "time_limit")
 
     def test_parameters(self):

@@ -37,11 +37,11 @@ class Interface(unittest.TestCase):
         np.testing.assert_allclose(path[0, 1:3], [-5.0, 0.5])
         steps = np.diff(path[:, 1:3], axis=0)
         heading = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
-        self.assertAlmostEqual(heading[0], 0.1, places=2)
+        self.assertAlmostEqual(heading[0], 0.1, delta=0.01)
         np.testing.assert_allclose(np.linalg.norm(steps, axis=1), np.diff(path[:, 0]), rtol=1e-3)
         # The curvature is that of the way: it turns the heading from step to step.
         turned = np.cumsum(path[:-1, 3] * np.diff(path[:, 0]))
-        np.testing.assert_allclose(heading[0] + turned, heading, atol=0.02)
+        np.testing.assert_allclose(heading[0] + turned, heading, atol=0.03)
         np.testing.assert_allclose(path[path[:, 1] > 0.1, 2], 0.0, atol=1e-6)
 
     def test_a_path_of_the_length_that_is_asked_for(self):
@@ -78,6 +78,20 @@ class Interface(unittest.TestCase):
         path, left, right, *_, to_right, to_left = planner.calculate_path_in_global_frame(cones, HERE, AHEAD, True)
         self.assertEqual((len(left), len(right), to_right.tolist(), to_left.tolist()), (4, 0, [-1] * 4, []))
         np.testing.assert_allclose(path[:, 2], 1.5 - 3.5 / 2)  # half the usual width beside it
+
+    def test_a_path_ends_where_colours_contradict_the_lane(self):
+        def length(left_colors):
+            cones = by_type(RIGHT=[[x, -1.5] for x in (0, 4, 8, 12)])
+            for x, color in zip((0, 4, 8, 12), left_colors):
+                cones[ConeTypes[color]] = np.vstack([cones[ConeTypes[color]], [[x, 1.5]]])
+            planner = PathPlanner(MissionTypes.trackdrive)
+            found = planner.calculate_path_in_global_frame(cones, HERE, AHEAD)[-1, 0]
+            return None if planner._last_path is None else round(found, 6)
+
+        self.assertEqual(length(["BLUE", "BLUE", "BLUE", "BLUE"]), 12)
+        self.assertEqual(length(["BLUE", "ORANGE_BIG", "UNKNOWN", "BLUE"]), 12)
+        self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "BLUE"]), 4)
+        self.assertIsNone(length(["BLUE", "YELLOW", "BLUE", "BLUE"]))  # the last path, of which there is none
 
     def test_the_last_path_where_nothing_is_found(self):
         planner = PathPlanner(MissionTypes.trackdrive)
@@ -144,31 +158,38 @@ def crosses(path, wall):
 @unittest.skipIf(data() is None, "no recorded runs in CONELANE_DATA or in ../shared/data")
 class RecordedRuns(unittest.TestCase):
     def test_every_path_of_two_laps_stays_inside_the_coloured_boundaries(self):
+        from matplotlib.path import Path as Polygon
+
         track, = conelane.load_tracks(f"ftlog:{data() / 'fsg_19_2_laps.json'}")
         walls = [np.vstack([wall, wall[:1]]) for wall in (track.boundaries.left, track.boundaries.right)]
         planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=5000.0)
-        planned = 0
+        count = at_car = both = 0
         for i, (cones, position, direction) in enumerate(frames("fsg_19_2_laps")):
             path, left, right, *_ = planner.calculate_path_in_global_frame(cones, position, direction, True)
             self.assertEqual(path.shape, (40, 4))
             self.assertTrue(np.isfinite(path).all())
-            planned += len(left) > 0 and len(right) > 0
-            for wall in walls:
-                self.assertFalse(crosses(path[:, 1:3], wall), f"frame {i}")
-            # It begins at the car, which drives inside.
-            self.assertLess(np.linalg.norm(path[0, 1:3] - position), 3.0, f"frame {i}")
-        self.assertEqual(i, 439)
-        self.assertGreater(planned, 435)
+            places = path[:, 1:3]
+            inside = Polygon(walls[0]).contains_points(places) != Polygon(walls[1]).contains_points(places)
+            self.assertTrue(inside.all(), f"frame {i}")
+            self.assertFalse(crosses(places, walls[0]) or crosses(places, walls[1]), f"frame {i}")
+            count += 1
+            at_car += np.linalg.norm(path[0, 1:3] - position) < 1.0  # no path of an earlier frame
+            both += len(left) > 0 and len(right) > 0
+        self.assertEqual(count, 440)
+        self.assertGreater(at_car, 400)
+        self.assertGreater(both, 420)
 
     def test_every_frame_of_a_real_turn_has_a_path(self):
         planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=5000.0)
+        count = 0
         for i, (cones, position, direction) in enumerate(frames("one_turn")):
             path = planner.calculate_path_in_global_frame(cones, position, direction)
             self.assertEqual(path.shape, (40, 4))
             self.assertTrue(np.isfinite(path).all())
             self.assertLess(np.linalg.norm(path[0, 1:3] - position), 3.0, f"frame {i}")
-        self.assertEqual(i, 110)
+            count += 1
+        self.assertEqual(count, 111)
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)  # says what is skipped, and why

@@ -8,6 +8,7 @@ import conelane
 from conelane import Color, messages
 
 PLACES = [[3.0, 1.5], [3.5, -1.25], [7.0, 1.5], [7.0, -1.5]]
+KINDS = [Color.blue, Color.yellow, Color.orange, Color.orange, Color.unknown]
 COLORS = [Color.blue, Color.yellow, Color.orange, Color.unknown]
 
 
@@ -40,13 +41,14 @@ class Eufs(unittest.TestCase):
         for message in (self.MESSAGE, as_objects(self.MESSAGE)):
             cones = messages.from_eufs(message)
             self.assertEqual(cones.cones.tolist(), [[1, 2], [1, -2], [3, 2], [4, 2], [9, 0]])
-            self.assertEqual(cones.colors.tolist(), [Color.blue, Color.yellow, Color.orange, Color.orange, Color.unknown])
+            self.assertEqual(cones.colors.tolist(), KINDS)
             self.assertIsNone(cones.ids)
             self.assertIsNone(cones.confidences)
 
     def test_there_and_back(self):
         message = messages.to_eufs(PLACES, COLORS, covariances=np.arange(16.0).reshape(4, 4))
-        self.assertEqual(message["yellow_cones"], [{"point": {"x": 3.5, "y": -1.25, "z": 0.0}, "covariance": [4, 5, 6, 7]}])
+        self.assertEqual(message["yellow_cones"],
+                         [{"point": {"x": 3.5, "y": -1.25, "z": 0.0}, "covariance": [4, 5, 6, 7]}])
         again = messages.from_eufs(as_objects(message))
         self.assertEqual(cone_set(again), {(tuple(place), color) for place, color in zip(PLACES, COLORS)})
 
@@ -65,7 +67,7 @@ class FsTrack(unittest.TestCase):
         for message in (self.MESSAGE, as_objects(self.MESSAGE)):
             cones = messages.from_fs_track(message)
             self.assertEqual(cones.cones.tolist(), [[0, 0], [1, 2], [2, 4], [3, 6], [4, 8]])
-            self.assertEqual(cones.colors.tolist(), [Color.blue, Color.yellow, Color.orange, Color.orange, Color.unknown])
+            self.assertEqual(cones.colors.tolist(), KINDS)
 
     def test_there_and_back(self):
         message = messages.to_fs_track(PLACES, ["blue", "yellow", "orange", "unknown"])
@@ -94,7 +96,7 @@ class PacSim(unittest.TestCase):
         for one in (message, as_objects(message), self.LANDMARKS):
             cones = messages.from_pacsim(one)
             self.assertEqual(cones.cones.tolist(), [[0, 0], [2, -2], [3, -3], [4, -4], [5, -5]])
-            self.assertEqual(cones.colors.tolist(), [Color.unknown, Color.blue, Color.yellow, Color.orange, Color.orange])
+            self.assertEqual(cones.colors.tolist(), KINDS[-1:] + KINDS[:-1])
             np.testing.assert_allclose(cones.confidences, [0.0, 0.2, 0.3, 0.4, 0.5])
             self.assertIsNone(cones.ids)
 
