@@ -87,7 +87,8 @@ def style():
         mark = MARKS[kind]
         dash = f"; stroke-dasharray: {_dashes(mark)}" if "dash" in mark else ""
         rules.append(f'.scene .{kind} {{ stroke: var(--{mark["colour"]}); stroke-width: {mark["width"]:g}{dash}; }}')
-    rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["colour"]}); stroke-width: {_CONE_PX:g}; stroke-linecap: round; }}')
+    rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["colour"]}); stroke-width: {_CONE_PX:g}; '
+                 "stroke-linecap: round; }")
     rules.append(f'.scene .lane {{ stroke-width: {MARKS["lane"]["width"]:g}; stroke-linejoin: round; }}')
     rules.append(f'.scene .bridged {{ stroke-dasharray: {_dashes(MARKS["bridged"])}; }}')
     return "\n".join(rules)
@@ -169,5 +170,5 @@ def html(results, data):
             "lane is not usable come first, then the lowest IoU. To show different things, at most "
             f"{WORST_OF_A_TRACK} are of one track, and these at least {WORST_APART_M:g} m apart. The band is the "
             "ground truth, a dashed line the path that was driven, where that is the truth; lines are the method's "
-            "lane, dashed where it bridges a gap, dots cones, circles cones that were missed, crosses false positives. A scene's name opens it in "
-            "the viewer, with all methods.</p>" + "".join(blocks))
+            "lane, dashed where it bridges a gap, dots cones, circles cones that were missed, crosses false positives. A "
+            "scene's name opens it in the viewer, with all methods.</p>" + "".join(blocks))

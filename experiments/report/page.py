@@ -103,12 +103,13 @@ def _sections(results, published, data):
         return note + content if content else ""
 
     sections = [
-        ("verdict", "Headline", "Which method to run", filters.html(results) + headline.html(results)),
-        ("comparison", "Comparison", "Comparison", shown(experiments.COMPARISON)),
+        ("verdict", "Headline", "Which method to run", headline.html(results, data)),
+        ("comparison", "Comparison", "Comparison",
+         filters.html(results) + shown(experiments.COMPARISON) + headline.by_rate(results)),
         ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
         ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
-        ("exactness", "Exactness", "What exactness buys", shown(experiments.EXACTNESS)),
+        ("exactness", "Exactness", "What exactness buys", headline.exactness(results) + shown(experiments.EXACTNESS)),
         ("rld", "RLD paper", "Beside the RLD paper", alone(experiments.RLD_PAPER)),
         ("clc", "CLC paper", "Beside the CLC paper", alone(experiments.CLC_PAPER))]
     missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
@@ -123,8 +124,11 @@ def _lead(results):
     families = held_out.get("families", {}) if isinstance(held_out, dict) else {}
     how = (f" Held out: what learns was fitted anew for each of {len(families)} families of courses, without them."
            if families else "")
-    return ("Every method on the same scenes, scored by the same code, beside what the papers print."
-            f"{how} Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
+    scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
+    tracks = len(set().union(*(set(sample.track) for sample in results.samples)))
+    return (f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
+            f"the same code, beside what the papers print.{how} "
+            f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
 
 
 def render(results, published, tracks=()):
