@@ -42,9 +42,7 @@ constexpr double kMostMissed = 0.1;
 constexpr double kMostLateral_m = 0.5;
 constexpr double kMostYaw_rad = 8.0 * kDegree_rad;
 constexpr double kShortSightShare = 0.15;
-constexpr double kBlindStretchShare = 0.2;       ///< of the scenes, on each side
-constexpr std::size_t kLongestBlindStretch = 4;  ///< cones
-constexpr double kCleanShare = 0.1;              ///< without false positives
+constexpr double kCleanShare = 0.1;  ///< without false positives
 
 double uniform(Random& random, double low, double high) {
     return boost::random::uniform_real_distribution<double>(low, high)(random);
@@ -188,20 +186,6 @@ void add_other_course(Track& track, const std::vector<Pose>& poses, const Track&
     }
 }
 
-/// Takes a few successive cones of a boundary out of the scene, as where the map still lacks them. As of a
-/// run, the ground truth steps over one cone and ends before more.
-void blind_stretch(AnnotatedScene& scene, std::vector<ConeId>& boundary, Random& random) {
-    const std::size_t count = 1 + any_below(random, kLongestBlindStretch);
-    if (boundary.size() < count + 2) return;
-    const auto first =
-        boundary.begin() + static_cast<std::ptrdiff_t>(any_below(random, boundary.size() - count + 1));
-    const auto last = first + static_cast<std::ptrdiff_t>(count);
-    std::erase_if(scene.scene.cones,
-                  [&](const Cone& cone) { return std::find(first, last, cone.id) != last; });
-    boundary.erase(first, count == 1 ? last : boundary.end());
-    even_far_ends(*scene.ground_truth, scene.scene);
-}
-
 /// Adds false positives where the cones of the course are not seen so far.
 void add_false_positives(Scene& scene, double rate, double range_m, Random& random) {
     const auto seen = static_cast<double>(scene.cones.size());
@@ -267,12 +251,7 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         scenes.false_positive_rates = {short_sight ? 0.0 : rate};
         for (AnnotatedScene& scene : generate_scenes(track, std::span(&pose, 1), scenes)) {
             if (short_sight) add_false_positives(scene.scene, rate, range_m, random);
-            Lane& truth = *scene.ground_truth;
-            for (std::vector<ConeId>* boundary : {&truth.left, &truth.right}) {
-                if (options_.blind_stretches && one_in(random, kBlindStretchShare))
-                    blind_stretch(scene, *boundary, random);
-            }
-            if (truth.left.size() > 1 && truth.right.size() > 1) drawn.scenes.push_back(std::move(scene));
+            drawn.scenes.push_back(std::move(scene));
         }
     }
     return drawn;

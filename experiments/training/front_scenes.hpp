@@ -16,12 +16,11 @@ struct FrontSceneOptions {
     std::size_t scenes_per_draw = 4;  ///< from one changed course
     bool warp = true;                 ///< scale and swirl
     bool respace = true;
-    bool disturb = true;          ///< noise, missed cones and pose error
-    bool short_sight = true;      ///< true cones seen to a shorter radius than false ones
-    bool blind_stretches = true;  ///< of a boundary, a few successive cones are not seen
+    bool disturb = true;      ///< noise, missed cones and pose error
+    bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
     bool other_course = false;
-    double highest_rate = 0.7;
+    double highest_rate = 0.55;
 };
 
 /// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,
