@@ -47,7 +47,7 @@ TEST_F(Program, HelpIsEverywhere) {
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
           "study", "study formulations", "study optimality", "study backends", "study relaxations",
-          "study confidence-and-colour", "report", "tune"}) {
+          "study confidence-and-colour", "study front-beam", "report", "tune"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -777,6 +777,10 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     const Outcome list = run("study");
     EXPECT_EQ(list.exit_code, 0);
     EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
+    EXPECT_THAT(beams.output, HasSubstr("best score"));
+    expect_refused("study front-beam --scenes s.scenes.jsonl --beams 0", {"beam_width"});
+    expect_refused("study front-beam --scenes s.scenes.jsonl --weights s.scenes.jsonl", {"s.scenes.jsonl"});
     expect_refused("study magic", {"magic"});
 }
 

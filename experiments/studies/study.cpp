@@ -3,6 +3,7 @@
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "experiments/studies/formulations.hpp"
+#include "experiments/studies/front_beam.hpp"
 #include "experiments/studies/optimality.hpp"
 #include "experiments/studies/relaxations.hpp"
 
@@ -15,6 +16,7 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     studies.push_back(make_formulations_study());
     studies.push_back(make_relaxations_study());
     studies.push_back(make_confidence_and_colour_study());
+    studies.push_back(make_front_beam_study());
     return studies;
 }
 
