@@ -79,6 +79,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_compare_command(program);
     experiments::add_cross_validate_command(program);
     experiments::add_report_command(program);
+    experiments::add_plot_command(program);
     experiments::add_sweep_command(program);
     experiments::add_merge_command(program);
     experiments::add_tune_command(program);

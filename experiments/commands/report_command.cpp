@@ -1,5 +1,6 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
 
 #include <memory>
@@ -24,7 +25,7 @@ void make_report(const Options& options) {
     try {
         write_report(options.results, options.page, options.pictures, options.python,
                      fmt::format("{}", fmt::join(options.viewer, ",")));
-    } catch (const ReportRefused&) {
+    } catch (const PackageRefused&) {
         throw CLI::RuntimeError(2);  // it has said why
     }
 }

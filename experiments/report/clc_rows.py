@@ -7,6 +7,11 @@ from .tables import Cell, method_cell, percent, text
 MOST_RATE = 0.3 + 1e-9
 
 
+def of_paper(samples):
+    """Those whose method is the paper's, or this project's extension of it."""
+    return [sample for sample in samples if sample.method.startswith("clc")]
+
+
 def moderate(sample):
     """As in the paper, histograms take rates of false positives up to 30 %."""
     return sample.where(sample.rate <= MOST_RATE)

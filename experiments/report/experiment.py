@@ -8,7 +8,9 @@
     Published: what the paper prints, for those that reproduce one.
     Command: what makes the results that it is drawn from.
 
-and whose `html(results, published)` gives its tables and figures, or raises Missing."""
+and whose `html(results, published)` gives its tables and figures, or raises Missing. An experiment of a paper also has
+`verdict(results, published)`: (method, whether the claim holds of it here, the figures it is judged by) of each method
+that the claim is about."""
 
 import re
 from html import escape
@@ -30,14 +32,26 @@ def _prose(text):
     return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
 
 
-def _block(module, content):
+def _verdict(judged):
+    """Whether a paper's claim holds here, for whom and by which figures."""
+    if not judged:
+        return '<p class="judged"><b>Not judged here</b>: no method of the paper took part.</p>'
+    pieces = []
+    for holds, words in ((True, "Holds here"), (False, "Does not hold here")):
+        names = "; ".join(f"{escape(label)} ({escape(figures)})" for label, is_so, figures in judged if is_so == holds)
+        if names:
+            pieces.append(f'<b data-holds="{"yes" if holds else "no"}">{words}</b> for {names}.')
+    return f'<p class="judged">{" ".join(pieces)}</p>'
+
+
+def _block(module, content, verdict=""):
     title, parts = _described(module)
     details = "".join(f"<div><dt>{name}</dt><dd>{_prose(text)}</dd></div>" for name, text in parts.items()
                       if name != "Claim")
-    claim = ("The paper claims: " if re.match(r"(RLD|CLC) (Fig|Table)", title) else "") + _prose(parts["Claim"])
+    claim = ("The paper claims: " if hasattr(module, "verdict") else "") + _prose(parts["Claim"])
     wide = " wide" if 'class="table"' in content or 'class="figures"' in content else ""
     return (f'<article class="experiment{wide}"><h3>{escape(title)}</h3><p class="claim">{claim}</p>'
-            f'{content}<details><summary>Protocol and source</summary><dl class="about">{details}</dl></details>'
+            f'{verdict}{content}<details><summary>Protocol and source</summary><dl class="about">{details}</dl></details>'
             "</article>")
 
 
@@ -46,7 +60,9 @@ def blocks(modules, results, published, absent):
     present = []
     for module in modules:
         try:
-            present.append(_block(module, module.html(results, published)))
+            content = module.html(results, published)
+            judged = _verdict(module.verdict(results, published)) if hasattr(module, "verdict") else ""
+            present.append(_block(module, content, judged))
         except Missing as missing:
             title, parts = _described(module)
             absent.append(f"<li><b>{escape(title)}</b>: {_prose(str(missing))} "

@@ -2,10 +2,9 @@
 
 from html import escape
 
-import numpy as np
-
+from .drawing import MARKS, driven_ahead, solid_and_bridged
 from .load import CATEGORIES, CAUSES
-from .scenes import WORST, WORST_APART_M, WORST_OF_A_TRACK, in_car_frame
+from .scenes import WORST, WORST_APART_M, WORST_OF_A_TRACK
 from .theme import METHOD_COLOURS
 
 CATEGORY_WORDS = {"ground_truth": "ground truth", "near_ground_truth": "near ground truth", "too_short": "too short",
@@ -14,6 +13,7 @@ CATEGORY_WORDS = {"ground_truth": "ground truth", "near_ground_truth": "near gro
 CAUSE_WORDS = list(CAUSES.values())
 
 _ASPECT = 1.2  # width over height of a drawing
+_CONE_PX = 3.4  # across; the drawings are small
 
 
 def _points(flat):
@@ -70,15 +70,31 @@ class _View:
 
 def _driven(results, frame, track):
     """The path that was driven, from above as the car looks; empty where boundaries are the truth."""
-    driven = results.tracks.get(track, {}).get("driven", [])
-    if not driven:
-        return []
     x, y, yaw = frame["p"]
-    ahead = in_car_frame((x / 100, y / 100, yaw / 1000), np.array(driven, dtype=float).reshape(-1, 2))
+    ahead = driven_ahead(results.tracks.get(track, {}), (x / 100, y / 100, yaw / 1000))
     return [(-left, -along) for along, left in ahead]
 
 
-def drawing(results, frame, slot, track):
+def _dashes(mark):
+    return " ".join(f"{part:g}" for part in mark["dash"])
+
+
+def style():
+    """The look of the drawings, from marks.json, for the page."""
+    rules = [f'.scene .band {{ fill: var(--{MARKS["band"]["colour"]}); fill-opacity: {MARKS["band"]["opacity"]:g}; }}',
+             f'.scene .car {{ fill: var(--{MARKS["car"]["colour"]}); }}']
+    for kind in ("driven", "false", "missed"):
+        mark = MARKS[kind]
+        dash = f"; stroke-dasharray: {_dashes(mark)}" if "dash" in mark else ""
+        rules.append(f'.scene .{kind} {{ stroke: var(--{mark["colour"]}); stroke-width: {mark["width"]:g}{dash}; }}')
+    rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["colour"]}); stroke-width: {_CONE_PX:g}; '
+                 "stroke-linecap: round; }")
+    rules.append(f'.scene .lane {{ stroke-width: {MARKS["lane"]["width"]:g}; stroke-linejoin: round; }}')
+    rules.append(f'.scene .bridged {{ stroke-dasharray: {_dashes(MARKS["bridged"])}; }}')
+    return "\n".join(rules)
+
+
+def drawing(results, frame, slot, track, longest_gap_m):
     """One scene with the lane of one method."""
     cones = _points(frame["c"])
     split = len(cones) - frame["f"]
@@ -96,11 +112,13 @@ def drawing(results, frame, slot, track):
     strays = "".join(f"M{_number(x - radius)} {_number(y - radius)}l{cross} {cross}m0-{cross}l-{cross} {cross}"
                      for x, y in view.inside(cones[split:]))
     if strays:
-        parts.append(f'<path class="stray" d="{strays}"/>')
-    lane = "".join(_path(side, answer[2]) for side in sides)
-    if lane:
-        colour = results.methods.index(results.samples[slot].method) % METHOD_COLOURS
-        parts.append(f'<path class="lane" style="stroke:var(--m{colour})" d="{lane}"/>')
+        parts.append(f'<path class="false" d="{strays}"/>')
+    colour = results.methods.index(results.samples[slot].method) % METHOD_COLOURS
+    pieces = [solid_and_bridged(side, answer[2], longest_gap_m) for side in sides]
+    for kind, lines in (("lane", [line for solid, _ in pieces for line in solid]),
+                        ("lane bridged", [line for _, bridged in pieces for line in bridged])):
+        if lines:
+            parts.append(f'<path class="{kind}" style="stroke:var(--m{colour})" d="{"".join(map(_path, lines))}"/>')
     dots = "".join(f"M{_number(x)} {_number(y)}h0" for x, y in view.inside(cones[:split]))
     if dots:
         parts.append(f'<path class="cone" d="{dots}"/>')
@@ -124,7 +142,7 @@ def _card(results, data, slot, track_of, scene):
     frame = data.frames[scene]
     what = _what(frame["a"][slot])
     return (f'<figure class="scene"><div role="img" aria-label="{escape(what)}">'
-            f"{drawing(results, frame, slot, track_of[scene])}</div><figcaption>{escape(what)}<br>"
+            f"{drawing(results, frame, slot, track_of[scene], data.longest_gap_m)}</div><figcaption>{escape(what)}<br>"
             f'<button type="button" class="link" data-open="{escape(scene)}">{escape(scene)}</button>'
             "</figcaption></figure>")
 
@@ -152,5 +170,5 @@ def html(results, data):
             "lane is not usable come first, then the lowest IoU. To show different things, at most "
             f"{WORST_OF_A_TRACK} are of one track, and these at least {WORST_APART_M:g} m apart. The band is the "
             "ground truth, a dashed line the path that was driven, where that is the truth; lines are the method's "
-            "lane, dots cones, circles cones that were missed, crosses false positives. A scene's name opens it in "
-            "the viewer, with all methods.</p>" + "".join(blocks))
+            "lane, dashed where it bridges a gap, dots cones, circles cones that were missed, crosses false positives. A "
+            "scene's name opens it in the viewer, with all methods.</p>" + "".join(blocks))

@@ -1,16 +1,20 @@
-"""The first thing to read: which method to run, and one table of all methods by condition and rate of false positives.
-Every sentence is computed."""
+"""The first thing to read: one sentence that says which method to run, one table of all methods, and what each of them
+does. Every sentence is computed."""
 
 from html import escape
 
 import numpy as np
 
-from . import measures
+from . import gallery, measures
 from .experiments import optimality
 from .figures import percent_label
+from .load import CATEGORIES
 from .leaders import REAL_TIME_BUDGET_MS, headline_values, leaders_of, usable_values
+from .methods import CLC_PAPER, RLD_PAPER, described
 from .rows import note_on_training, scenes_cell
-from .tables import Column, block_table, method_cell, milliseconds, percent
+from .scenes import gallery_rate
+from .tables import Column, block_table, method_cell, milliseconds, percent, table
+from .theme import METHOD_COLOURS
 
 _IN_TIME_SHARE = 0.99  # of the scenes
 _NBSP = "\u00a0"
@@ -113,15 +117,6 @@ def _optimality_sentence(results):
             f"{100 * best.mean():.1f}{_NBSP}% against {100 * candidate.mean():.1f}{_NBSP}%.</li>")
 
 
-def _tiles(results):
-    scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
-    tracks = len(set().union(*(set(sample.track) for sample in results.samples)))
-    answers = sum(len(sample) for sample in results.samples)
-    tiles = ((f"{scenes:,}".replace(",", "\u202f"), "scenes"), (str(tracks), "tracks"),
-             (str(len(results.samples)), "methods"), (f"{answers:,}".replace(",", "\u202f"), "answers scored"))
-    return '<dl class="tiles">' + "".join(f"<div><dd>{n}</dd><dt>{what}</dt></div>" for n, what in tiles) + "</dl>"
-
-
 def _mean(part, name):
     """Mean and interval of a column where it is known; None twice where it never is."""
     known = part.known(name)
@@ -137,29 +132,104 @@ def _block(results, condition, rate):
     for part in parts:
         usable, interval = _mean(part, "usable")
         marks = {"ahead": "yes"} if part.label in ahead else {}
-        rows.append([method_cell(results.methods, part.method, part.label),
-                     percent(usable, interval=interval, **marks),
-                     percent(part.success.mean(), **({} if part.has("usable") else marks)), percent(part.mean_iou),
-                     percent(float(np.mean(part.category == "ground_truth"))),
-                     milliseconds(measures.quantile(part.latency, 0.99)), milliseconds(part.latency.max()),
-                     scenes_cell(len(part), part.has("trained_on"))])
+        rows.append([method_cell(results.methods, part.method, part.label), percent(usable, interval=interval, **marks)] +
+                    _measured(part, not part.has("usable"), marks))
         attributes.append({"method": part.label, "condition": condition, "rate": rate})
     where = f"{percent_label(rate)} % false positives"
     return (f"{condition}: {where}" if condition else where), rows, attributes
 
 
-def _table(results):
-    columns = [Column("method", "text"), Column("usable %"), Column("success %"), Column("mean IoU %"),
-               Column("exact %"), Column("p99 ms"), Column("max ms"), Column("scenes")]
+_COLUMNS = (Column("success %"), Column("mean IoU %"), Column("exact %"), Column("p99 ms"), Column("max ms"),
+            Column("scenes"))
+_NOTE = ("Usable: the lane is right for the first 20 m and long enough to drive by. Success: the CLC paper's, which a stub of "
+         "two metres has too. Exact: the very cones of the ground truth. Small: 95 % interval, tracks resampled. Bold: "
+         "ahead, or not told from the method ahead by its paired difference, tracks resampled.")
+
+
+def _measured(part, is_marked_by_success, marks):
+    """Cells of _COLUMNS."""
+    return [percent(part.success.mean(), **(marks if is_marked_by_success else {})), percent(part.mean_iou),
+            percent(float(np.mean(part.category == "ground_truth"))),
+            milliseconds(measures.quantile(part.latency, 0.99)), milliseconds(part.latency.max()),
+            scenes_cell(len(part), part.has("trained_on"))]
+
+
+def _summary(results):
+    """A row for each method over all that was measured, the best first."""
+    values_of = headline_values(results.samples)
+    leaders = leaders_of(results.samples, values_of)
+    ahead = {part.label for part in leaders[1]} if leaders else set()
+    several = results.conditions if len(results.conditions) > 1 else []
+    rows = []
+    for sample in results.samples:
+        usable, interval = _mean(sample, "usable")
+        marks = {"ahead": "yes"} if sample.label in ahead else {}
+        of_conditions = [percent(_mean(sample.at(condition=condition), "usable")[0]) for condition in several]
+        rank = usable if usable is not None else float(sample.success.mean())
+        rows.append((rank, sample.label,
+                     [method_cell(results.methods, sample.method, sample.label), percent(usable, interval=interval, **marks)]
+                     + of_conditions + _measured(sample, not sample.has("usable"), marks)))
+    rows.sort(key=lambda row: -row[0])
+    columns = [Column("method", "text"), Column("usable %")] + [Column(f"in {condition or 'none named'} %")
+                                                                for condition in several] + list(_COLUMNS)
+    return table("headline", "", columns, [cells for _, _, cells in rows],
+                 row_attributes=[{"method": label} for _, label, _ in rows],
+                 note=f"All conditions, rates and ranges together. {_NOTE}{note_on_training(results)}")
+
+
+def by_rate(results):
+    """The same measures by condition and rate of false positives."""
+    columns = [Column("method", "text"), Column("usable %")] + list(_COLUMNS)
     blocks = [_block(results, condition, rate) for condition in results.conditions for rate in results.rates]
-    return block_table(
-        "headline", "All methods", columns, [block for block in blocks if block[1]],
-        note="All ranges together. Usable: the lane is right for the first 20 m and long enough to drive by. Success: "
-        "the CLC paper's, which a stub of two metres has too. Exact: the very cones of the ground truth. Small: 95 % "
-        "interval, tracks resampled. Bold: ahead, or not told from the method ahead by its paired difference, tracks "
-        f"resampled.{note_on_training(results)}")
+    return block_table("by-rate", "All methods by condition and false positives", columns,
+                       [block for block in blocks if block[1]], note=f"All ranges together. {_NOTE}{note_on_training(results)}")
 
 
-def html(results):
+def _pictured(results, data):
+    """The scene that tells the methods apart most: in the main condition and at the gallery's rate where there is one, as
+    many lanes as can be, one of them usable, and the widest range of overlaps. None where the page has no such scene."""
+    best = None
+    for lap in data.laps:
+        for scene in lap["scenes"]:
+            answers = [answer for answer in data.frames[scene]["a"] if answer and answer[4] is not None]
+            usable = [answer[4] for answer in answers if answer[7]]
+            if usable:
+                lanes = sum(1 for answer in answers if CATEGORIES[answer[5]] != "none")
+                rank = (lap["condition"] == results.main_condition, lap["rate"] == gallery_rate(results), lanes,
+                        max(usable) - min(answer[4] for answer in answers))
+                if best is None or rank > best[0]:
+                    best = (rank, scene)
+    return best and best[1]
+
+
+def _methods(results, data):
+    """A line and a small picture of each method: its lane in the same scene."""
+    scene = _pictured(results, data)
+    track_of = {name: lap["track"] for lap in data.laps for name in lap["scenes"]}
+    cards = []
+    for slot, sample in enumerate(results.samples):
+        about = described(results, sample.method)
+        colour = results.methods.index(sample.method) % METHOD_COLOURS
+        picture = "" if scene is None else (
+            f'<div role="img" aria-label="lane of {escape(sample.label)}">'
+            f"{gallery.drawing(results, data.frames[scene], slot, track_of[scene], data.longest_gap_m)}</div>")
+        cards.append(f'<figure class="scene" data-method="{escape(sample.label)}">{picture}<figcaption>'
+                     f'<span class="swatch" style="background:var(--m{colour})"></span><b>{escape(sample.label)}</b> '
+                     f"{escape(about.line)} <i>{escape(about.source)}</i></figcaption></figure>")
+    shown = ("" if scene is None else
+             f'<p class="note">The same scene for all, <button type="button" class="link" data-open="{escape(scene)}">'
+             f"{escape(scene)}</button>: one in which they differ. The band is the ground truth, crosses are false "
+             "positives.</p>")
+    papers = "".join(f"<li><b>{short}</b>: {escape(title)}.</li>" for short, title in (RLD_PAPER, CLC_PAPER))
+    return (f'<div id="methods"><h3>What the methods do</h3><div class="scenes">{"".join(cards)}</div>{shown}'
+            f'<ul class="papers">{papers}</ul></div>')
+
+
+def exactness(results):
+    """Sentences on proofs: what was proven, checked, and how near the graph search comes to it."""
     sentences = f"{_agreement_sentences(results)}{_optimality_sentence(results)}{_checker_sentence(results)}"
-    return _sentence(results) + _table(results) + _tiles(results) + f'<ul class="verdict">{sentences}</ul>'
+    return f'<ul class="verdict">{sentences}</ul>' if sentences else ""
+
+
+def html(results, data):
+    return _sentence(results) + _summary(results) + _methods(results, data)

@@ -54,3 +54,14 @@ def leaders_of(parts, values_of):
         if mean == best_mean or (interval and interval[0] <= 0.0 <= interval[1]):
             level.append(part)
     return best_mean, level
+
+
+def fastest_of(samples):
+    """The one with the least geometric mean of its latencies over the scenes that all have, so that no paired ratio
+    to it is below 1; over its own scenes where there is none in common."""
+    common = set.intersection(*(set(sample.scene) for sample in samples))
+
+    def mean_log(sample):
+        kept = np.array([scene in common for scene in sample.scene]) if common else np.ones(len(sample), bool)
+        return float(np.mean(np.log(np.maximum(sample.latency[kept], measures.SMALLEST_MS))))
+    return min(samples, key=mean_log)

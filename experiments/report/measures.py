@@ -8,6 +8,7 @@ import numpy as np
 CONFIDENCE = 0.95
 RESAMPLES = 2000
 GEOMETRIC_MEAN_SHIFT_MS = 1.0
+SMALLEST_MS = 1e-6  # a clock's tick keeps logarithms finite
 
 
 def quantile(values, share):
@@ -87,9 +88,8 @@ def latency_ratio(sample, reference):
     rows, reference_rows = paired(sample, reference)
     if not len(rows):
         return None
-    smallest = 1e-6  # ms; a clock's tick keeps the logarithm finite
-    logs = np.log(np.maximum(sample.latency[rows], smallest) /
-                  np.maximum(reference.latency[reference_rows], smallest))
+    logs = np.log(np.maximum(sample.latency[rows], SMALLEST_MS) /
+                  np.maximum(reference.latency[reference_rows], SMALLEST_MS))
     interval = mean_interval(logs, sample.track[rows])
     return (float(np.exp(logs.mean())), tuple(float(np.exp(end)) for end in interval) if interval else None,
             len(rows))

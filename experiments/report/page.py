@@ -5,6 +5,7 @@ import pkgutil
 from html import escape
 
 from . import experiments, filters, gallery, headline, provenance
+from .drawing import MARKS
 from .experiment import blocks
 from .load import CATEGORIES
 from .scenes import read_scenes
@@ -29,9 +30,11 @@ _VIEWER = """
 <input type="range" id="view-pose" min="0" value="0" aria-label="pose"><output id="view-name"></output></div>
 <div class="scroll"><table class="answers"><thead><tr><th scope="col">method</th><th scope="col">usable</th><th scope="col">outcome</th>
 <th scope="col" class="number">IoU %</th><th scope="col">accurate</th><th scope="col" class="number">latency ms</th>
+<th scope="col" class="number">sure %</th><th scope="col" class="number">trusted m</th>
 </tr></thead><tbody id="view-methods"></tbody></table></div>
 <p class="note">Arrow keys: pose and false positives. Space: play. Digits: methods on and off. Click the small map to go
 there; point at a cone for its place. <span class="key"><span class="band-key"></span> ground truth</span>
+<span class="key">┅ gap that a lane bridges</span>
 <span class="key">● cone</span> <span class="key">○ cone that was missed</span> <span class="key">× false positive</span>
 <span class="key"><span class="driven-key">┅</span> path that was driven</span></p>
 </div>"""
@@ -69,7 +72,7 @@ def _viewer(results, data):
               for track, boundaries in results.tracks.items() if track in shown}
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
-    content = {"methods": methods, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
+    content = {"methods": methods, "marks": MARKS, "longest_gap": 100 * data.longest_gap_m, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES],
                "causes": gallery.CAUSE_WORDS}
     return (f'{_part_shown(data)}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}'
@@ -100,12 +103,13 @@ def _sections(results, published, data):
         return note + content if content else ""
 
     sections = [
-        ("verdict", "Headline", "Which method to run", filters.html(results) + headline.html(results)),
-        ("comparison", "Comparison", "Comparison", shown(experiments.COMPARISON)),
+        ("verdict", "Headline", "Which method to run", headline.html(results, data)),
+        ("comparison", "Comparison", "Comparison",
+         filters.html(results) + shown(experiments.COMPARISON) + headline.by_rate(results)),
         ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
         ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
-        ("exactness", "Exactness", "What exactness buys", shown(experiments.EXACTNESS)),
+        ("exactness", "Exactness", "What exactness buys", headline.exactness(results) + shown(experiments.EXACTNESS)),
         ("rld", "RLD paper", "Beside the RLD paper", alone(experiments.RLD_PAPER)),
         ("clc", "CLC paper", "Beside the CLC paper", alone(experiments.CLC_PAPER))]
     missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
@@ -120,13 +124,16 @@ def _lead(results):
     families = held_out.get("families", {}) if isinstance(held_out, dict) else {}
     how = (f" Held out: what learns was fitted anew for each of {len(families)} families of courses, without them."
            if families else "")
-    return ("Every method on the same scenes, scored by the same code, beside what the papers print."
-            f"{how} Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
+    scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
+    tracks = len(set().union(*(set(sample.track) for sample in results.samples)))
+    return (f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
+            f"the same code, beside what the papers print.{how} "
+            f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
 
 
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
-    data = read_scenes(results, published["conditions"], tracks)
+    data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"])
     sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
@@ -134,7 +141,7 @@ def render(results, published, tracks=()):
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark"><title>conelane: lanes between cones, compared</title>
-<link rel="icon" href="data:,"><style>{_asset("style.css")}</style></head>
+<link rel="icon" href="data:,"><style>{_asset("style.css")}{gallery.style()}</style></head>
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
 <main><h1>Lanes between cones, compared</h1>

@@ -1,21 +1,14 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 
 namespace conelane::experiments {
 
-/// The results cannot be reported; the reason is on stderr already.
-class ReportRefused : public std::runtime_error {
-  public:
-    ReportRefused() : std::runtime_error("the results cannot be reported") {}
-};
-
 /// Makes one self-contained HTML page of a directory that `compare` wrote, by the Python package that the
 /// program carries; with `pictures`, the main figures as PNG in that folder too. `wished_python`: an
 /// interpreter that has matplotlib; empty: the first found. `viewer_tracks`: tracks whose laps the viewer
-/// shall have, separated by commas; empty: as many laps as there is room for. Throws ReportRefused where a
+/// shall have, separated by commas; empty: as many laps as there is room for. Throws PackageRefused where a
 /// file of the results is wrong, std::runtime_error where Python or matplotlib is missing.
 void write_report(const std::filesystem::path& results, const std::filesystem::path& page,
                   const std::filesystem::path& pictures = {}, const std::string& wished_python = "",

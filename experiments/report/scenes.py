@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .drawing import in_car_frame
 from .load import CATEGORIES, CAUSES, InputError, label_of, read_lines, require
 
 MOST_BYTES = 9_000_000  # of all frames as JSON
 _BYTES_PER_CONE = 10
-_BYTES_PER_ANSWER = 78
+_BYTES_PER_ANSWER = 88
 _BYTES_PER_SCENE = 150
 _SAME_PLACE_M = 0.01
 _NOISE_FACTOR = 4.0  # a seen position is this many standard deviations off at most, nearly always
@@ -36,6 +37,7 @@ class SceneData:
     stride: int = 1
     worst: dict = field(default_factory=dict)  # (label, condition) -> [scene ids]
     missing: str = ""  # why there are none
+    longest_gap_m: float = math.inf  # from boundary cone to boundary cone; what is longer is drawn as bridged
 
 
 def gallery_rate(results):
@@ -145,9 +147,8 @@ def _centimetres(value):
     return round(100.0 * value)
 
 
-def _boundary_points(results, track):
+def boundary_points(boundaries):
     """None where the track has no annotated boundaries."""
-    boundaries = results.tracks.get(track, {})
     points = boundaries.get("left", []) + boundaries.get("right", [])
     return np.array(points, dtype=float) if points else None
 
@@ -160,12 +161,6 @@ def _false_positives(positions, boundary, noise_m):
     return distances.min(axis=1) > max(_SAME_PLACE_M, _NOISE_FACTOR * noise_m)
 
 
-def in_car_frame(pose, positions):
-    """Positions [m] as seen from a pose: ahead and to the left."""
-    x, y, yaw = pose
-    return (positions - (x, y)) @ np.array([[math.cos(yaw), -math.sin(yaw)], [math.sin(yaw), math.cos(yaw)]])
-
-
 def _positions(points):
     return np.array([(point["x"], point["y"]) for point in points], dtype=float).reshape(-1, 2)
 
@@ -174,7 +169,7 @@ def _flat(positions):
     return [_centimetres(value) for position in positions for value in position]
 
 
-def _frame(path, number, scene, boundary, noise_m):
+def frame_of(path, number, scene, boundary, noise_m):
     """The frame of a scene without its answers, its pose, and the index of each cone id in it. Cones come first, false
     positives last."""
     try:
@@ -196,7 +191,7 @@ def _frame(path, number, scene, boundary, noise_m):
         raise InputError(f"{path}:{number}: no scene with pose, cones and ground truth ({error})") from None
 
 
-def _sides(path, number, line, pose, index_of):
+def sides_of(path, number, line, pose, index_of):
     """Left and right as indices of cones; as flat positions under "p" where the answer is positions. An answer that is
     a centre line alone is drawn as a left side."""
     def flat(key):
@@ -234,11 +229,13 @@ def _add_answers(results, lanes_files, frames, poses, indices):
                 continue
             sample = results.samples[slots[label]]
             iou, cause = sample.iou[row], sample.cause[row]
-            frames[scene]["a"][slots[label]] = _sides(path, number, line, poses[scene], indices[scene]) + [
+            frames[scene]["a"][slots[label]] = sides_of(path, number, line, poses[scene], indices[scene]) + [
                 int(bool(line.get("closed", False))), float(f"{sample.latency[row]:.4g}"),
                 None if math.isnan(iou) else round(float(iou), 3), CATEGORIES.index(sample.category[row]),
                 _known_int(sample.accurate[row]), _known_int(sample.usable[row]),
-                causes.index(cause) if cause else None]
+                causes.index(cause) if cause else None] + [
+                    float(f"{require(path, number, line, key, (int, float)):.4g}") if key in line else None
+                    for key in ("confidence", "trusted_m")]
 
 
 def _make_room(laps, chosen, picked, frames, stride, named):
@@ -259,14 +256,14 @@ def _make_room(laps, chosen, picked, frames, stride, named):
 def _read_frames(results, scenes_file, wanted, noise_of):
     """Frames, poses and cone indices of the wanted scenes."""
     try:
-        boundaries = {track: _boundary_points(results, track) for track in results.tracks}
+        boundaries = {track: boundary_points(of_track) for track, of_track in results.tracks.items()}
     except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
     frames, poses, indices = {}, {}, {}
     for number, line in read_lines(scenes_file, wanted):
         scene = line.get("id", str(number))
         if scene in wanted:
-            frame, poses[scene], indices[scene] = _frame(scenes_file, number, line, boundaries.get(line.get("track")),
+            frame, poses[scene], indices[scene] = frame_of(scenes_file, number, line, boundaries.get(line.get("track")),
                                                          noise_of(line.get("condition", "")))
             frame["a"] = [None] * len(results.samples)
             frames[scene] = frame
@@ -282,7 +279,7 @@ def _start(results, lap_list, worst):
     return first["scenes"][0] if first else next(iter(worst.values()))[0]
 
 
-def read_scenes(results, conditions=(), tracks=()):
+def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf):
     """What fits on the page, or why there is nothing. `conditions`: what the program knows by name, each with its
     noise. `tracks`: those whose laps the viewer shall have; else the most interesting."""
     scenes_file = results.path("scenes.scenes.jsonl")
@@ -310,4 +307,4 @@ def read_scenes(results, conditions=(), tracks=()):
                 for (track, condition, rate, range_m), scenes in laps.scenes.items()]
     lap_list = [lap for lap in lap_list if lap["scenes"]]
     return SceneData(frames, lap_list, _start(results, lap_list, worst), laps.scene_count, len(chosen),
-                     len(laps.scenes), stride, worst)
+                     len(laps.scenes), stride, worst, longest_gap_m=longest_gap_m)

@@ -48,6 +48,12 @@
       item.hidden = filters.some((filter) => filter.value && filter.dataset.filter in item.dataset &&
                                              item.dataset[filter.dataset.filter] !== filter.value);
     }
+    const method = filters.find((filter) => filter.dataset.filter === "method");
+    const wanted = method ? method.value : "";
+    for (const curve of document.querySelectorAll("main g[data-curve]")) { // of a method, whatever its cone set
+      const name = curve.dataset.curve;
+      curve.style.display = !wanted || wanted === name || wanted.startsWith(name + " n=") ? "" : "none";
+    }
     for (const title of document.querySelectorAll("tr.block")) {
       title.hidden = [...title.parentElement.rows].every((row) => row === title || row.hidden);
     }

@@ -49,7 +49,7 @@ def method_style(methods, method, variant=0):
     """Colour, marker and dashes: what colour cannot tell apart, the others do. `variant` counts the cone-set
     sizes of one method."""
     index = methods.index(method)
-    return {"color": method_colour(methods, method), "marker": MARKERS[index % len(MARKERS)],
+    return {"gid": f"curve:{method}", "color": method_colour(methods, method), "marker": MARKERS[index % len(MARKERS)],
             "linestyle": _DASHES[(index // METHOD_COLOURS + variant) % len(_DASHES)]}
 
 
@@ -116,6 +116,7 @@ def svg_of(figure, name):
         svg = svg.replace(stand_in, f"var(--{variable})")
     svg = re.sub(r"font: ([\d.]+)px [^;\"]*", r"font-size: \1px", svg)
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
+    svg = re.sub(r'<g id="curve:([^"]*)"', r'<g data-curve="\1"', svg)  # what the choice of a method hides
     for kind in (r'id="', r'href="#', r"url\(#"):
         svg = re.sub(f"({kind})", rf"\g<1>{name}-", svg)
     svg = re.sub(r"<!--.*?-->\n? *", "", svg, flags=re.S)

@@ -4,6 +4,7 @@
   const source = document.getElementById("scene-data");
   if (!source) return;
   const data = JSON.parse(source.textContent);
+  const marks = data.marks; // sizes, widths and dashes in pixels, colours as names
   const element = (name) => document.getElementById("view-" + name);
   const box = document.getElementById("viewer");
   const scene = element("scene"), map = element("map"), tip = element("tip");
@@ -75,8 +76,44 @@
       trace(context, points, closed);
       context.stroke();
     };
-    for (const side of [track.left, track.right]) drawDashed(side, colour("--line"), 1, [3, 4], track.closed);
-    drawDashed(track.driven, colour("--accent"), 1.6, [7, 5], false);
+    const { boundary, driven } = marks;
+    for (const side of [track.left, track.right])
+      drawDashed(side, colour("--" + boundary.colour), boundary.width, boundary.dash, track.closed);
+    drawDashed(track.driven, colour("--" + driven.colour), driven.width, driven.dash, false);
+    context.setLineDash([]);
+  };
+
+  /// A dot, cross or ring, as marks.json has it.
+  const drawMark = (context, [x, y], mark) => {
+    const { shape, radius } = mark;
+    context.lineWidth = mark.width || 1;
+    context.strokeStyle = context.fillStyle = colour("--" + mark.colour);
+    context.beginPath();
+    if (shape === "cross") {
+      context.moveTo(x - radius, y - radius); context.lineTo(x + radius, y + radius);
+      context.moveTo(x + radius, y - radius); context.lineTo(x - radius, y + radius);
+      context.stroke();
+    } else {
+      context.arc(x, y, radius, 0, 2 * Math.PI);
+      if (shape === "dot") context.fill();
+      else context.stroke();
+    }
+  };
+
+  /// A boundary, dashed where it bridges a gap.
+  const strokeSide = (context, points, closed, longest) => {
+    const line = closed && points.length > 2 ? [...points, points[0]] : points;
+    const far = ([ax, ay], [bx, by]) => Math.hypot(bx - ax, by - ay) > longest;
+    for (const bridged of [false, true]) {
+      context.setLineDash(bridged ? marks.bridged.dash : []);
+      context.beginPath();
+      for (let i = 1; i < line.length; ++i) {
+        if (far(line[i - 1], line[i]) !== bridged) continue;
+        if (i === 1 || bridged || far(line[i - 2], line[i - 1])) context.moveTo(...line[i - 1]);
+        context.lineTo(...line[i]);
+      }
+      context.stroke();
+    }
     context.setLineDash([]);
   };
 
@@ -90,7 +127,8 @@
     drawBoundaries(context, view);
 
     const [left, right, closed] = current.g;
-    context.fillStyle = colour("--band");
+    context.fillStyle = colour("--" + marks.band.colour);
+    context.globalAlpha = marks.band.opacity;
     context.beginPath();
     if (closed) {
       trace(context, at(left), true);
@@ -99,45 +137,24 @@
       trace(context, [...at(left), ...at(right).reverse()], true);
     }
     context.fill("evenodd");
+    context.globalAlpha = 1;
 
     // Lanes that lie on one another show as stripes: the first ones are broader.
     const visible = data.methods.map((_, i) => i).filter((i) => current.a[i] && state.shown[i]);
     visible.forEach((i, place) => {
       const answer = current.a[i];
       context.strokeStyle = colour("--m" + data.methods[i].colour);
-      context.lineWidth = 2.2 + 2.4 * (visible.length - 1 - place);
-      context.beginPath();
-      for (const one of answer.slice(0, 2)) trace(context, side(one), answer[2]);
-      context.stroke();
+      context.lineWidth = marks.lane.width + marks.lane.wider * (visible.length - 1 - place);
+      for (const one of answer.slice(0, 2)) strokeSide(context, side(one), answer[2], data.longest_gap * view.scale);
     });
 
     const cones = points.length - current.f;
-    context.lineWidth = 1.2;
-    context.strokeStyle = colour("--muted");
-    context.fillStyle = colour("--ink");
-    points.forEach(([x, y], i) => {
-      context.beginPath();
-      if (i < cones) {
-        context.arc(x, y, 3, 0, 2 * Math.PI);
-        context.fill();
-      } else {
-        context.moveTo(x - 3, y - 3); context.lineTo(x + 3, y + 3);
-        context.moveTo(x + 3, y - 3); context.lineTo(x - 3, y + 3);
-        context.stroke();
-      }
-    });
+    points.forEach((point, i) => drawMark(context, point, i < cones ? marks.cone : marks.false));
+    for (const point of missed(view)) drawMark(context, point, marks.missed); // what the car does not see is hollow
 
-    context.strokeStyle = colour("--ink"); // what the car does not see is hollow
-    for (const [x, y] of missed(view)) {
-      context.beginPath();
-      context.arc(x, y, 3.4, 0, 2 * Math.PI);
-      context.stroke();
-    }
-
-    context.fillStyle = colour("--accent");
+    context.fillStyle = colour("--" + marks.car.colour);
     context.beginPath();
-    trace(context, [[view.x(0, 0), view.y(0) - 9], [view.x(0, 0) + 6, view.y(0) + 7],
-                    [view.x(0, 0) - 6, view.y(0) + 7]], true);
+    trace(context, marks.car.outline.map(([x, y]) => [view.x(0, 0) + x, view.y(0) + y]), true);
     context.fill();
   };
 
@@ -194,7 +211,7 @@
     const toggle = head.querySelector("input");
     toggle.addEventListener("change", () => { state.shown[i] = toggle.checked; drawScene(); });
     row.append(head);
-    const cells = ["usable", "outcome", "number", "accurate", "number"].map((kind) => {
+    const cells = ["usable", "outcome", "number", "accurate", "number", "number", "number"].map((kind) => {
       const cell = row.insertCell();
       if (kind === "number") cell.className = kind;
       return cell;
@@ -206,8 +223,9 @@
   const drawAnswers = () => frame().a.forEach((answer, i) => {
     const texts = answer
       ? [answer[8] === null ? yesOrNo(answer[7]) : "no: " + data.causes[answer[8]], data.categories[answer[5]],
-         answer[4] === null ? "–" : (100 * answer[4]).toFixed(1), yesOrNo(answer[6]), answer[3].toPrecision(3)]
-      : ["–", "no answer", "–", "–", "–"];
+         answer[4] === null ? "–" : (100 * answer[4]).toFixed(1), yesOrNo(answer[6]), answer[3].toPrecision(3),
+         answer[9] === null ? "–" : (100 * answer[9]).toFixed(1), answer[10] === null ? "–" : answer[10].toFixed(1)]
+      : ["–", "no answer", "–", "–", "–", "–", "–"];
     texts.forEach((text, j) => { rows[i].cells[j].textContent = text; });
   });
 

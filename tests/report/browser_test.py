@@ -27,6 +27,23 @@ addEventListener("load", async () => {
   const pose = () => Number(document.getElementById("view-pose").value);
   const last = () => Number(document.getElementById("view-pose").max);
   try {
+    const rows = [...document.querySelectorAll("#headline tbody tr")];
+    if (innerWidth >= 1280) {
+      check(rows.length === 3 && rows[2].getBoundingClientRect().bottom < innerHeight, "the first screen has the whole table");
+      const cut = [...document.querySelectorAll("#headline .scroll, #by-rate .scroll, #quality .scroll, #latencies .scroll")]
+        .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.parentElement.id);
+      check(cut.length === 0, "no main table is cut off at the side: " + cut);
+    }
+    const sorter = document.querySelector("#headline thead button");
+    sorter.focus();
+    check(document.activeElement === sorter, "a column's title takes the focus of the keyboard");
+    sorter.click();
+    check(sorter.parentElement.getAttribute("aria-sort") === "ascending", "and sorts, which is said");
+    for (const link of document.querySelectorAll("nav a"))
+      check(document.querySelector(link.getAttribute("href")), "the link leads to " + link.textContent);
+    box.focus();
+    check(document.activeElement === box, "the viewer takes the keyboard");
+
     const track = document.getElementById("view-track");
     track.value = "circle";
     track.dispatchEvent(new Event("change"));
@@ -76,6 +93,7 @@ addEventListener("load", async () => {
     await wait(400);
     check(pose() > 0, "space plays");
     await wait(60 * (last() + 5));
+    check(toggles.length === 3 && toggles.every((toggle) => toggle.checked), "with all three methods");
     check(pose() === last() && document.getElementById("view-play").textContent === "▶", "the lap ends");
 
     const map = document.getElementById("view-map");
@@ -100,13 +118,24 @@ addEventListener("load", async () => {
     filter.dispatchEvent(new Event("change"));
     const visible = [...table.tBodies[0].rows].filter((row) => !row.hidden);
     check(visible.length === 4 && visible.every((row) => row.dataset.method === "clc"), "the filter leaves CLC");
-    const blocks = [...document.querySelectorAll("#headline tbody")];
+    const blocks = [...document.querySelectorAll("#by-rate tbody")];
     check(blocks.length === 4 && blocks.every((block) => [...block.rows].filter((row) => !row.hidden).length === 2),
-          "in each block of the first table too");
+          "in each block of the table by rate too");
+    check([...document.querySelectorAll("#headline tbody tr")].every((row) => !row.hidden), "the first table stays whole");
+    const curves = [...document.querySelectorAll("#success-by-rate g[data-curve]")];
+    check(curves.length >= 3 && curves.every((one) => (one.style.display === "") === (one.dataset.curve === "clc")),
+          "of the charts the curve of CLC stays");
+    const ofSets = [...document.querySelectorAll("#growth g[data-curve]")];
+    filter.value = "rld-cbc n=12";
+    filter.dispatchEvent(new Event("change"));
+    check(ofSets.filter((one) => one.style.display === "").every((one) => one.dataset.curve === "rld-cbc"),
+          "a method is found whatever its cone set");
+    filter.value = "clc";
+    filter.dispatchEvent(new Event("change"));
     const chosen = document.querySelector('[data-filter="condition"]');
     chosen.value = "car";
     chosen.dispatchEvent(new Event("change"));
-    check([...document.querySelectorAll("#headline tr.block")].filter((row) => !row.hidden).length === 2,
+    check([...document.querySelectorAll("#by-rate tr.block")].filter((row) => !row.hidden).length === 2,
           "blocks of other conditions go");
     check(document.getElementById("usable-by-rate-paper").hidden && !document.getElementById("usable-by-rate-car").hidden,
           "so do figures of other conditions");
@@ -118,6 +147,12 @@ addEventListener("load", async () => {
     document.getElementById("theme").click();
     check(ground() !== light && pixels() !== drawn, "the theme changes, the drawing with it");
     check(document.documentElement.scrollWidth <= innerWidth, "nothing is wider than the screen");
+    dispatchEvent(new Event("beforeprint"));
+    check(document.documentElement.dataset.theme === "light", "it is printed in the light theme");
+    dispatchEvent(new Event("afterprint"));
+    check(document.documentElement.dataset.theme !== "light", "and shown in the dark one again");
+    const loaded = performance.getEntriesByType("resource").map((one) => one.name).filter((name) => !name.startsWith("data:"));
+    check(loaded.length === 0, "nothing is loaded from elsewhere: " + loaded);
   } catch (error) {
     problems.push(String(error.stack || error));
   }

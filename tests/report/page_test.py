@@ -15,6 +15,9 @@ from html.parser import HTMLParser
 
 from stored_results import Setup, write_results
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "experiments"))
+from report.methods import described  # noqa: E402  (the package of the page lies there)
+
 PROGRAM, RESULTS = sys.argv[1:3]
 # Google Benchmark may be missing where this was built.
 BENCHMARKED = os.path.exists(os.path.join(RESULTS, "benchmarks.json"))
@@ -45,7 +48,7 @@ class Page(HTMLParser):
             self.row = (self.table, attributes["data-method"], attributes["data-condition"],
                         float(attributes["data-rate"]), float(attributes["data-range"]))
         elif tag == "tr" and attributes.get("data-method"):
-            self.row = (self.table, attributes["data-method"], attributes["data-condition"],
+            self.row = (self.table, attributes["data-method"], attributes.get("data-condition", ""),
                         float(attributes.get("data-rate", "nan")))
         if tag == "td" and self.row:
             self.cells.setdefault(self.row, []).append(attributes.get("data-value"))
@@ -108,7 +111,7 @@ class ReportPage(unittest.TestCase):
         self.assertEqual(used - set(self.page.ids), set())
 
     def test_has_every_figure_or_says_why_not(self):
-        for name in ("headline", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
+        for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
@@ -131,6 +134,73 @@ class ReportPage(unittest.TestCase):
         for article in of_papers:
             self.assertIn("<dt>Published</dt>", article)
             self.assertIn('<p class="claim">The paper claims: ', article)
+            self.assertRegex(article, r'<p class="judged"><b[^>]*>(Holds here|Does not hold here)</b> for |Not judged here')
+        self.assertEqual(self.text.count('<p class="claim">The paper claims: '), 10)  # and no other heading is a claim
+
+    def test_every_figure_says_what_to_see(self):
+        figures = re.findall(r'<figure id="([^"]*)"[^>]*>.*?<figcaption>(.*?)</figcaption></figure>', self.text, flags=re.S)
+        self.assertGreater(len(figures), 20)
+        for name, caption in figures:
+            self.assertRegex(caption, r"^[A-Z][^.]{25,}\.", name)  # one whole sentence first
+
+    def test_the_papers_claims_are_judged_by_the_scores(self):
+        judged = dict(re.findall(r"<h3>(CLC Table I|RLD Fig. 6):[^<]*</h3>.*?(<p class=\"judged\">.*?</p>)", self.text, flags=re.S))
+        scores = [line for line in lines("scores.jsonl") if line["condition"] == "paper"]
+        bad = ("none", "diverging_below_20")
+        shares = [[line["category"] not in bad for line in scores if line["method"] == "clc" and
+                   line["false_positive_rate"] == rate] for rate in (0.0, 0.3)]
+        least = min(sum(share) / len(share) for share in shares)
+        self.assertIn(f"{'Holds' if least >= 0.99 else 'Does not hold'} here</b> for clc ({100 * least:.1f} % at ",
+                      judged["CLC Table I"])
+        solved = [line["solved"] for line in scores if line.get("nearest") == 12 and "solved" in line]
+        self.assertIn(f"{100 * sum(solved) / len(solved):.2f} % solved", judged["RLD Fig. 6"])
+
+    def test_the_first_screen_says_what_to_run(self):
+        first = re.search(r'<section id="verdict">(.*?)</section>', self.text, flags=re.S)[1]
+        self.assertLess(self.text.index('<section id="verdict">'), self.text.index('<section id="comparison">'))
+        self.assertEqual(first.count('class="headline"'), 1)
+        self.assertEqual(first.count("<table"), 1)  # one headline, one table
+        rows = re.findall(r'<tr data-method="([^"]*)">', first)
+        self.assertEqual(sorted(rows), ["clc", "rld-cbc n=12", "rld-pair"])
+        scores = lines("scores.jsonl")
+        usable = {}
+        for line in scores:
+            label = line["method"] + (f" n={line['nearest']}" if "nearest" in line else "")
+            usable.setdefault(label, []).append(line["usable"])
+        shares = [sum(usable[label]) / len(usable[label]) for label in rows]
+        self.assertEqual(shares, sorted(shares, reverse=True))  # the best comes first
+        shown = [float(values[0]) for key, values in self.page.cells.items() if key[0] == "headline"]
+        for share, value in zip(shares, shown):
+            self.assertAlmostEqual(share, value)
+        cards = re.findall(r'<figure class="scene" data-method="([^"]*)">(.*?)</figure>', first, flags=re.S)
+        self.assertEqual(sorted(name for name, _ in cards), sorted(rows))
+        for name, card in cards:
+            self.assertIn("<svg", card)
+            self.assertRegex(card, rf"<b>{name}</b> [A-Z]")
+        self.assertIn("Robust Lane Detection with Binary Integer Optimization", first)
+        self.assertIn("Lane Detection using Graph Search and Geometric Constraints for Formula Student Driverless", first)
+
+    def test_every_method_of_the_program_is_explained(self):
+        listed = subprocess.run([PROGRAM, "methods", "--all"], capture_output=True, text=True, check=True).stdout
+        names = [line.split()[0] for line in listed.splitlines()]
+        self.assertGreater(len(names), 10)
+        for name in names:
+            self.assertTrue(described(None, name).line, name)
+
+    def test_methods_of_different_objectives_are_never_said_to_agree(self):
+        exactness = re.search(r'<section id="exactness">(.*?)</section>', self.text, flags=re.S)[1]
+        for names in re.findall(r"<li>([^<]*) minimise one objective", exactness):
+            self.assertFalse("rld-pair" in names and "rld-shape" in names, names)
+
+    def test_no_paired_ratio_is_below_one(self):
+        table = re.search(r'<div class="table" id="ratios">(.*?)</table>', self.text, flags=re.S)[1]
+        ratios = [float(value) for value in re.findall(r'<td class="number" data-value="([\d.]+)">\d+\.\d\d <small>', table)]
+        self.assertGreater(len(ratios), 2)
+        self.assertGreaterEqual(min(ratios), 1.0)
+
+    def test_choosing_a_method_reaches_the_curves(self):
+        figure = re.search(r'<figure id="success-by-rate">.*?</figure>', self.text, flags=re.S)[0]
+        self.assertEqual(set(re.findall(r'<g data-curve="([^"]*)"', figure)), {"rld-cbc", "rld-pair", "clc"})
 
     def test_stored_exactness_is_what_is_shown(self):
         stored = [line for line in lines("optimality.jsonl") if "gap" in line]
@@ -256,8 +326,8 @@ class ReportPage(unittest.TestCase):
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
-    def test_headline_is_the_mean_over_the_scores(self):
-        rows = {key: values for key, values in self.page.cells.items() if key[0] == "headline"}
+    def test_rows_by_rate_are_the_mean_over_the_scores(self):
+        rows = {key: values for key, values in self.page.cells.items() if key[0] == "by-rate"}
         scores = lines("scores.jsonl")
         blocks = {(line["method"], line["condition"], line["false_positive_rate"]) for line in scores}
         self.assertEqual({key[2:] for key in rows}, {block[1:] for block in blocks})
@@ -361,7 +431,7 @@ class ReportPage(unittest.TestCase):
             by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]
             self.assertEqual(by_track.count("<small>trained</small>"), 2)  # one course in two conditions
             headline = re.search(r'<div class="table" id="headline">.*?</table>', text, flags=re.S)[0]
-            self.assertEqual(headline.count("*</td>"), 4)  # two conditions, two rates
+            self.assertEqual(headline.count("*</td>"), 1)  # one method
             self.assertRegex(text, r'<div class="table" id="outside">.*?<td[^>]*>MIT</td>.*?>3\.25<.*?>0\.04<')
 
     def test_results_of_earlier_versions_still_make_a_page(self):
@@ -392,6 +462,16 @@ class ReportPage(unittest.TestCase):
             results = os.path.join(folder, "results")
             page = os.path.join(folder, "other.html")
             self.assertIn("there is no track 'z'", self.refused(results, page, "--viewer", "h,z"))
+
+    def test_no_warning_of_a_library_reaches_the_user(self):
+        with tempfile.TemporaryDirectory() as folder:  # one scene, one track: figures have next to nothing to show
+            setup = Setup(tracks=("one",), rates=(0.3,), poses=1, conditions=("paper",), methods=("a" * 60, "b"))
+            self.made_of(folder, setup)  # nothing on stderr
+            sweep = subprocess.run([PROGRAM, "sweep", "--tracks", "generated:straight", "--methods", "rld-pair", "--sizes", "6",
+                                    "--every", "60", "--out", os.path.join(folder, "sweep")], capture_output=True, text=True,
+                                   check=False)
+            self.assertEqual((sweep.returncode, sweep.stderr), (0, ""))
+            self.assertNotIn("arning", sweep.stdout)
 
     def test_without_scenes_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:

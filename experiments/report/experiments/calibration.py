@@ -51,7 +51,7 @@ def _figure(shown, condition):
     axes.set_ylabel("share usable")
     legend(axes)
     name = f"calibration-{condition}" if condition else "calibration"
-    return drawn(name, "Above the dotted line a method is better than it says.", figure, title=condition,
+    return drawn(name, "The nearer to the dotted line, the more its confidence says; above it a method is better than it says.", figure, title=condition,
                  condition=condition)
 
 

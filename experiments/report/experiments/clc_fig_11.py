@@ -10,17 +10,25 @@ Command: conelane compare --methods clc --candidates --out RESULTS/candidates
 
 import numpy as np
 
-from ..clc_rows import moderate
+from ..clc_rows import moderate, of_paper
 from ..experiment import Missing
 from ..figures import drawn, variants
 from ..theme import legend, method_style, new_figure
 
 
-def html(results, published):
+_EARLY, _NEARLY_EVERY = 500, 95.0  # iterations; per cent of the scenes, after the paper's figures
+
+
+def _stored(results):
     for stored in (results.beside["candidates"], results.samples):
         samples = [sample for sample in map(moderate, stored) if sample.has("first_near_iteration")]
         if samples:
-            break
+            return samples
+    return []
+
+
+def html(results, published):
+    samples = _stored(results)
     if not samples:
         raise Missing("no method kept its candidates.")
     figure, axes = new_figure()
@@ -36,4 +44,15 @@ def html(results, published):
     axes.set_ylim(0, 102)
     axes.set_xlim(left=0)
     legend(axes)
-    return drawn("clc-fig-11", "Rates up to 30 %.", figure)
+    return drawn("clc-fig-11", "The earlier a curve is high, the sooner a good lane is met; where it stays level, none is found.", figure)
+
+
+def verdict(results, published):
+    """Most scenes have one early, nearly every one has one in the end."""
+    judged = []
+    for sample in of_paper(_stored(results)):
+        first = sample.known("first_near_iteration").first_near_iteration
+        early, ever = (100 * np.count_nonzero(first <= most) / len(sample) for most in (_EARLY, np.inf))
+        judged.append((sample.label, early > 50 and ever >= _NEARLY_EVERY,
+                       f"{early:.1f} % within {_EARLY} iterations, {ever:.1f} % in the end"))
+    return judged

@@ -10,7 +10,7 @@ Command: conelane compare --out RESULTS
 
 import numpy as np
 
-from ..clc_rows import moderate
+from ..clc_rows import moderate, of_paper
 from ..experiment import Missing
 from ..figures import drawn, variants
 from ..theme import INK, legend, method_colour, method_style, new_figure
@@ -28,10 +28,21 @@ def html(results, published):
     for sample, variant in variants(samples):
         kept = sample.where(np.isin(sample.category, ("ground_truth", "near_ground_truth", "too_short")))
         counts, _ = np.histogram(kept.lane_length, bins)
-        axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4,
+        axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4, gid=f"curve:{sample.method}",
                     color=method_colour(results.methods, sample.method),
                     linestyle=method_style(results.methods, sample.method, variant)["linestyle"])
     axes.set_xlabel("length [m]")
     axes.set_ylabel("of all scenes [%]")
     legend(axes)
-    return drawn("clc-fig-12", "Filled: the ground truth. Lines: lanes that do not diverge.", figure)
+    return drawn("clc-fig-12", "A line that follows the filled shape has lanes as long as the ground truth's; lanes that do not diverge.", figure)
+
+
+def verdict(results, published):
+    """Lanes that do not diverge have 90 % of the ground truth's length, added up."""
+    judged = []
+    for sample in of_paper(map(moderate, results.samples)):
+        kept = sample.where(np.isin(sample.category, ("ground_truth", "near_ground_truth", "too_short")))
+        if len(kept):
+            share = 100 * float(kept.lane_length.sum() / kept.ground_truth_length.sum())
+            judged.append((sample.label, share >= 90, f"{share:.0f} % of the length"))
+    return judged

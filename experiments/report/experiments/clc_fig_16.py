@@ -9,6 +9,7 @@ Command: conelane compare --methods clc --out RESULTS
 
 import numpy as np
 
+from ..clc_rows import of_paper
 from ..experiment import Missing
 from ..figures import drawn, group, variants
 from ..theme import legend, method_style, new_figure
@@ -37,7 +38,19 @@ def html(results, published):
     if not samples:
         raise Missing("no method enumerates.")
     return group([
-        drawn("clc-fig-16a", "Means and standard deviations.",
+        drawn("clc-fig-16a", "A straight rise: time goes with the iterations. Means and standard deviations.",
               _latency_against(results, samples, "iterations", "iterations"), "By iterations"),
-        drawn("clc-fig-16b", "Means and standard deviations.",
+        drawn("clc-fig-16b", "A flat line: more points cost little time. Means and standard deviations.",
               _latency_against(results, samples, "cones", "points in the map"), "By map points")])
+
+
+def verdict(results, published):
+    """Latency goes with the iterations, and more so than with the points of the map."""
+    judged = []
+    for sample in of_paper(sample.known("iterations") for sample in results.samples if sample.has("iterations")):
+        known = [values for values in (sample.iterations, sample.cones) if np.ptp(values) > 0]
+        if len(known) == 2 and np.ptp(sample.latency) > 0:
+            effort, points = (float(np.corrcoef(sample.latency, values)[0, 1]) for values in known)
+            judged.append((sample.label, effort >= 0.8 and effort > points,
+                           f"correlation {effort:.2f} with the iterations, {points:.2f} with the points"))
+    return judged

@@ -11,8 +11,10 @@ Command: conelane compare --full --tracks fsd:DIR --out RESULTS
 
 import numpy as np
 
-from ..clc_rows import UNKNOWN, printed, rows_by_rate
+from ..clc_rows import MOST_RATE, UNKNOWN, of_paper, printed, rows_by_rate
+from ..figures import percent_label
 from ..load import CATEGORIES
+from ..rows import CATEGORY_NOTE
 from ..tables import Column, percent, table
 
 
@@ -22,12 +24,23 @@ def html(results, published):
     columns = ([Column("method", "text"), Column("false positives %")] + [Column(title) for title in titles] +
                [Column("none %"), Column("success %"), Column("mean IoU %")])
 
-    def of_paper(row):
+    def of_row(row):
         return [printed(row, key) for key in keys] + [UNKNOWN, printed(row, "success"), printed(row, "mean_iou")]
 
     def of_ours(part):
         return ([percent(np.mean(part.category == key)) for key in CATEGORIES] +
                 [percent(part.success.mean()), percent(part.mean_iou)])
 
-    rows, marks = rows_by_rate(results, published, results.samples, of_paper, of_ours)
-    return table("clc-table-1", "", columns, rows, published_rows=marks)
+    rows, marks = rows_by_rate(results, published, results.samples, of_row, of_ours)
+    return table("clc-table-1", "", columns, rows, published_rows=marks, note=CATEGORY_NOTE)
+
+
+def verdict(results, published):
+    """Success at every rate up to 30 %."""
+    judged = []
+    for sample in of_paper(results.samples):
+        shares = {rate: float(sample.at(rate).success.mean()) for rate in sorted(set(sample.rate)) if rate <= MOST_RATE}
+        if shares:
+            rate, least = min(shares.items(), key=lambda pair: pair[1])
+            judged.append((sample.label, least >= 0.99, f"{100 * least:.1f} % at {percent_label(rate)} %"))
+    return judged

@@ -54,7 +54,7 @@ def html(results, published):
             columns.append([times[scene] for scene in scenes])
         figure = profile_figure([one.backend for one in of_size], [series_style(i) for i in range(len(of_size))],
                                 np.array(columns).T)
-        figures.append(drawn(f"backends-profile-{size}", f"{len(scenes)} scenes; what is proven, an optimum or that "
+        figures.append(drawn(f"backends-profile-{size}", f"The upper left curve is the fastest on most scenes. {len(scenes)} scenes; what is proven, an optimum or that "
                              "there is none, within a multiple of the fastest backend's time.", figure, f"n = {size}"))
     columns = [Column("n"), Column("backend", "text"), Column("scenes"), Column("proven %"), Column("errors"),
                Column("median ms"), Column("mean ms"), Column("standard deviation ms"), Column("geometric mean ms"),

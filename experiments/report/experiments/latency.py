@@ -73,8 +73,9 @@ def by_rate_figure(results):
 def html(results, published):
     under, alone = results.under(results.main_condition), in_condition(results)
     return group([
-        drawn("latency-by-rate", "Strong: the median. Thin: the 99th percentile. The line is the real-time budget."
+        drawn("latency-by-rate", "Below the line a method answers in time; thin curves, the 99th percentile, tell what happens at worst, strong "
+              "ones the median."
               f"{alone}", by_rate_figure(under), "By false-positive rate"),
-        drawn("latency", "Quartiles and median; whiskers to the 1st and 99th percentile; the tick is the maximum. The "
-              f"line is the real-time budget.{alone}", boxes_figure(under), "Over all rates and ranges")
+        drawn("latency", "A tick, the maximum, right of the line: once or more it was too late for real time. Quartiles and "
+              f"median; whiskers to the 1st and 99th percentile.{alone}", boxes_figure(under), "Over all rates and ranges")
     ]) + latency_table(results)

@@ -151,8 +151,8 @@ def html(results, published):
     cones = {row.get("nearest") for row in rows}
     where = " and ".join("all visible cones" if n is None else f"the {n} nearest cones" for n in sorted(
         cones, key=lambda n: n or 0))
-    figures = [drawn("optimality-gaps", f"Candidates of {rows[0]['method']} on {where}.", _gaps(rows), "Gap"),
-               drawn("optimality-success", "All scenes; one without such a lane is no success. Where the exact "
-                     "search met its time limit, its best lane.", _driving(rows),
+    figures = [drawn("optimality-gaps", f"A curve that starts high: the cheapest candidate often is the optimum. Candidates of {rows[0]['method']} on {where}.", _gaps(rows), "Gap"),
+               drawn("optimality-success", "Curves that lie on one another: the optimum drives no better. The scenes with "
+                     "a proven optimum and a feasible candidate, as in the table.", _driving(compared(rows)),
                      "Does the optimum drive better?")]
     return group(figures) + _table(rows, results.origin(rows[0]))

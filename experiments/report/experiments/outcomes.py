@@ -12,7 +12,7 @@ Command: conelane compare --out RESULTS
 import numpy as np
 
 from ..load import CATEGORIES
-from ..rows import attributes, key_cells, keys, part
+from ..rows import CATEGORY_NOTE, attributes, key_cells, keys, part
 from ..tables import Cell, Column, percent, table
 
 _TITLES = {"ground_truth": "ground truth %", "near_ground_truth": "near %", "too_short": "too short %",
@@ -32,5 +32,4 @@ def html(results, published):
             _checks(part(results, row)) for row in results.rows]
     columns = keys(results) + [Column(_TITLES[key]) for key in CATEGORIES] + [Column("errors"), Column("checker accepts")]
     return table("categories", "", columns, rows, row_attributes=attributes(results),
-                 note="Too short: below 75 % of the ground truth's length. Near: does not diverge and is long enough, but "
-                 "not of the very same cones.")
+                 note=CATEGORY_NOTE)

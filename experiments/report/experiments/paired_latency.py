@@ -1,7 +1,7 @@
 """Paired latencies
 
 Claim: By what factor do methods of the same cone set differ in time on the same scene?
-Protocol: geometric mean over scenes of a method's time divided by that of the method with the least shifted \
+Protocol: geometric mean over scenes of a method's time divided by that of the method with the least \
 geometric mean on the same cone set, of the comparison and of the sweep; 2.00 is twice the time. 95 % bootstrap \
 interval, tracks resampled.
 Source: this project.
@@ -10,6 +10,7 @@ Command: conelane compare --methods rld-cbc,rld-paper --out RESULTS
 
 from .. import measures
 from ..experiment import Missing
+from ..leaders import fastest_of
 from ..tables import Cell, Column, method_cell, table, text
 
 
@@ -27,7 +28,7 @@ def _of_one_set(results):
 def html(results, published):
     rows = []
     for samples in _of_one_set(results):
-        fastest = min(samples, key=lambda sample: measures.shifted_geometric_mean(sample.latency))
+        fastest = fastest_of(samples)
         for sample in samples:
             ratio = None if sample is fastest else measures.latency_ratio(sample, fastest)
             if ratio:

@@ -98,16 +98,18 @@ def html(results, published):
         under = results.under(condition)
         if any(sample.has("usable") for sample in under.samples):
             name, title = (f"-{condition}", f", condition {condition}") if condition else ("", "")
-            figures.append(drawn(f"usable-by-rate{name}", f"Share of scenes with a lane to drive by. {bars}",
+            figures.append(drawn(f"usable-by-rate{name}", f"High and level is good: the share of scenes with a lane to drive by as false "
+                                 f"positives grow. {bars}",
                                  usable_figure(under), f"Usable lanes{title}",
                                  condition if len(results.conditions) > 1 else ""))
     under, alone = results.under(results.main_condition), in_condition(results)
-    figures.append(drawn("success-by-rate", f"Share of scenes with a lane that does not diverge within 20 m. {bars}"
+    figures.append(drawn("success-by-rate", "High and level is good: the share of scenes whose lane does not diverge within 20 m, be "
+                         f"it a stub. {bars}"
                          f"{alone}", success_figure(under), "Success"))
     if any(sample.has("iou") for sample in under.samples):
-        figures.append(drawn("iou-by-rate", "Against all that is visible: a small cone set bounds it from above. "
+        figures.append(drawn("iou-by-rate", "High is good; against all that is visible, so a method on a small cone set stays low. "
                              f"{bars}{alone}", iou_figure(under), "Overlap"))
     if any(sample.has("accurate") for sample in under.samples):
-        figures.append(drawn("accurate-by-rate", "All four checks of the RLD paper hold, against the ground truth of "
-                             f"the method's own cone set. {bars}{alone}", accurate_figure(under), "Accurate lanes"))
+        figures.append(drawn("accurate-by-rate", "High is good: all four checks of the RLD paper hold, against the ground "
+                             f"truth of the method's own cone set. {bars}{alone}", accurate_figure(under), "Accurate lanes"))
     return group(figures) + quality_table(results)

@@ -14,6 +14,8 @@ from ..experiment import Missing
 from ..figures import drawn
 from ..theme import ACCENT, legend, logarithmic, method_style, new_figure
 
+_SMALL_SET, _SMALL_SET_MS = 14, 80.0  # as the paper says
+
 
 def html(results, published):
     if not results.sweep:
@@ -31,4 +33,15 @@ def html(results, published):
     axes.set_xlabel("cones in the set, n")
     axes.set_ylabel("latency [ms]")
     legend(axes)
-    return drawn("rld-fig-5", "The star: the size and mean that the paper's text states.", figure)
+    return drawn("rld-fig-5", "Below the star a method is faster than the paper's mean; the steeper a curve, the dearer more cones are.", figure)
+
+
+def verdict(results, published):
+    """Exact methods: slower on the largest set than on the smallest, and below the paper's mean under 14 cones."""
+    judged = []
+    for method in dict.fromkeys(sample.method for sample in results.sweep if sample.has("solved")):
+        means = {sample.nearest: float(sample.latency.mean()) for sample in results.sweep if sample.method == method}
+        small, large, below = min(means), max(means), [mean for size, mean in means.items() if size < _SMALL_SET]
+        holds = means[large] > means[small] and max(below, default=0.0) < _SMALL_SET_MS
+        judged.append((method, holds, f"mean {means[small]:.2f} ms at n = {small}, {means[large]:.2f} ms at n = {large}"))
+    return judged

@@ -17,6 +17,8 @@ from ..figures import drawn, group, variants
 from ..tables import Cell, Column, method_cell, milliseconds, percent, table, text
 from ..theme import ACCENT, legend, logarithmic, method_colour, method_style, new_figure
 
+_LIMIT_MS = 400.0
+
 
 def _distribution(results, samples, published):
     figure, axes = new_figure(height=3.2)
@@ -25,7 +27,7 @@ def _distribution(results, samples, published):
     bins = np.geomspace(smallest, most, 61)
     for sample, variant in variants(samples):
         counts, _ = np.histogram(np.clip(sample.latency, smallest, most), bins)
-        axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4,
+        axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4, gid=f"curve:{sample.method}",
                     color=method_colour(results.methods, sample.method),
                     linestyle=method_style(results.methods, sample.method, variant)["linestyle"])
     for value, label in ((published["rld_mean_ms"], "paper's mean"), (published["rld_p95_ms"], "its p95")):
@@ -59,6 +61,17 @@ def html(results, published):
     samples = [sample for sample in results.samples if sample.nearest == size]
     if not samples:
         raise Missing(f"no method ran on the {size} nearest cones.")
-    figure = drawn("rld-fig-6", "All rates and ranges together.", _distribution(results, samples, published))
+    figure = drawn("rld-fig-6", "What lies left of the lines is faster than the paper's mean and 95 %. All rates and ranges together.", _distribution(results, samples, published))
     exact = [sample for sample in samples if sample.has("solved")]
     return group([figure]) + (_solved(results, exact, published) if exact else "")
+
+
+def verdict(results, published):
+    """At least as many solved as in the paper, and half of them within half of the limit."""
+    judged = []
+    for sample in results.samples:
+        if sample.nearest == published["rld_cone_set"] and sample.has("solved"):
+            solved, median = sample.solved == 1.0, float(np.median(sample.latency))
+            judged.append((sample.label, bool(100 * solved.mean() >= published["rld_solved"] and median < _LIMIT_MS / 2),
+                           f"{100 * solved.mean():.2f} % solved, median {median:.2f} ms"))
+    return judged

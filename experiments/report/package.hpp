@@ -1,0 +1,46 @@
+#pragma once
+
+#include "experiments/files/interruption.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A folder of its own below the system's temporary one, gone with the object or with the program.
+class TemporaryFolder {
+  public:
+    TemporaryFolder();
+    ~TemporaryFolder() { remove(); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  private:
+    void remove() const;
+
+    std::filesystem::path path_;
+    std::optional<ClearOnInterruption> clearing_;
+};
+
+/// The Python package that the program carries refused its input and has said why on stderr.
+class PackageRefused : public std::runtime_error {
+  public:
+    PackageRefused() : std::runtime_error("what was to be drawn was refused") {}
+};
+
+/// Runs a module of the Python package `report` (this folder, carried by the program) with arguments.
+/// `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws PackageRefused where
+/// the module ends with exit code 2, std::runtime_error where it fails otherwise, or where Python or
+/// matplotlib is missing.
+void run_package(const std::string& module, const std::vector<std::string>& arguments,
+                 const std::string& wished_python);
+
+/// Puts a file in its place whole or not at all. Throws InputError naming the place.
+void put_in_place(const std::filesystem::path& file, const std::filesystem::path& place);
+
+}  // namespace conelane::experiments
