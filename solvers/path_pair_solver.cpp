@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,13 +60,30 @@ class PathPairSolver : public RldSolver {
         certificate.heading_multiplier = multipliers.heading;
         for (std::size_t q = 0; q < multipliers.clique.size(); ++q) {
             if (multipliers.clique[q] <= 0.0) continue;
-            BoundCertificate::Clique clique{{}, multipliers.clique[q]};
-            for (const int edge : search_.cliques().edges(static_cast<int>(q))) {
-                const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
-                clique.edges.push_back({e.i, e.j});
-            }
-            certificate.cliques.push_back(std::move(clique));
+            certificate.cliques.push_back(
+                {clique_edges(problem, static_cast<int>(q)), multipliers.clique[q]});
         }
+        return certificate;
+    }
+
+    SearchCertificate certify_search(const LaneGraphProblem& problem, const RldReport& report,
+                                     double time_limit_ms) {
+        // Sums of doubles are off by less.
+        constexpr double kRounding = 1e-9;
+        SearchCertificate certificate{{}, report.lane_graph, report.objective, -kUnreachable};
+        if (report.status == SolveStatus::infeasible) {
+            certificate.bound = kUnreachable;
+        } else if (report.bound) {
+            certificate.bound = *report.bound - kRounding;
+        }
+        if (certificate.bound == -kUnreachable) return certificate;
+        const Deadline deadline(time_limit_ms);
+        SearchClock no_limit;
+        graph_.build(problem, no_limit);
+        for_each_system(problem, [&](const std::optional<std::size_t>& far_start) {
+            certificate.parts.push_back(certify_part(problem, certificate.bound, deadline));
+            certificate.parts.back().far_start = far_start;
+        });
         return certificate;
     }
 
@@ -132,14 +152,14 @@ class PathPairSolver : public RldSolver {
         system_.ends_are_partners = true;
     }
 
-    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
-        const auto stopped = [&deadline] { return deadline.passed(); };
+    /// Calls `visit(far_start)` for each system of legs, set up in `system_`: from near to far; and for the
+    /// pairing `paper`, one leg between near cones and one between far ones, a system for each first end of
+    /// the far leg, which is the cone of smaller index.
+    template <typename Visit>
+    void for_each_system(const LaneGraphProblem& problem, const Visit& visit) {
         near_to_far(problem);
-        Outcome outcome = search_.run(system_, tolerance, stopped);
-        if (problem.parameters.pairing == Pairing::near_far) return outcome;
-
-        // One leg between near cones, one between far ones: a system for each first end of the far leg, which
-        // is the cone of smaller index.
+        visit(std::nullopt);
+        if (problem.parameters.pairing == Pairing::near_far) return;
         system_.kinds[0].end = system_.kinds[0].start;
         system_.kind_count = 2;
         system_.ends_are_partners = false;
@@ -153,12 +173,58 @@ class PathPairSolver : public RldSolver {
                 system_.kinds[1].end[static_cast<std::size_t>(partner)] = 1;
                 any = true;
             }
-            if (!any) continue;
-            const Outcome part = search_.run(system_, tolerance, stopped);
+            if (any) visit(std::optional(static_cast<std::size_t>(cone)));
+        }
+    }
+
+    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
+        Outcome outcome{std::numeric_limits<double>::infinity(), true};
+        for_each_system(problem, [&](const std::optional<std::size_t>&) {
+            const Outcome part = search_.run(system_, tolerance, [&deadline] { return deadline.passed(); });
             outcome.bound = std::min(outcome.bound, part.bound);
             outcome.complete = outcome.complete && part.complete;
-        }
+        });
         return outcome;
+    }
+
+    /// What the root does with its bound known to be the right one.
+    SearchCertificate::Part certify_part(const LaneGraphProblem& problem, double bound,
+                                         const Deadline& deadline) {
+        constexpr double kUnit = 1.0 / (1 << SearchCertificate::kFractionBits);
+        // Drops nothing here that exact arithmetic does not drop.
+        constexpr double kRounding = 1e-7;
+        SearchCertificate::Part part;
+        // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
+        const double most = cost_limit(problem) +
+                            2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
+        incumbent_.reset(graph_, std::min(bound, most) + kRounding);
+        const std::vector<Multipliers> stages =
+            search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });
+        const auto units = [](double multiplier) { return std::llround(multiplier / kUnit); };
+        std::vector<std::size_t> place(static_cast<std::size_t>(search_.cliques().size()), 0);  // from 1
+        for (const Multipliers& multipliers : stages) {
+            SearchCertificate::Stage& stage = part.stages.emplace_back();
+            for (const double multiplier : multipliers.cone) stage.cone.push_back(units(multiplier));
+            stage.heading = units(multipliers.heading);
+            for (std::size_t q = 0; q < multipliers.clique.size(); ++q) {
+                if (multipliers.clique[q] <= 0.0) continue;
+                if (place[q] == 0) {
+                    part.cliques.push_back(clique_edges(problem, static_cast<int>(q)));
+                    place[q] = part.cliques.size();
+                }
+                stage.clique.emplace_back(place[q] - 1, units(multipliers.clique[q]));
+            }
+        }
+        return part;
+    }
+
+    [[nodiscard]] std::vector<Edge> clique_edges(const LaneGraphProblem& problem, int clique) const {
+        std::vector<Edge> edges;
+        for (const int edge : search_.cliques().edges(clique)) {
+            const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
+            edges.push_back({e.i, e.j});
+        }
+        return edges;
     }
 
     [[nodiscard]] LaneGraph lane_graph(const LaneGraphProblem& problem) const {
@@ -186,6 +252,15 @@ BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time
     options.fix_arcs = false;
     options.search_fronts = false;
     return PathPairSolver(options).certify(problem, time_limit_ms);
+}
+
+SearchCertificate certify_search(const LaneGraphProblem& problem, double time_limit_ms) {
+    PathPairSolver solver({});
+    const RldReport report = solver.solve(problem, {.time_limit_ms = time_limit_ms}, nullptr);
+    PathPairOptions options;
+    options.complete_walks = false;
+    options.search_fronts = false;
+    return PathPairSolver(options).certify_search(problem, report, time_limit_ms);
 }
 
 std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options) {

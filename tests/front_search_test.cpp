@@ -380,6 +380,27 @@ TEST(FrontDetector, LeavesAFalseConeAside) {
     EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
 }
 
+// Ends are evened where the other side is more than 6.5 m away; of a lane that is wide all along nothing
+// would be left.
+TEST(FrontDetector, AWideLaneIsALane) {
+    Scene scene = straight_front_scene(6);
+    for (Cone& cone : scene.cones) cone.position.y() *= 2.0;  // 7.2 m
+    FrontMap map;
+    map.build(scene);
+    std::array<std::vector<Vertex>, 2> cones;
+    for (Vertex cone = 0; cone < map.size(); ++cone)
+        cones[map.position(cone).y() > 0.0 ? kLeft : kRight].push_back(cone);
+    even_far_ends(map, cones);
+    EXPECT_THAT(cones[kLeft], testing::SizeIs(6));
+    EXPECT_THAT(cones[kRight], testing::SizeIs(6));
+
+    scene.cones.back().position.y() -= 4.0;  // 11 m off: more than a quarter
+    map.build(scene);
+    even_far_ends(map, cones);
+    EXPECT_THAT(cones[kLeft], testing::SizeIs(6));
+    EXPECT_THAT(cones[kRight], testing::SizeIs(5));
+}
+
 TEST(FrontDetector, AMirroredSceneHasTheMirroredLane) {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         Scene scene = tests::random_scene(seed, 24);

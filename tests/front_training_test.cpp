@@ -251,6 +251,30 @@ TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
     std::filesystem::remove_all(folder);
 }
 
+// `turn` is an input of the extensions, behind those of the state, and `width` of the state, the extensions
+// and the start.
+TEST(FrontTraining, AnInputThatIsLeftOutKeepsNoWeight) {
+    FrontTrainingOptions options = quick();
+    options.without = {"turn", "width"};
+    const FrontWeights weights = train_front(courses(), {}, options, {});
+    const auto weights_of = [](const FrontNetworkWeights& network, std::size_t input) {
+        float sum = std::abs(network.linear[input]);
+        for (std::size_t unit = 0; unit < kFrontUnits; ++unit)
+            sum += std::abs(network.hidden[input * kFrontUnits + unit]);
+        return sum;
+    };
+    const auto place = [](std::string_view name, auto table) {
+        return static_cast<std::size_t>(std::ranges::find(table, name, &FrontFeature::name) - table.begin());
+    };
+    const std::size_t turn = kStateFeatures + place("turn", extend_feature_table());
+    EXPECT_EQ(weights_of(weights.extend, turn), 0.0F);
+    EXPECT_GT(weights_of(weights.extend, turn + 1), 0.0F);
+    const std::size_t width = place("width", state_feature_table());
+    EXPECT_EQ(weights_of(weights.extend, width), 0.0F);
+    EXPECT_EQ(weights_of(weights.stop, width), 0.0F);
+    EXPECT_EQ(weights_of(weights.start, place("width", start_feature_table())), 0.0F);
+}
+
 TEST(FrontTraining, LearnsToFindLanesOnACourseItHasNotSeen) {
     SceneOptions scenes;
     scenes.false_positive_rates = {0.2};
@@ -284,6 +308,7 @@ TEST(FrontTraining, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](auto&) {}), "accepted");
     EXPECT_EQ(key_of([](auto& o) { o.draws_per_step = 0; }), "draws_per_step");
     EXPECT_EQ(key_of([](auto& o) { o.scenes.scenes_per_draw = 0; }), "scenes_per_draw");
+    EXPECT_EQ(key_of([](auto& o) { o.without = {"turn", "colour"}; }), "without");
     EXPECT_EQ(key_of([](auto& o) { o.imitation_rate = -1.0; }), "imitation_rate");
     EXPECT_EQ(key_of([](auto& o) { o.search_rate = 0.0; }), "search_rate");
     EXPECT_EQ(key_of([](auto& o) { o.threads = 0; }), "threads");

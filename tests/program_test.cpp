@@ -47,7 +47,7 @@ TEST_F(Program, HelpIsEverywhere) {
     for (const char* command :
          {"scenes", "detect", "methods", "solve", "solvers", "check", "score", "compare", "sweep", "merge",
           "study", "study formulations", "study optimality", "study backends", "study relaxations",
-          "study confidence-and-colour", "report", "tune"}) {
+          "study confidence-and-colour", "study front-beam", "report", "tune"}) {
         const Outcome help = run(std::string(command) + " --help");
         EXPECT_EQ(help.exit_code, 0);
         EXPECT_THAT(help.output, HasSubstr("--help")) << command;
@@ -255,6 +255,27 @@ TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     EXPECT_THAT(text_of(path("read")), HasSubstr("\"scene\":\"a\""));
+}
+
+/// Verified, tampered with, of another cone, and more than may be looked at: the exit code tells the first
+/// from the others.
+TEST_F(Program, CertifiesWholeSearches) {
+    make_scenes("--fp 0.2");
+    ASSERT_EQ(run("certify --whole --nearest 16 --scenes s.scenes.jsonl --out c.jsonl").exit_code, 0);
+    const std::string verify = "certify --whole --nearest 16 --scenes s.scenes.jsonl --verify ";
+    const Outcome good = run(verify + "c.jsonl");
+    EXPECT_EQ(good.exit_code, 0);
+    EXPECT_THAT(good.output, testing::AllOf(HasSubstr("0 refused"), HasSubstr("0 not verified")));
+    const std::string text = text_of(path("c.jsonl"));
+    std::string forged = text;
+    const std::size_t digit = forged.find("\"objective\":-") + 14;
+    forged[digit] = forged[digit] == '9' ? '8' : static_cast<char>(forged[digit] + 1);
+    file_with(forged, "forged.jsonl");
+    const Outcome bad = run(verify + "forged.jsonl");
+    EXPECT_EQ(bad.exit_code, 1);
+    EXPECT_THAT(bad.output, testing::AllOf(HasSubstr("does not cost"), HasSubstr("1 refused")));
+    EXPECT_EQ(run("certify --whole --nearest 4 --scenes s.scenes.jsonl --verify c.jsonl").exit_code, 1);
+    expect_refused(verify + "c.jsonl --most-steps 0", {"--most-steps"});
 }
 
 /// Nothing is not right, and lines are counted with the blank ones.
@@ -777,6 +798,10 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     const Outcome list = run("study");
     EXPECT_EQ(list.exit_code, 0);
     EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
+    EXPECT_THAT(beams.output, HasSubstr("best score"));
+    expect_refused("study front-beam --scenes s.scenes.jsonl --beams 0", {"beam_width"});
+    expect_refused("study front-beam --scenes s.scenes.jsonl --weights s.scenes.jsonl", {"s.scenes.jsonl"});
     expect_refused("study magic", {"magic"});
 }
 

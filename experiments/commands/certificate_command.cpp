@@ -1,19 +1,24 @@
 #include "conelane/bound_certificate.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "experiments/checking/certificate_verifier.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/certificate_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/search_certificate_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/cone_index.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "solvers/path_pair_solver.hpp"
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -28,6 +33,8 @@ struct Options {
     std::string verify;
     std::optional<std::size_t> nearest;
     double time_limit_ms = std::numeric_limits<double>::infinity();
+    bool whole = false;
+    std::int64_t most_steps = 5'000'000;
     ParameterSource parameters;
 };
 
@@ -76,9 +83,24 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
     return certificate;
 }
 
-void certify(const Options& options, const RldParameters& parameters) {
+std::vector<SearchCertificateRecord> search_certificates(const Options& options,
+                                                         const RldParameters& parameters) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::vector<SearchCertificateRecord> records;
+    records.reserve(scenes.size());
+    Progress progress("certify", scenes.size());
+    for (const AnnotatedScene& annotated : scenes) {
+        const Scene scene = cone_set(options, annotated.scene);
+        records.push_back(
+            to_search_record(scene, certify_search(make_problem(scene, parameters), options.time_limit_ms)));
+        progress.advance();
+    }
+    return records;
+}
+
+std::vector<CertificateRecord> root_certificates(const Options& options, const RldParameters& parameters) {
     if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
-        throw InvalidInput("--params", "certificates are for the pairing near_far without colour costs");
+        throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<CertificateRecord> records;
@@ -90,35 +112,90 @@ void certify(const Options& options, const RldParameters& parameters) {
             to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms)));
         progress.advance();
     }
-    write_certificates(options.out, records);
+    return records;
 }
 
-void verify(const Options& options, const RldParameters& parameters) {
+/// Calls `verify(record, scene)` for each record with the scene that it names.
+template <typename Record, typename Verify>
+void for_each_record(const Options& options, const std::vector<Record>& records, const Verify& verify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::unordered_map<std::string, const Scene*> scene_of;
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
-    const std::vector<CertificateRecord> records = read_certificates(options.verify);
-    std::size_t failed = 0;
     if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
-    for (const CertificateRecord& record : records) {
+    Progress progress("verify", records.size());
+    for (const Record& record : records) {
         const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
             throw InputError(options.verify, record.line, "scene",
                              "'" + record.scene + "' is not in the scenes file");
         }
-        const Scene scene = cone_set(options, *found->second);
+        verify(record, cone_set(options, *found->second));
+        progress.advance();
+    }
+}
+
+std::string no_cone(ConeId id) {
+    return fmt::format("cone {} is not in the scene", id);
+}
+
+void verify_bounds(const Options& options, const RldParameters& parameters) {
+    const std::vector<CertificateRecord> records = read_certificates(options.verify);
+    std::size_t failed = 0;
+    for_each_record(options, records, [&](const CertificateRecord& record, const Scene& scene) {
         ConeId missing{};
         std::vector<std::string> violations;
         if (const auto certificate = from_record(scene, record, missing)) {
             violations = verify_bound(scene, parameters, *certificate).violations;
         } else {
-            violations.push_back(fmt::format("cone {} is not in the scene", missing));
+            violations.push_back(no_cone(missing));
         }
         for (const std::string& violation : violations) fmt::print("{}: {}\n", record.scene, violation);
         if (!violations.empty()) ++failed;
-    }
+    });
     fmt::print("{} verified, {} failed\n", records.size() - failed, failed);
     if (failed > 0) throw CLI::RuntimeError(1);
+}
+
+void verify_searches(const Options& options, const RldParameters& parameters) {
+    using Kind = SearchVerdict::Kind;
+    const std::vector<SearchCertificateRecord> records = read_search_certificates(options.verify);
+    std::size_t optima = 0;
+    std::size_t infeasible = 0;
+    std::size_t bounds = 0;
+    std::size_t refused = 0;
+    std::size_t unverified = 0;
+    for_each_record(options, records, [&](const SearchCertificateRecord& record, const Scene& scene) {
+        ConeId missing{};
+        SearchVerdict verdict;
+        if (const auto certificate = from_search_record(scene, record, missing)) {
+            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
+        } else {
+            verdict.reason = no_cone(missing);
+        }
+        if (verdict.kind != Kind::verified) fmt::print("{}: {}\n", record.scene, verdict.reason);
+        if (verdict.kind == Kind::unverified) ++unverified;
+        if (verdict.kind == Kind::refused) ++refused;
+        if (verdict.kind == Kind::verified)
+            ++(verdict.is_optimum ? optima : std::isinf(record.bound) ? infeasible : bounds);
+    });
+    fmt::print(
+        "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
+        optima, infeasible, bounds, refused, unverified, options.most_steps);
+    if (refused + unverified > 0) throw CLI::RuntimeError(1);
+}
+
+void run(const Options& options, const RldParameters& parameters) {
+    if (options.verify.empty()) {
+        if (options.whole) {
+            write_search_certificates(options.out, search_certificates(options, parameters));
+        } else {
+            write_certificates(options.out, root_certificates(options, parameters));
+        }
+    } else if (options.whole) {
+        verify_searches(options, parameters);
+    } else {
+        verify_bounds(options, parameters);
+    }
 }
 
 }  // namespace
@@ -126,25 +203,27 @@ void verify(const Options& options, const RldParameters& parameters) {
 void add_certify_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("certify",
                                                 "Lagrange multipliers that prove a lower bound of each "
-                                                "scene's optimum; --verify recomputes such bounds "
-                                                "independently of the solver, exit code 1 on a failure");
+                                                "scene's optimum, with --whole all that is needed "
+                                                "to repeat the proof of the optimum; --verify recomputes "
+                                                "both independently of the solver, exit code 1 "
+                                                "where not all of it is verified");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");
     add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");
     what.add_option("--verify", options->verify, "*.certificates.jsonl to verify");
     what.require_option(1);
+    command.add_flag("--whole", options->whole,
+                     "of the whole search, verified in rational arithmetic, not of the root's bound alone");
+    command
+        .add_option("--most-steps", options->most_steps,
+                    "labels and fronts for verifying a whole search; with more it is not verified")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
+        ->capture_default_str();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
     add_time_limit_option(command, options->time_limit_ms);
     add_parameter_options(command, options->parameters, "the defaults");
-    command.callback([options] {
-        const RldParameters parameters = options->parameters.load();
-        if (options->verify.empty()) {
-            certify(*options, parameters);
-        } else {
-            verify(*options, parameters);
-        }
-    });
+    command.callback([options] { run(*options, options->parameters.load()); });
 }
 
 }  // namespace conelane::experiments

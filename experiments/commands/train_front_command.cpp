@@ -118,6 +118,10 @@ void add_train_front_command(CLI::App& train_command) {
                      "a second course lies beside the first in a third of the draws");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
+    command
+        .add_option("--without", training.without,
+                    "inputs of the cost that it shall not see, by their names in front_features.cpp")
+        ->delimiter(',');
     add_threads_option(command, training.threads, "the weights are the same with any number");
     add_output_option(command, "--out", options->out, "weights (JSON)")->required();
     command.callback([options] { train(*options); });

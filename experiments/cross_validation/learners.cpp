@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/file_text.hpp"
 #include "experiments/files/front_weights_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/method_parameter_file.hpp"
@@ -22,9 +23,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 namespace conelane::experiments {
 namespace {
@@ -40,28 +39,10 @@ constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kFront = "front.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 
-std::string text_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (!stream) throw InputError(file, 0, "", "cannot be read");
-    return text.str();
-}
-
 void write(const fs::path& file, const std::string& text) {
     AtomicFile output(file);
     output.stream() << text;
     output.commit();
-}
-
-/// `parse(text)` of the file, whose InvalidInput comes out as an error in that file.
-template <typename Parse>
-auto parsed(const fs::path& file, const Parse& parse) {
-    try {
-        return parse(text_of(file));
-    } catch (const InvalidInput& error) {
-        throw InputError(file, 0, error.key(), error.what());
-    }
 }
 
 // The networks and step scores of clc and clc-paper, with the options of their shipped trainings.
@@ -124,9 +105,9 @@ void learn_clc_paper(const LearningOptions& options, const fs::path& folder) {
 ClcOptions clc_options(const fs::path& folder) {
     ClcOptions options = extended_clc_options();
     options.step_scores = std::make_shared<StepScores>(
-        parsed(folder / kStepScores, [](auto text) { return parse_step_scores(text); }));
+        parsed_file(folder / kStepScores, [](auto text) { return parse_step_scores(text); }));
     options.ranking =
-        make_rank_net(parsed(folder / kExtendedNet, [](auto text) { return parse_rank_net(text); }));
+        make_rank_net(parsed_file(folder / kExtendedNet, [](auto text) { return parse_rank_net(text); }));
     return options;
 }
 
@@ -144,7 +125,8 @@ MethodMaker make_warm_clc(const fs::path& folder, const RunOptions& options) {
 
 MethodMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
     ClcOptions clc = paper_clc_options();
-    clc.ranking = make_rank_net(parsed(folder / kPaperNet, [](auto text) { return parse_rank_net(text); }));
+    clc.ranking =
+        make_rank_net(parsed_file(folder / kPaperNet, [](auto text) { return parse_rank_net(text); }));
     return maker_of(
         "clc-paper", [clc] { return make_clc_detector(clc); }, options);
 }
@@ -238,7 +220,7 @@ void learn_front(const LearningOptions& options, const fs::path& folder) {
 
 FrontOptions front_options(const fs::path& folder) {
     FrontOptions front = shipped_front_options();
-    front.weights = parsed(folder / kFront, [](auto text) { return parse_front_weights(text); });
+    front.weights = parsed_file(folder / kFront, [](auto text) { return parse_front_weights(text); });
     return front;
 }
 

@@ -2,7 +2,9 @@
 
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
+#include "experiments/studies/differential.hpp"
 #include "experiments/studies/formulations.hpp"
+#include "experiments/studies/front_beam.hpp"
 #include "experiments/studies/optimality.hpp"
 #include "experiments/studies/relaxations.hpp"
 
@@ -12,9 +14,11 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     std::vector<std::unique_ptr<Study>> studies;
     studies.push_back(make_optimality_study());
     studies.push_back(make_backends_study());
+    studies.push_back(make_differential_study());
     studies.push_back(make_formulations_study());
     studies.push_back(make_relaxations_study());
     studies.push_back(make_confidence_and_colour_study());
+    studies.push_back(make_front_beam_study());
     return studies;
 }
 

@@ -44,6 +44,7 @@ std::string describe_training(const std::vector<Track>& courses, const FrontTrai
           {"short_sight", options.scenes.short_sight},
           {"other_course", options.scenes.other_course},
           {"highest_rate", options.scenes.highest_rate}}},
+        {"without", options.without},
         {"imitation", {{"steps", options.imitation_steps}, {"learning_rate", options.imitation_rate}}},
         {"through_search",
          {{"steps", options.search_steps},

@@ -37,7 +37,7 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
         if (contenders_.size() == FrontJudge::kContenders) break;
         FrontTruth::Cones cones;
         front_.cones(lane.parent, cones);
-        even_far_ends(front_.map(), cones, kWidestLane_m);
+        even_far_ends(front_.map(), cones);
         contenders_.push_back({lane.parent, lane.score});
         risks_.push_back(truth_.risk(cones, boundaries, options.risk));
         lanes_.push_back(std::move(cones));

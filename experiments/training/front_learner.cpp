@@ -206,7 +206,7 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     std::vector<double> wanted;
     for (const FrontSearch::Finished& lane : lanes) {
         front_.cones(lane.parent, cones_);
-        even_far_ends(front_.map(), cones_, kWidestLane_m);
+        even_far_ends(front_.map(), cones_);
         risks.push_back(truth_.risk(cones_, boundaries, options.risk));
         probabilities.push_back(lane.score);
         wanted.push_back(-risks.back() / options.risk_scale);

@@ -9,10 +9,12 @@
 #include "graph_search/front/front_detector.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string_view>
 
 #include <boost/random/normal_distribution.hpp>
 #include <oneapi/tbb/info.h>
@@ -27,7 +29,7 @@ constexpr double kSmallestDeviation = 1e-5;
 /// No step follows a longer gradient: single scenes that went all wrong.
 constexpr double kLongestGradient = 5.0;
 
-/// He's initial values for the hidden layer; the outputs start at 0, so all moves are judged alike.
+/// He's initial values for the hidden layer, small ones for the outputs.
 FrontWeights initial_weights(std::uint64_t seed) {
     FrontWeights weights = FrontWeights::zero();
     auto random = generator_of("front weights", seed);
@@ -41,6 +43,35 @@ FrontWeights initial_weights(std::uint64_t seed) {
         for (float& weight : network->output) weight = static_cast<float>(of_output(random));
     }
     return weights;
+}
+
+/// The names of what the networks of the cost see, in the order of their inputs.
+std::array<std::vector<std::string_view>, 3> cost_inputs() {
+    std::array<std::vector<std::string_view>, 3> names;
+    const auto add = [](std::vector<std::string_view>& to, std::span<const FrontFeature> table) {
+        for (const FrontFeature& feature : table) to.push_back(feature.name);
+    };
+    add(names[0], state_feature_table());
+    add(names[0], extend_feature_table());
+    add(names[1], state_feature_table());
+    add(names[1], stop_feature_table());
+    add(names[2], start_feature_table());
+    return names;
+}
+
+/// Sets the weights of those inputs to 0.
+void leave_out(const std::vector<std::string>& names, FrontWeights& weights) {
+    if (names.empty()) return;
+    const std::array networks{&weights.extend, &weights.stop, &weights.start};
+    const auto inputs = cost_inputs();
+    for (std::size_t network = 0; network < networks.size(); ++network) {
+        for (std::size_t input = 0; input < inputs[network].size(); ++input) {
+            if (std::ranges::find(names, inputs[network][input]) == names.end()) continue;
+            networks[network]->linear[input] = 0.0F;
+            std::fill_n(networks[network]->hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
+                        kFrontUnits, 0.0F);
+        }
+    }
 }
 
 /// What one draw of a step gives.
@@ -73,9 +104,11 @@ class Training {
         : options_(options),
           scenes_(courses, options.scenes, options.seed),
           weights_(initial_weights(options.seed)),
-          values_(flat(weights_)),
-          adam_(values_.size(), kSmallestDeviation),
-          slots_(options.draws_per_step) {}
+          adam_(static_cast<Eigen::Index>(parameter_count(weights_)), kSmallestDeviation),
+          slots_(options.draws_per_step) {
+        leave_out(options.without, weights_);
+        values_ = flat(weights_);
+    }
 
     [[nodiscard]] std::size_t steps() const { return first_judging() + options_.judge_steps; }
     [[nodiscard]] const FrontWeights& weights() const { return weights_; }
@@ -99,6 +132,7 @@ class Training {
             for (const FrontLearner::Loss& loss : slot.losses) note(loss, progress);
         }
         if (scenes == 0) return;
+        leave_out(options_.without, sum);
         Eigen::ArrayXd derivatives = flat(sum) / static_cast<double>(scenes);
         const double length = std::sqrt(derivatives.square().sum());
         if (length > kLongestGradient) derivatives *= kLongestGradient / length;
@@ -241,6 +275,12 @@ void validate(const FrontTrainingOptions& options) {
         if (!valid) throw InvalidInput(key, reason);
     };
     validate(options.loss.search);
+    for (const std::string& name : options.without) {
+        const auto all = cost_inputs();
+        const bool known = std::ranges::any_of(
+            all, [&](const auto& inputs) { return std::ranges::find(inputs, name) != inputs.end(); });
+        if (!known) throw InvalidInput("without", "no input of the cost is called " + name);
+    }
     require(options.draws_per_step > 0, "draws_per_step", "must be positive");
     require(options.scenes.scenes_per_draw > 0, "scenes_per_draw", "must be positive");
     require(options.imitation_rate > 0.0 && std::isfinite(options.imitation_rate), "imitation_rate",

@@ -32,9 +32,10 @@ struct FrontOptions {
 /// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence. Enumeration counts
 /// the states that moved, and says `complete` where no lane that the rules allow was left out.
 ///
-/// Where no lane was found before time or memory was spent, a boundary is looked for that is seen alone (see
-/// BoundarySearch): three cones at least, the other side of the answer empty. The bonus of the last lane has
-/// no part in it, and it is not remembered as one.
+/// Where no lane was found before time or memory was spent, or none that is usable with a probability of 20
+/// %, a boundary is looked for that is seen alone (see BoundarySearch): three cones at least, the other side
+/// of the answer empty, no confidence. The bonus of the last lane has no part in it, and it is not remembered
+/// as one.
 ///
 /// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none, nor a boundary
 /// alone; `stopped` by iterations where none was found but the beam left some out; `stopped_by` time or
@@ -44,7 +45,8 @@ struct FrontOptions {
 /// range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 
-/// The cones of a lane without its far ends, as even_far_ends, on positions. For training too.
-void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cones, double widest_m);
+/// The cones of a lane without its far ends, as even_far_ends, on positions. Where kWidestLane_m would leave
+/// no lane, which is a wide one, they may be apart a quarter more than its nearer half is. For training too.
+void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cones);
 
 }  // namespace conelane

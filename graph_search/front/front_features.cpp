@@ -163,9 +163,14 @@ float inside_triangle(FrontMap& map, Vertex from, const Point& b, const Point& c
     const double area = cross(b - a, c - a);
     const double sign = area < 0.0 ? -1.0 : 1.0;
     const auto farthest = static_cast<float>(std::max((b - a).norm(), (c - a).norm()));
+    // Most cones lie clearly beside the angle at `from`, which their direction tells.
+    constexpr double kClearly = 1e-9;
+    const Point along_b = sign * (b - a);
+    const Point along_c = sign * (c - a);
     float count = 0.0F;
     for (const FrontEdge& edge : map.edges(from)) {
         if (edge.length_m > farthest) break;
+        if (cross(along_b, edge.direction) < -kClearly || cross(along_c, edge.direction) > kClearly) continue;
         if (edge.to == b_cone || edge.to == c_cone) continue;
         const Point& p = map.position(edge.to);
         if (sign * cross(b - a, p - a) > 0.0 && sign * cross(c - b, p - b) > 0.0 &&
@@ -188,15 +193,15 @@ Point next_place(const FrontMap& map, const FrontEnd& end, double turn_rad, doub
 /// Distance from a place to the nearest neighbour of the end that is not on the front, and how many are near.
 std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const FrontEnd& other,
                                     const Point& place) {
-    double nearest_m = kFarOff_m;
+    double nearest_m2 = kFarOff_m * kFarOff_m;
     float near = 0.0F;
     for (const FrontEdge& edge : map.edges(end.cones[0])) {
         if (edge.to == end.cones[1] || edge.to == other.cones[0] || edge.to == other.cones[1]) continue;
-        const double off_m = (map.position(edge.to) - place).norm();
-        nearest_m = std::min(nearest_m, off_m);
-        if (off_m < kPlaceReach_m) near = std::min(near + 1.0F, kMostCounted);
+        const double off_m2 = (map.position(edge.to) - place).squaredNorm();
+        nearest_m2 = std::min(nearest_m2, off_m2);
+        if (off_m2 < kPlaceReach_m * kPlaceReach_m) near = std::min(near + 1.0F, kMostCounted);
     }
-    return {nearest_m, near};
+    return {std::sqrt(nearest_m2), near};
 }
 
 }  // namespace
@@ -267,10 +272,11 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     const float log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F;
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
-    double partner_m = (facing - across).norm();
+    double partner_m2 = (facing - across).squaredNorm();
     for (const FrontEdge& near : map.edges(move.to)) {
         if (near.length_m > static_cast<float>(mean_width_m + kPartnerReach_m)) break;
-        if (near.to != from) partner_m = std::min(partner_m, (map.position(near.to) - across).norm());
+        if (near.to != from)
+            partner_m2 = std::min(partner_m2, (map.position(near.to) - across).squaredNorm());
     }
     return {scaled(length_m, kLength_m),
             log_own,
@@ -296,7 +302,7 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
             std::min(about.beside, kMostCounted),
             std::min(about.within_disc, 4.0F) / 2.0F,
             about.continuation,
-            scaled(partner_m, kPartnerReach_m, 1.0),
+            scaled(std::sqrt(partner_m2), kPartnerReach_m, 1.0),
             length_m > kShortSegment_m ? 1.0F : 0.0F,
             scaled(map.view_radius_m() - at.norm(), kView_m, kFarBeyond),
             about.crowding};

@@ -72,6 +72,68 @@ double probability_of(double log_odds) {
     return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
+/// What the cones of a lane have in all, and at worst.
+struct Tally {
+    float least_lead = kMost;
+    float least_share = 1.0F;
+    float least_score = kMost;
+    float least_margin = kMost;
+    double right_near = 1.0;
+    double right = 1.0;
+    double shared_m = 0.0;
+    float longest = 0.0F;
+    float bridges = 0.0F;
+    float inside = 0.0F;
+    float inward = 0.0F;
+    float outward = 0.0F;
+    float narrowest = 4.0F;
+    float widest = -4.0F;
+    float deviation = 0.0F;
+    float turn_change = 0.0F;
+    float largest_turn = 0.0F;
+    float log_ratio = 0.0F;
+    std::array<double, 2> length_m{};
+    std::array<float, 2> view_left{1.0F, 1.0F};
+
+    void add(const FrontJudge::Step& step, const FrontSearch::Node& node) {
+        const auto& cone = step.inputs;
+        least_score = std::min(least_score, cone[1]);
+        least_margin = std::min(least_margin, cone[2]);
+        least_share = std::min(least_share, cone[3]);
+        least_lead = std::min(least_lead, cone[5]);
+        right *= step.right;
+        if (std::min(length_m[kLeft], length_m[kRight]) < kNear_m) right_near = right;
+        if (node.parent == FrontSearch::kNone) return;
+        const float* const move = cone.data() + kConeFeatures + kStateFeatures;
+        const auto segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
+        length_m[node.side] += segment_m;
+        shared_m += static_cast<double>(cone[3]) * segment_m;
+        longest = std::max(longest, move[ExtendPlace::kLength]);
+        bridges += move[ExtendPlace::kBridges];
+        inside += move[ExtendPlace::kInside];
+        inward += move[ExtendPlace::kBesideInward];
+        outward += move[ExtendPlace::kBesideOutward];
+        narrowest = std::min(narrowest, move[ExtendPlace::kWidth]);
+        widest = std::max(widest, move[ExtendPlace::kWidth]);
+        deviation += move[ExtendPlace::kWidthDeviation];
+        turn_change += move[ExtendPlace::kTurnChangeSize];
+        largest_turn = std::max(largest_turn, move[ExtendPlace::kTurnSize]);
+        log_ratio += move[ExtendPlace::kLogRatioOwnSize];
+        view_left[node.side] = move[ExtendPlace::kViewLeft];
+    }
+};
+
+/// The lowest score of a stop. Of both the last one is no state of its own.
+double worst_stop(const FrontSearch& search, const FrontJudge::Contender& lane) {
+    double worst = lane.ended ? lane.score - search.node(lane.node).score : 0.0;
+    for (std::size_t number = lane.node; search.node(number).parent != FrontSearch::kNone;) {
+        const FrontSearch::Node& node = search.node(number);
+        if (node.move.stops()) worst = std::min(worst, node.score - search.node(node.parent).score);
+        number = node.parent;
+    }
+    return worst;
+}
+
 const FrontWeights& valid(const FrontWeights& weights) {
     validate(weights);
     return weights;
@@ -214,95 +276,41 @@ void FrontJudge::see_cones(FrontSearch& search) {
 }
 
 void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_t contender) {
-    const FrontSearch::Node& end = search.node(lane.node);
     const std::vector<std::uint32_t>& path = paths_[contender];
-    float least_lead = kMost;
-    float least_share = 1.0F;
-    float least_score = kMost;
-    float least_margin = kMost;
-    double right_near = 1.0;
-    double right = 1.0;
-    double shared_m = 0.0;
-    float longest = 0.0F;
-    float bridges = 0.0F;
-    float inside = 0.0F;
-    float inward = 0.0F;
-    float outward = 0.0F;
-    float narrowest = 4.0F;
-    float widest = -4.0F;
-    float deviation = 0.0F;
-    float turn_change = 0.0F;
-    float largest_turn = 0.0F;
-    float log_ratio = 0.0F;
-    std::array<double, 2> length_m{};
-    std::array<float, 2> view_left{1.0F, 1.0F};
-    for (const std::uint32_t place : path) {
-        const Step& step = steps_[place];
-        const auto& cone = step.inputs;
-        const FrontSearch::Node& node = search.node(step.node);
-        least_score = std::min(least_score, cone[1]);
-        least_margin = std::min(least_margin, cone[2]);
-        least_share = std::min(least_share, cone[3]);
-        least_lead = std::min(least_lead, cone[5]);
-        right *= step.right;
-        if (std::min(length_m[kLeft], length_m[kRight]) < kNear_m) right_near = right;
-        if (node.parent == kNone) continue;
-        const float* const move = cone.data() + kConeFeatures + kStateFeatures;
-        const auto segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
-        length_m[node.side] += segment_m;
-        shared_m += static_cast<double>(cone[3]) * segment_m;
-        longest = std::max(longest, move[ExtendPlace::kLength]);
-        bridges += move[ExtendPlace::kBridges];
-        inside += move[ExtendPlace::kInside];
-        inward += move[ExtendPlace::kBesideInward];
-        outward += move[ExtendPlace::kBesideOutward];
-        narrowest = std::min(narrowest, move[ExtendPlace::kWidth]);
-        widest = std::max(widest, move[ExtendPlace::kWidth]);
-        deviation += move[ExtendPlace::kWidthDeviation];
-        turn_change += move[ExtendPlace::kTurnChangeSize];
-        largest_turn = std::max(largest_turn, move[ExtendPlace::kTurnSize]);
-        log_ratio += move[ExtendPlace::kLogRatioOwnSize];
-        view_left[node.side] = move[ExtendPlace::kViewLeft];
-    }
-    // Of both stops the last one is no state of its own.
-    double worst_stop = lane.ended ? lane.score - end.score : 0.0;
-    for (std::size_t number = lane.node; search.node(number).parent != kNone;) {
-        const FrontSearch::Node& node = search.node(number);
-        if (node.move.stops()) worst_stop = std::min(worst_stop, node.score - search.node(node.parent).score);
-        number = node.parent;
-    }
-    const double both_m = length_m[kLeft] + length_m[kRight];
+    Tally all;
+    for (const std::uint32_t place : path) all.add(steps_[place], search.node(steps_[place].node));
+    const double both_m = all.length_m[kLeft] + all.length_m[kRight];
     const auto moves = static_cast<float>(path.size());
     const double view_m = std::max(search.map().view_radius_m(), 1.0);
     features_[contender] = {score_input(scores_.front() - scores_[contender]),
                             static_cast<float>(probability_[contender]),
-                            static_cast<float>(shared_m / both_m),
-                            static_cast<float>(shared_m / expected_m_),
-                            least_lead,
-                            least_share,
+                            static_cast<float>(all.shared_m / both_m),
+                            static_cast<float>(all.shared_m / expected_m_),
+                            all.least_lead,
+                            all.least_share,
                             score_input(scores_[contender] / static_cast<double>(moves)),
-                            least_score,
-                            least_margin,
-                            static_cast<float>(right_near),
-                            static_cast<float>(right),
+                            all.least_score,
+                            all.least_margin,
+                            static_cast<float>(all.right_near),
+                            static_cast<float>(all.right),
                             static_cast<float>(both_m / 2.0 / view_m),
                             std::clamp(static_cast<float>(std::log(both_m / expected_m_)), -kMost, kMost),
-                            static_cast<float>(std::min(length_m[kLeft], length_m[kRight]) /
-                                               std::max(length_m[kLeft], length_m[kRight])),
+                            static_cast<float>(std::min(all.length_m[kLeft], all.length_m[kRight]) /
+                                               std::max(all.length_m[kLeft], all.length_m[kRight])),
                             std::min(moves / 20.0F, kMost),
-                            std::min(bridges, 4.0F) / 2.0F,
-                            longest,
-                            std::min(inside, 4.0F) / 2.0F,
-                            inward / moves,
-                            outward / moves,
-                            narrowest,
-                            widest,
-                            deviation / moves,
-                            turn_change / moves,
-                            largest_turn,
-                            log_ratio / moves,
-                            std::max(view_left[kLeft], view_left[kRight]),
-                            score_input(worst_stop),
+                            std::min(all.bridges, 4.0F) / 2.0F,
+                            all.longest,
+                            std::min(all.inside, 4.0F) / 2.0F,
+                            all.inward / moves,
+                            all.outward / moves,
+                            all.narrowest,
+                            all.widest,
+                            all.deviation / moves,
+                            all.turn_change / moves,
+                            all.largest_turn,
+                            all.log_ratio / moves,
+                            std::max(all.view_left[kLeft], all.view_left[kRight]),
+                            score_input(worst_stop(search, lane)),
                             steps_[path.front()].inputs[1],
                             static_cast<float>(std::log(static_cast<double>(search.map().size()) /
                                                         static_cast<double>(path.size() + 1)))};

@@ -69,6 +69,18 @@ double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::
     return bound;
 }
 
+std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& system, double unit,
+                                                            std::function<bool()> stopped) {
+    unit_ = unit;
+    stages_.clear();
+    double bound = -kUnreachable;
+    begin(system, 0.0, std::move(stopped));
+    ascend(0, bound, options_.root_steps);
+    unit_ = 0.0;
+    if (bound > -kUnreachable) stages_.push_back(root_multipliers());
+    return std::move(stages_);
+}
+
 void BranchAndBound::begin(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     tolerance_ = tolerance;
     clock_ = SearchClock(std::move(stopped));
@@ -147,7 +159,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     if (depth == 0) state.first_cutoff = incumbent_.cutoff();
     for (;; ++state.step) {
         if (stopped_()) return Verdict::stopped;
-        state.value = relaxation_.evaluate(here.graph, multipliers_);
+        state.value = evaluate(here.graph);
         if (state.value == -kUnreachable) return Verdict::stopped;
         note_value(here, state);
         bound = std::max(bound, state.value);
@@ -178,6 +190,17 @@ BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound,
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
     return search_fronts(here.graph, kAny, kAny);
+}
+
+double BranchAndBound::evaluate(const ResidualGraph& graph) {
+    const double value = relaxation_.evaluate(graph, multipliers_);
+    if (unit_ == 0.0 || value == -kUnreachable) return value;
+    // Upwards, and that of the heading downwards: no arc gets cheaper, so no cycle gains.
+    for (double& multiplier : multipliers_.cone) multiplier = unit_ * std::ceil(multiplier / unit_);
+    for (double& multiplier : multipliers_.clique) multiplier = unit_ * std::ceil(multiplier / unit_);
+    multipliers_.heading = unit_ * std::floor(multipliers_.heading / unit_);
+    evaluated_ = multipliers_;
+    return relaxation_.evaluate(graph, multipliers_);
 }
 
 void BranchAndBound::take_best_multipliers(const Node& here) {
@@ -388,6 +411,7 @@ bool BranchAndBound::fix(Node& here) {
     if (10 * (order_.size() + kept) > 9 * (graph.arc.size() + graph.out_arc.size())) return false;
     spare_.filter(graph, order_, keep_successor_, index_);
     std::swap(spare_, here.graph);
+    if (unit_ > 0.0) stages_.push_back(evaluated_);
     return true;
 }
 

@@ -44,6 +44,12 @@ class BranchAndBound {
     /// The root's ascent alone: its best bound, minus infinity if stopped before there was one.
     double run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped);
 
+    /// The root's ascent without incumbents of its own. Multipliers are whole numbers of `unit`, cycles stay
+    /// without gain at them. Returned are those that dropped something, in order, and at last the best ones;
+    /// those alone that reach the cutoff where some do. Empty if stopped before there were any.
+    std::vector<Multipliers> run_root_in_stages(const LegSystem& system, double unit,
+                                                std::function<bool()> stopped);
+
     [[nodiscard]] std::int64_t nodes() const { return nodes_; }
     void reset_nodes() { nodes_ = 0; }
 
@@ -90,6 +96,8 @@ class BranchAndBound {
     /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
     Verdict try_fronts(const ResidualGraph& graph, AscentState& state);
     void move_multipliers(const Node& here, AscentState& state);
+    /// The bound at the current multipliers, which are raised to whole units first if there is one.
+    double evaluate(const ResidualGraph& graph);
     /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
     /// Precondition: the relaxation was evaluated on the node's graph.
     Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
@@ -140,6 +148,9 @@ class BranchAndBound {
     std::vector<char> keep_successor_;
     std::vector<char> edge_alive_;
     std::vector<int> walk_edges_;
+    double unit_ = 0.0;      ///< of the multipliers; 0 where they are any numbers
+    Multipliers evaluated_;  ///< in whole units, those last evaluated
+    std::vector<Multipliers> stages_;
     bool fronts_are_built_ = false;
     double open_bound_ = 0.0;
     std::int64_t nodes_ = 0;

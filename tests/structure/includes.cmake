@@ -13,6 +13,7 @@ set(solvers_depends_on model solvers)
 set(graph_search_depends_on model graph_search)
 set(detectors_depends_on model solvers graph_search detectors)
 set(experiments_depends_on model solvers graph_search detectors experiments)
+set(python_depends_on model solvers graph_search detectors experiments python)
 set(tests_depends_on model solvers graph_search detectors experiments tests)
 # From tracks to tables, each folder and each file of experiments/ itself, without its ending: what stands later may
 # include what stands before.
@@ -36,7 +37,7 @@ function(find_layer result file)
     set(${result} ${place} PARENT_SCOPE)
 endfunction()
 
-foreach(folder IN ITEMS model solvers graph_search detectors experiments tests)
+foreach(folder IN ITEMS model solvers graph_search detectors experiments python tests)
     file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
     list(FILTER files EXCLUDE REGEX "^tests/consumer/") # a project of its own
     foreach(file IN LISTS files)

@@ -30,7 +30,7 @@ expect("model/a.hpp has no #pragma once" includes model/a.hpp "#include <vector>
 foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
                            "graph_search;solvers" "solvers;detectors" "graph_search;detectors"
                            "detectors;experiments" "solvers;experiments" "graph_search;experiments"
-                           "experiments;tests")
+                           "experiments;tests" "experiments;python" "detectors;python" "python;tests")
     list(GET direction 0 from)
     list(GET direction 1 to)
     expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#pragma once\n#include \"${to}/b.hpp\"")

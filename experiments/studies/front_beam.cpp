@@ -1,0 +1,227 @@
+#include "experiments/studies/front_beam.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "experiments/files/file_text.hpp"
+#include "experiments/files/front_weights_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress.hpp"
+#include "experiments/scenes/scene_file.hpp"
+#include "experiments/scoring/score.hpp"
+#include "experiments/scoring/statistics.hpp"
+#include "experiments/studies/study.hpp"
+#include "experiments/studies/study_options.hpp"
+#include "experiments/studies/text_table.hpp"
+#include "graph_search/front/front_detector.hpp"
+#include "graph_search/front/front_judge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Scores that differ by less are equal: sums in another order.
+constexpr double kSameScore = 1e-4;
+
+/// One width, scene by scene.
+class Width {
+  public:
+    Width(const FrontWeights& weights, const FrontSearchOptions& search)
+        : cost_(weights), judge_(weights), options_(search) {
+        row_.beam = search.beam_width;
+        row_.drop = search.drop;
+    }
+
+    /// The highest score of a lane; minus infinity where there is none.
+    double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+        const auto begin = std::chrono::steady_clock::now();
+        SearchBudget unlimited;
+        search_.begin(scene.scene, cost_, options_);
+        search_.run(unlimited);
+        search_.sort_finished(FrontJudge::kContenders);
+        contenders_.clear();
+        for (const FrontSearch::Finished& lane : search_.finished()) {
+            if (contenders_.size() == FrontJudge::kContenders) break;
+            contenders_.push_back({lane.parent, lane.score});
+        }
+        if (!contenders_.empty()) judge_.look(search_, contenders_);
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+        times_ms_.push_back(took.count());
+        ++row_.scenes;
+        if (contenders_.empty()) return -std::numeric_limits<double>::infinity();
+        bool any = false;
+        for (std::size_t place = 0; place < contenders_.size(); ++place) {
+            const SceneScore scored = scored_lane(scene, contenders_[place].node, boundaries);
+            const bool usable = scored.usable().value_or(false);
+            any = any || usable;
+            if (place == 0 && usable) row_.first_usable += 1.0;
+            if (place != judge_.order().front()) continue;
+            if (usable) row_.usable += 1.0;
+            row_.iou += scored.iou.value_or(0.0);
+        }
+        if (any) row_.any_usable += 1.0;
+        return contenders_.front().score;
+    }
+
+    void add_best() { row_.best_score += 1.0; }
+
+    [[nodiscard]] FrontBeamRow row() const {
+        FrontBeamRow row = row_;
+        for (double* share : {&row.best_score, &row.first_usable, &row.usable, &row.any_usable, &row.iou})
+            *share /= static_cast<double>(row.scenes);
+        row.median_ms = median(times_ms_);
+        row.p95_ms = quantile(times_ms_, 0.95);
+        row.worst_ms = quantile(times_ms_, 1.0);
+        return row;
+    }
+
+  private:
+    SceneScore scored_lane(const AnnotatedScene& scene, std::size_t node, const TrackBoundaries* boundaries) {
+        search_.cones(node, cones_);
+        even_far_ends(search_.map(), cones_);
+        LaneAnswer answer;
+        answer.status = LaneStatus::found;
+        for (const Side side : {kLeft, kRight}) {
+            std::vector<ConeId>& boundary = side == kLeft ? answer.lane.left : answer.lane.right;
+            for (const Vertex cone : cones_[side])
+                boundary.push_back(scene.scene.cones[search_.map().scene_index(cone)].id);
+        }
+        return score(scene, answer, 0.0, std::nullopt, boundaries);
+    }
+
+    FrontCost cost_;
+    FrontJudge judge_;
+    FrontSearchOptions options_;
+    FrontSearch search_;
+    std::vector<FrontJudge::Contender> contenders_;
+    std::array<std::vector<Vertex>, 2> cones_;
+    std::vector<double> times_ms_;
+    FrontBeamRow row_;
+};
+
+nlohmann::ordered_json to_json(const FrontBeamRow& row) {
+    return {{"beam", row.beam},
+            {"drop", row.drop},
+            {"scenes", row.scenes},
+            {"best_score", row.best_score},
+            {"first_usable", row.first_usable},
+            {"usable", row.usable},
+            {"any_usable", row.any_usable},
+            {"iou", row.iou},
+            {"median_ms", row.median_ms},
+            {"p95_ms", row.p95_ms},
+            {"worst_ms", row.worst_ms}};
+}
+
+std::string table_of(std::span<const FrontBeamRow> rows) {
+    TextTable table({{"beam"},
+                     {"drop"},
+                     {"scenes"},
+                     {"best score %"},
+                     {"usable by score %"},
+                     {"usable, judged %"},
+                     {"any usable %"},
+                     {"IoU %"},
+                     {"median ms"},
+                     {"p95 ms"},
+                     {"worst ms"}});
+    for (const FrontBeamRow& row : rows) {
+        table.add({std::to_string(row.beam), fixed(row.drop, 1), std::to_string(row.scenes),
+                   percent(row.best_score, 2), percent(row.first_usable, 2), percent(row.usable, 2),
+                   percent(row.any_usable, 2), percent(row.iou, 2), fixed(row.median_ms, 2),
+                   fixed(row.p95_ms, 2), fixed(row.worst_ms, 2)});
+    }
+    return table.text();
+}
+
+class FrontBeamStudy : public Study {
+  public:
+    FrontBeamStudy()
+        : Study(
+              {"front-beam",
+               "how often does the beam of front miss the lane of the highest score, and what does the judge "
+               "add to the score?",
+               "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
+               "is the widest search. Best score: as high as that of any row. Any usable: among the best 20 "
+               "lanes, which the judge chooses from. *.tracks.json beside the scenes has the boundaries."}) {}
+
+    void add_options(CLI::App& command) override {
+        command.add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it")->required();
+        command.add_option("--weights", weights_, "of front (JSON); those of the library without");
+        command.add_option("--beams", options_.beams, "states kept at each level")
+            ->delimiter(',')
+            ->capture_default_str();
+        command.add_option("--reference-beam", options_.reference_beam, "of the last row")
+            ->capture_default_str();
+        command.add_option("--reference-drop", options_.reference_drop, "of the last row [score]")
+            ->capture_default_str();
+    }
+
+    StudyResult run() override {
+        options_.weights =
+            weights_.empty()
+                ? shipped_front_options().weights
+                : parsed_file(weights_, [](const std::string& text) { return parse_front_weights(text); });
+        SceneSet set;
+        set.scenes = read_scenes(scenes_);
+        const std::filesystem::path boundaries = track_boundaries_path(scenes_);
+        if (std::filesystem::exists(boundaries)) set.tracks = read_track_boundaries(boundaries);
+        const std::vector<FrontBeamRow> rows = front_beam_rows(set, options_);
+        return study_result(table_of(rows), rows, to_json);
+    }
+
+  private:
+    std::string scenes_;
+    std::string weights_;
+    FrontBeamOptions options_;
+};
+
+}  // namespace
+
+std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options) {
+    std::vector<Width> widths;
+    for (const std::size_t beam : options.beams) {
+        FrontSearchOptions search;
+        search.beam_width = beam;
+        validate(search);
+        widths.emplace_back(options.weights, search);
+    }
+    FrontSearchOptions reference;
+    reference.beam_width = options.reference_beam;
+    reference.drop = reference.finished_drop = options.reference_drop;
+    validate(reference);
+    widths.emplace_back(options.weights, reference);
+
+    std::vector<const AnnotatedScene*> scenes;
+    for (const AnnotatedScene& scene : set.scenes) {
+        if (counts(scene)) scenes.push_back(&scene);
+    }
+    if (scenes.empty()) throw InvalidInput("scenes", "none has a ground truth");
+    Progress progress("scenes", scenes.size());
+    for (const AnnotatedScene* scene : scenes) {
+        const auto track = set.tracks.find(scene->track);
+        const TrackBoundaries* boundaries = track == set.tracks.end() ? nullptr : &track->second;
+        std::vector<double> best;
+        for (Width& width : widths) best.push_back(width.drive(*scene, boundaries));
+        const double highest = std::ranges::max(best);
+        for (std::size_t i = 0; i < widths.size(); ++i) {
+            if (best[i] >= highest - kSameScore) widths[i].add_best();
+        }
+        progress.advance();
+    }
+    std::vector<FrontBeamRow> rows;
+    for (const Width& width : widths) rows.push_back(width.row());
+    return rows;
+}
+
+std::unique_ptr<Study> make_front_beam_study() {
+    return std::make_unique<FrontBeamStudy>();
+}
+
+}  // namespace conelane::experiments

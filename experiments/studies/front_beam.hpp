@@ -1,0 +1,45 @@
+#pragma once
+
+#include "experiments/scenes/scene_set.hpp"
+#include "graph_search/front/front_search.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+class Study;
+
+/// What a wider beam finds that the detector's does not, and what the judge makes of either.
+[[nodiscard]] std::unique_ptr<Study> make_front_beam_study();
+
+struct FrontBeamOptions {
+    FrontWeights weights;
+    std::vector<std::size_t> beams{5, 10, 15, 30, 100};  ///< states a level, with the detector's other limits
+    /// The last row: the widest search, which the others are held against.
+    std::size_t reference_beam = 400;
+    double reference_drop = 12.0;
+};
+
+/// One width over all scenes with a ground truth. Shares are of these.
+struct FrontBeamRow {
+    std::size_t beam = 0;
+    double drop = 0.0;
+    std::size_t scenes = 0;
+    double best_score = 0.0;    ///< share with a lane of the highest score that any row has met
+    double first_usable = 0.0;  ///< by score alone
+    double usable = 0.0;        ///< as the judge orders the best lanes
+    double any_usable = 0.0;    ///< share with a usable lane among those judged
+    double iou = 0.0;           ///< mean, of the judge's first
+    double median_ms = 0.0;     ///< of search and judge together
+    double p95_ms = 0.0;
+    double worst_ms = 0.0;
+};
+
+/// Throws InvalidInput where a width or drop is out of range, or no scene has a ground truth.
+[[nodiscard]] std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options);
+
+}  // namespace conelane::experiments

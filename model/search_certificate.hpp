@@ -1,0 +1,42 @@
+#pragma once
+
+#include "conelane/lane_graph.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// What a whole search leaves behind, so that a plainer program can repeat its proof that no lane graph costs
+/// less than `bound`. Lagrange multipliers as in BoundCertificate, as whole numbers of 2^-24, stage by stage:
+/// with those of a stage, arcs and turns whose cheapest walks reach the bound are dropped, and the next stage
+/// starts from what is left. What is left after the last stage is enumerated, with the last stage's
+/// multipliers as a bound.
+struct SearchCertificate {
+    static constexpr int kFractionBits = 24;
+    using Units = std::int64_t;  ///< of 2^-24
+
+    struct Stage {
+        std::vector<Units> cone;                            ///< by cone of the scene
+        std::vector<std::pair<std::size_t, Units>> clique;  ///< by place in the part's cliques; others are 0
+        Units heading = 0;
+    };
+    /// All pairs of legs of one kind.
+    struct Part {
+        /// Both legs go from near to far cones. With it, pairing `paper`: one leg joins two near cones and
+        /// the other goes from this far one to a far one of higher index.
+        std::optional<std::size_t> far_start;
+        std::vector<std::vector<Edge>> cliques;  ///< of edges pairwise excluded
+        std::vector<Stage> stages;               ///< at least one
+    };
+    std::vector<Part> parts;
+    std::optional<LaneGraph> lane_graph;  ///< the best one found
+    std::optional<double> objective;      ///< of it
+    /// No lane graph costs less; infinite where none exists.
+    double bound = 0.0;
+};
+
+}  // namespace conelane

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "experiments/files/lane_file.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+
+#include <memory>
+
+#include <pybind11/pybind11.h>
+
+/// The module conelane._core. Each function adds its part; docstrings begin with the signature, since
+/// pybind11 knows it only in terms of C++.
+namespace conelane::python {
+
+namespace py = pybind11;
+
+/// A scene as Python holds it: nothing changes it, so lanes may refer to it.
+using SceneObject = std::shared_ptr<const experiments::AnnotatedScene>;
+
+/// An answer and the scene that it is about.
+struct LaneObject {
+    experiments::LaneRecord record;
+    std::shared_ptr<const Scene> scene;
+};
+
+void add_scenes(py::module_& module);
+void add_lanes(py::module_& module);
+void add_detector(py::module_& module);
+void add_rld(py::module_& module);
+void add_scoring(py::module_& module);
+
+}  // namespace conelane::python

@@ -1,0 +1,230 @@
+#include "conelane/detectors.hpp"
+#include "conelane/invalid_input.hpp"
+#include "detectors/recipe.hpp"
+#include "python/bindings/arrays.hpp"
+#include "python/bindings/bindings.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <pybind11/stl.h>
+
+namespace conelane::python {
+namespace {
+
+const DetectorRecipe* find_recipe(const std::string& name) {
+    const auto recipe = std::ranges::find(detector_recipes(), name, &DetectorRecipe::name);
+    return recipe == detector_recipes().end() ? nullptr : &*recipe;
+}
+
+/// The options of a detector; `recipe` is nullptr where there is no such detector, which make_detector says.
+DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given) {
+    DetectorOptions options;
+    for (const auto& [key_object, value] : given) {
+        const std::string key = py::str(key_object);
+        if (value.is_none()) continue;
+        if (key == "nearest") {
+            options.nearest = positive_count(value, "nearest");
+        } else if (key == "parameters") {
+            options.rld_parameters = rld_parameters(value);
+        } else if (key == "pairing") {
+            options.pairing = pairing_of(std::string(py::str(value)));
+        } else {
+            throw InvalidInput("options",
+                               "there is no option '" + key + "', only nearest, parameters, pairing");
+        }
+        if (key != "nearest" && recipe != nullptr && !recipe->is_rld())
+            throw InvalidInput(key,
+                               "is of the detectors rld-..., '" + std::string(recipe->name) + "' has none");
+    }
+    return options;
+}
+
+/// A detector that may be called from any thread: calls of one instance wait for each other.
+class DetectorObject {
+  public:
+    DetectorObject(const std::string& name, const py::kwargs& given) : name_(name) {
+        const DetectorRecipe* const recipe = find_recipe(name);
+        const DetectorOptions options = options_of(recipe, given);
+        detector_ = make_detector(name, options);
+        meaning_ = recipe->meaning;
+        nearest_ = cone_set(*recipe, options).nearest;
+    }
+
+    [[nodiscard]] LaneObject detect(std::shared_ptr<const Scene> scene, std::optional<double> time_limit_ms) {
+        const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
+        if (std::isnan(limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+        LaneObject lane{{}, std::move(scene)};
+        lane.record.scene = lane.scene->id;
+        lane.record.method = name_;
+        lane.record.nearest = nearest_;
+        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        {
+            const std::scoped_lock lock(mutex_);
+            const auto start = std::chrono::steady_clock::now();
+            lane.record.answer = detector_->detect(*lane.scene, {.time_limit_ms = limit_ms});
+            const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+            lane.record.latency_ms = took.count();
+        }
+        if (lane.record.answer.status == LaneStatus::error)
+            validate(*lane.scene);  // throws what is wrong with it
+        return lane;
+    }
+
+    void reset() {
+        const py::gil_scoped_release unlocked;
+        const std::scoped_lock lock(mutex_);
+        detector_->reset();
+    }
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const std::string& meaning() const { return meaning_; }
+
+  private:
+    std::string name_;
+    std::string meaning_;
+    std::optional<std::size_t> nearest_;
+    std::unique_ptr<LaneDetector> detector_;
+    std::mutex mutex_;
+};
+
+}  // namespace
+
+void add_detector(py::module_& module) {
+    py::class_<DetectorObject>(module, "Detector", R"(Detector(name, **options)
+
+A lane detector.
+
+Parameters
+----------
+name : str
+    One of `methods()`.
+nearest : int, optional
+    It looks at so many cones, the nearest ahead of the car.
+parameters : str or dict, optional
+    Of the detectors `rld-...`: the name of a parameter set, or what differs from the defaults; see
+    `rld_parameters`.
+pairing : str, optional
+    Of the detectors `rld-...`: "near_far" or "paper".
+
+Raises
+------
+ValueError
+    For an unknown name or option, listing the known ones, and for values out of range.
+
+Notes
+-----
+Detectors are independent of each other, and the interpreter lock is free while they search: use one for each
+thread. Calls of one detector from several threads wait for each other; the wait does not count in the time
+limit.
+
+Examples
+--------
+>>> import conelane
+>>> detector = conelane.Detector("front")
+>>> lane = detector.detect([[2, -1.5], [2, 1.5], [6, -1.5], [6, 1.5], [10, -1.5], [10, 1.5]], (0, 0, 0))
+>>> lane.status
+'found'
+>>> lane.left, lane.right
+(array([1, 3, 5]), array([0, 2, 4]))
+)")
+        .def(py::init<const std::string&, const py::kwargs&>(), py::arg("name"))
+        .def(
+            "detect",
+            [](DetectorObject& detector, const py::object& cones, const py::object& pose,
+               const py::object& ids, const py::object& colors, const py::object& confidences,
+               std::optional<double> time_limit_ms) {
+                auto scene = std::make_shared<Scene>();
+                scene->cones = python::cones(cones, ids, colors, confidences);
+                scene->pose = python::pose(pose);
+                return detector.detect(std::move(scene), time_limit_ms);
+            },
+            py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(), py::arg("colors") = py::none(),
+            py::arg("confidences") = py::none(), py::arg("time_limit_ms") = 50.0,
+            R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0)
+
+The lane among cones.
+
+Parameters
+----------
+cones : (N, 2) array_like of float
+    Positions x, y [m], in any order, in the frame of `pose`: a map, or the car.
+pose : (3,) array_like of float
+    The car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
+    to the left it is (0, 0, 0).
+ids : (N,) array_like of int, optional
+    What cones are called, each once. Detectors that remember their last lane (`...-warm`) know a cone by its
+    id. By default the index.
+colors : (N,) array_like of str or int, optional
+    "unknown", "blue", "yellow", "orange", or their codes 0 to 3 (`Color`). By default unknown.
+confidences : (N,) array_like of float, optional
+    Of the detections, in [0, 1]. By default 1.
+time_limit_ms : float or None
+    Wall clock [ms]; None for no limit.
+
+Returns
+-------
+Lane
+
+Raises
+------
+ValueError
+    For wrong shapes and dtypes, numbers that are not finite, and an id that is there twice.
+
+Examples
+--------
+>>> import conelane
+>>> conelane.Detector("clc").detect([[0.0, float("nan")]], (0, 0, 0))
+Traceback (most recent call last):
+    ...
+ValueError: cones[0].y: must be a finite number
+)")
+        .def(
+            "detect_scene",
+            [](DetectorObject& detector, const SceneObject& scene, std::optional<double> time_limit_ms) {
+                return detector.detect({scene, &scene->scene}, time_limit_ms);
+            },
+            py::arg("scene"), py::arg("time_limit_ms") = 50.0, R"(detect_scene(scene, time_limit_ms=50.0)
+
+The same for a `Scene`, whose id the lane bears.
+)")
+        .def("reset", &DetectorObject::reset, R"(reset()
+
+Forgets what was carried from earlier calls: for a new lap or another place.
+)")
+        .def_property_readonly("name", &DetectorObject::name, "str: as `methods` has it")
+        .def_property_readonly("meaning", &DetectorObject::meaning, "str: one line")
+        .def("__repr__",
+             [](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
+
+    module.def(
+        "methods",
+        [] {
+            py::dict all;
+            for (const DetectorInfo& info : detectors())
+                all[py::str(std::string(info.name))] = std::string(info.meaning);
+            return all;
+        },
+        R"(methods()
+
+The detectors of the library: name and meaning, the one to drive by first.
+
+Returns
+-------
+dict of str to str
+
+Examples
+--------
+>>> import conelane
+>>> "clc" in conelane.methods()
+True
+)");
+}
+
+}  // namespace conelane::python

@@ -1,0 +1,140 @@
+#include "conelane/invalid_input.hpp"
+#include "experiments/scoring/score.hpp"
+#include "python/bindings/arrays.hpp"
+#include "python/bindings/bindings.hpp"
+
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+namespace conelane::python {
+namespace {
+
+using experiments::AnnotatedScene;
+using experiments::SceneScore;
+using experiments::TrackBoundaries;
+
+experiments::CentreLine line_of(const LaneObject& lane, const AnnotatedScene& scene) {
+    const experiments::LaneRecord& record = lane.record;
+    const Pose& pose = scene.scene.pose;
+    if (record.points) {
+        return experiments::centre_line_of(
+            experiments::LaneOutline{record.points->left, record.points->right, record.answer.lane.closed},
+            pose);
+    }
+    if (!record.centre_line.empty()) return experiments::centre_line_of(record.centre_line, pose);
+    return experiments::centre_line_of(experiments::outline_of(record.answer.lane, scene.scene), pose);
+}
+
+SceneScore score_of(const LaneObject& lane, const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+    const experiments::LaneRecord& record = lane.record;
+    if (record.points) {
+        return experiments::score_outline(
+            scene, {record.points->left, record.points->right, record.answer.lane.closed}, record.latency_ms,
+            boundaries);
+    }
+    if (!record.centre_line.empty())
+        return experiments::score_centre_line(scene, record.centre_line, record.latency_ms, boundaries);
+    return experiments::score(scene, record.answer, record.latency_ms, record.nearest, boundaries);
+}
+
+SceneScore score(const AnnotatedScene& scene, const LaneObject& lane, const TrackBoundaries* boundaries) {
+    const py::gil_scoped_release unlocked;
+    conelane::validate(scene.scene);
+    SceneScore score = score_of(lane, scene, boundaries);
+    if (score.usable().value_or(false) && scene.ground_truth) {
+        const auto truth = experiments::centre_line_of(
+            experiments::outline_of(*scene.ground_truth, scene.scene), scene.scene.pose);
+        score.centre_line_error = experiments::centre_line_error(line_of(lane, scene), truth);
+    }
+    return score;
+}
+
+std::optional<bool> accurate(const SceneScore& score) {
+    if (!score.accuracy) return std::nullopt;
+    return score.accuracy->accurate();
+}
+
+std::optional<py::array_t<float>> lateral_error_m(const SceneScore& score) {
+    if (!score.centre_line_error) return std::nullopt;
+    const std::vector<float>& values = score.centre_line_error->lateral_m;
+    return py::array_t<float>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+std::optional<double> heading_error_rad(const SceneScore& score) {
+    if (!score.centre_line_error) return std::nullopt;
+    return score.centre_line_error->heading_rad;
+}
+
+}  // namespace
+
+void add_scoring(py::module_& module) {
+    py::class_<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
+        .def_property_readonly("usable", &SceneScore::usable,
+                               "bool or None: can be driven by; None where no boundaries were given")
+        .def_property_readonly(
+            "category", [](const SceneScore& s) { return to_string(s.category); },
+            R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")")
+        .def_property_readonly("success", &SceneScore::success,
+                               "bool: any category but none and diverging_below_20")
+        .def_property_readonly(
+            "accurate", accurate,
+            "bool or None: passes the four checks of the RLD paper; None where they do not apply")
+        .def_property_readonly(
+            "error", [](const SceneScore& s) { return s.error; }, "bool: the method failed")
+        .def_property_readonly(
+            "iou", [](const SceneScore& s) { return s.iou; },
+            "float or None: intersection over union with the true lane, in [0, 1]")
+        .def_property_readonly(
+            "lane_length_m", [](const SceneScore& s) { return s.lane_length_m; }, "float [m]")
+        .def_property_readonly(
+            "ground_truth_length_m", [](const SceneScore& s) { return s.ground_truth_length_m; }, "float [m]")
+        .def_property_readonly(
+            "divergence_distance_m", [](const SceneScore& s) { return s.divergence_distance_m; },
+            "float or None: where the lane leaves the course [m]; None where it does not")
+        .def_property_readonly(
+            "lateral_error_m", lateral_error_m,
+            "(K,) ndarray of float32 or None: of the centre line, every 0.5 m [m]; of usable lanes")
+        .def_property_readonly("heading_error_rad", heading_error_rad,
+                               "float or None: of the centre line 10 m ahead [rad]; of usable lanes")
+        .def("__repr__",
+             [](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
+
+    module.def("score", score, py::arg("scene"), py::arg("lane"), py::arg("boundaries") = py::none(),
+               R"(score(scene, lane, boundaries=None)
+
+Holds a lane against the true one. The measures are defined in docs/measures.md.
+
+Parameters
+----------
+scene : Scene
+    With a ground truth, or of a run whose boundaries hold the path that was driven.
+lane : Lane
+    Of this scene: cones are compared by their ids.
+boundaries : Boundaries, optional
+    Of the whole course. Without them divergence is unknown.
+
+Returns
+-------
+Score
+
+Raises
+------
+ValueError
+    Where the scene has no ground truth with two cones on each side, and where the lane names a cone that the
+    scene has not.
+
+Examples
+--------
+>>> import conelane
+>>> track = conelane.load_tracks("generated:circle")[0]
+>>> scene = conelane.generate_scenes(track, every_m=20.0)[0]
+>>> result = conelane.score(scene, conelane.Detector("front").detect_scene(scene), track.boundaries)
+>>> result.usable, result.category
+(True, 'ground_truth')
+)");
+}
+
+}  // namespace conelane::python

@@ -1,0 +1,76 @@
+"""Lane detection between cones.
+
+>>> import conelane
+>>> cones = [[2, -1.5], [2, 1.5], [6, -1.5], [6, 1.5], [10, -1.5], [10, 1.5]]
+>>> lane = conelane.Detector("front").detect(cones, pose=(0, 0, 0))
+>>> lane.centre_line(step_m=1.0).shape
+(9, 7)
+
+Lengths are in metres, angles in radians (counter-clockwise, 0 along +x), times in milliseconds. What is wrong with an
+input is a `ValueError`.
+"""
+from enum import IntEnum
+
+from ._core import (
+    Boundaries,
+    Detector,
+    Lane,
+    RldSolution,
+    Scene,
+    Score,
+    Track,
+    generate_scenes,
+    load_tracks,
+    methods,
+    read_boundaries,
+    read_lanes,
+    read_scenes,
+    rld_parameters,
+    score,
+    solve_rld,
+    version,
+    write_boundaries,
+    write_lanes,
+    write_scenes,
+)
+
+__version__ = version
+
+
+class Color(IntEnum):
+    """Codes of cone colours; blue cones stand left of a lane, yellow ones right."""
+
+    unknown = 0
+    blue = 1
+    yellow = 2
+    orange = 3
+
+
+for _public in (Boundaries, Detector, Lane, RldSolution, Scene, Score, Track, generate_scenes, load_tracks, methods,
+                read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld, write_boundaries,
+                write_lanes, write_scenes):
+    _public.__module__ = "conelane"
+del _public
+
+__all__ = [
+    "Boundaries",
+    "Color",
+    "Detector",
+    "Lane",
+    "RldSolution",
+    "Scene",
+    "Score",
+    "Track",
+    "generate_scenes",
+    "load_tracks",
+    "methods",
+    "read_boundaries",
+    "read_lanes",
+    "read_scenes",
+    "rld_parameters",
+    "score",
+    "solve_rld",
+    "write_boundaries",
+    "write_lanes",
+    "write_scenes",
+]

@@ -1,0 +1,61 @@
+"""Builds the module of the package with the CMake project around this folder."""
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+PROJECT = Path(__file__).resolve().parent.parent
+BUILD = PROJECT / "build" / "pip"  # all that is made on the way, so that this folder stays clean
+
+
+def project_version() -> str:
+    text = (PROJECT / "CMakeLists.txt").read_text(encoding="utf-8")
+    match = re.search(r"project\(conelane VERSION ([0-9.]+)", text)
+    if match is None:
+        raise RuntimeError("CMakeLists.txt names no version")
+    return match.group(1)
+
+
+class CMakeBuild(build_ext):
+    """The one extension is a target of CMake, made in CONELANE_BUILD_DIR where that names a configured build."""
+
+    def build_extension(self, ext: Extension) -> None:
+        build = Path(os.environ.get("CONELANE_BUILD_DIR", BUILD / f"cmake-{sys.implementation.cache_tag}"))
+        if "CONELANE_BUILD_DIR" not in os.environ:
+            self.configure(build)
+        subprocess.run(["cmake", "--build", str(build), "--target", "conelane_python",
+                        "--parallel", str(os.cpu_count() or 1)], check=True)
+        target = Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(build / "python" / "conelane" / target.name, target)
+
+    @staticmethod
+    def configure(build: Path) -> None:
+        options = [
+            "-DCMAKE_BUILD_TYPE=Release",
+            "-DCONELANE_PYTHON=ON",
+            "-DCONELANE_BUILD_EXPERIMENTS=OFF",
+            "-DBUILD_TESTING=OFF",
+            f"-DPython_EXECUTABLE={sys.executable}",
+        ]
+        try:
+            import pybind11  # of pip's build environment; else CMake finds the system's
+
+            options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
+        except ImportError:
+            pass
+        subprocess.run(["cmake", "-S", str(PROJECT), "-B", str(build), *options], check=True)
+
+
+(BUILD / "info").mkdir(parents=True, exist_ok=True)
+setup(
+    version=project_version(),
+    ext_modules=[Extension("conelane._core", sources=[])],
+    cmdclass={"build_ext": CMakeBuild},
+    options={"build": {"build_base": str(BUILD)}, "egg_info": {"egg_base": str(BUILD / "info")}},
+)

@@ -1,0 +1,206 @@
+"""Scenes, lanes, tracks and scores: what is written is read again, and what is wrong in a file is said."""
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import conelane
+
+CONES = [[0, 1.5], [0, -1.5], [4, 1.5], [4, -1.5], [8, 1.5], [8, -1.5], [8, 5.0]]
+TRUTH = ([0, 2, 4], [1, 3, 5])
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return self.folder / name
+
+
+class Scenes(InFolder):
+    def test_a_scene_is_read_as_it_was_written(self):
+        scene = conelane.Scene(CONES, (0.5, -0.25, 0.1), ids=np.arange(7) + 3,
+                               colors=["blue", "yellow"] * 3 + ["orange"], confidences=np.linspace(0, 1, 7),
+                               id="a", ground_truth=TRUTH, track="t")
+        conelane.write_scenes(self.folder / "s.scenes.jsonl", [scene])
+        again, = conelane.read_scenes(self.folder / "s.scenes.jsonl")
+        for one in (scene, again):
+            self.assertEqual((one.id, one.track, one.closed), ("a", "t", False))
+            np.testing.assert_array_equal(one.cones, CONES)
+            np.testing.assert_array_equal(one.pose, [0.5, -0.25, 0.1])
+            self.assertEqual(one.ids.tolist(), [3, 4, 5, 6, 7, 8, 9])
+            self.assertEqual(one.colors.tolist(), [1, 2, 1, 2, 1, 2, 3])
+            np.testing.assert_array_equal(one.confidences, np.linspace(0, 1, 7))
+            self.assertEqual([side.tolist() for side in one.ground_truth], list(map(list, TRUTH)))
+
+    def test_what_generated_scenes_say_survives(self):
+        track, = conelane.load_tracks("generated:curvy")
+        scenes = conelane.generate_scenes(track, false_positive_rate=0.3, condition="car", every_m=20.0, seed=3)
+        conelane.write_scenes(self.folder / "1.scenes.jsonl", scenes)
+        again = conelane.read_scenes(self.folder / "1.scenes.jsonl")
+        conelane.write_scenes(self.folder / "2.scenes.jsonl", again)
+        self.assertEqual((self.folder / "1.scenes.jsonl").read_bytes(), (self.folder / "2.scenes.jsonl").read_bytes())
+        self.assertEqual((again[0].condition, again[0].false_positive_rate, again[0].range_m), ("car", 0.3, 30.0))
+
+    def test_a_fault_is_named_with_file_line_and_key(self):
+        file = self.write("bad.scenes.jsonl", '{"pose": {"x": 0, "y": 0, "yaw": 0}, '
+                          '"cones": [{"id": 1, "x": "far", "y": 1}]}\n')
+        with self.assertRaisesRegex(ValueError, r"bad\.scenes\.jsonl:1: cones\[0\]\.x: "):
+            conelane.read_scenes(file)
+        with self.assertRaisesRegex(ValueError, "nowhere"):
+            conelane.read_scenes(self.folder / "nowhere")
+
+    def test_an_index_beyond_the_cones(self):
+        with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is no index of the 7 cones"):
+            conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))
+
+    def test_a_scene_is_checked_at_once(self):
+        with self.assertRaisesRegex(ValueError, r"cones\[0\]\.x: must be a finite number"):
+            conelane.Scene([[np.nan, 0]], (0, 0, 0))
+
+
+class Lanes(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.scene = conelane.Scene(CONES, (0, 0, 0), ids=np.arange(7) + 10, id="a", ground_truth=TRUTH)
+
+    def test_a_lane_is_read_as_it_was_written(self):
+        for name in ("front", "rld-pair"):
+            lane = conelane.Detector(name).detect_scene(self.scene)
+            conelane.write_lanes(self.folder / "l.lanes.jsonl", [lane])
+            again, = conelane.read_lanes(self.folder / "l.lanes.jsonl", [self.scene])
+            for key in ("scene_id", "method", "status", "confidence", "trusted_m", "objective", "bound", "closed"):
+                self.assertEqual(getattr(again, key), getattr(lane, key), key)
+            np.testing.assert_array_equal(again.left, lane.left)
+            np.testing.assert_array_equal(again.right, lane.right)
+            np.testing.assert_array_equal(again.centre_line(), lane.centre_line())
+
+    def test_positions_stand_for_the_cones_they_are_at(self):
+        file = self.write("p.lanes.jsonl", '{"scene": "a", "method": "m", "status": "found", "latency_ms": 1, '
+                          '"left_points": [[0.1, 1.5], [4, 1.5]], "right_points": [[0, -1.5], [4, -1.4]]}\n')
+        lane, = conelane.read_lanes(file, [self.scene])
+        self.assertEqual((lane.left.tolist(), lane.right.tolist()), ([0, 2], [1, 3]))
+
+    def test_positions_beside_cones_stay_positions(self):
+        file = self.write("p.lanes.jsonl", '{"scene": "a", "method": "m", "status": "found", "latency_ms": 1, '
+                          '"left_points": [[0, 2.5], [4, 2.5]], "right_points": [[0, -1.5], [4, -1.5]]}\n')
+        lane, = conelane.read_lanes(file, [self.scene])
+        self.assertEqual(len(lane.left), 0)
+        self.assertEqual(lane.left_points.tolist(), [[0, 2.5], [4, 2.5]])
+        np.testing.assert_allclose(lane.centre_line()[:, 2], 0.5, atol=1e-9)
+
+    def test_faults(self):
+        line = ('{"scene": "%s", "method": "m", "status": "found", '
+                '"left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n')
+        for text, message in ((line % ("b", 10), r"l\.lanes\.jsonl:1: scene: 'b' is none of the scenes given"),
+                              (line % ("a", 99), r"l\.lanes\.jsonl:1: .*99"),
+                              ("{}\n", r"l\.lanes\.jsonl:1: ")):
+            with self.subTest(text), self.assertRaisesRegex(ValueError, message):
+                conelane.read_lanes(self.write("l.lanes.jsonl", text), [self.scene])
+
+
+class Tracks(InFolder):
+    def test_boundaries_are_read_as_they_were_written(self):
+        track, = conelane.load_tracks("generated:circle")
+        np.testing.assert_array_equal(track.boundaries.left, track.cones[track.left])
+        own = conelane.Boundaries([[0, 1], [5, 1], [9, 1]], [[0, -1], [5, -1], [9, -1]], closed=False)
+        conelane.write_boundaries(self.folder / "t.tracks.json", {"own": own, track.name: track.boundaries})
+        again = conelane.read_boundaries(self.folder / "t.tracks.json")
+        self.assertEqual(set(again), {"own", track.name})
+        self.assertEqual((again["own"].closed, again[track.name].closed), (False, True))
+        np.testing.assert_array_equal(again["own"].right, own.right)
+        np.testing.assert_array_equal(again[track.name].right, track.boundaries.right)
+
+    def test_tracks_of_a_file(self):
+        file = self.write("oval.csv", "tag,x,y,direction,x_variance,y_variance,xy_covariance\n" + "".join(
+            f"{tag},{r * np.cos(a)},{r * np.sin(a)},0,0,0,0\n" for tag, r in (("blue", 10), ("yellow", 13))
+            for a in np.arange(0, 6.2, 0.3)))
+        track, = conelane.load_tracks(f"eufs:{file}")
+        self.assertEqual((len(track.left), len(track.right), track.closed), (21, 21, True))
+        self.assertEqual(set(track.colors[track.left].tolist()), {conelane.Color.blue})
+
+    def test_faults(self):
+        for spec in ("generated:nothing", "eufs:nowhere.csv", "what"):
+            with self.subTest(spec), self.assertRaises(ValueError):
+                conelane.load_tracks(spec)
+        track, = conelane.load_tracks("generated:circle")
+        with self.assertRaisesRegex(ValueError, "rain"):
+            conelane.generate_scenes(track, condition="rain")
+        with self.assertRaises(ValueError):
+            conelane.generate_scenes(track, false_positive_rate=1.5)
+
+
+class Scores(unittest.TestCase):
+    def test_the_true_lane_and_one_that_leaves_it(self):
+        scene = conelane.Scene(CONES, (0, 0, 0), ground_truth=TRUTH)
+        course = conelane.Boundaries([[x, 1.5] for x in range(0, 40, 4)], [[x, -1.5] for x in range(0, 40, 4)], False)
+        lane = conelane.Detector("front").detect(CONES, (0, 0, 0))
+        good = conelane.score(scene, lane, course)
+        self.assertEqual((good.category, good.usable, good.success, good.iou, good.accurate),
+                         ("ground_truth", True, True, 1.0, True))
+        self.assertEqual((good.lane_length_m, good.ground_truth_length_m, good.divergence_distance_m), (8.0, 8.0, None))
+        np.testing.assert_allclose(good.lateral_error_m, 0.0, atol=1e-6)
+        # The same cones without the last left one: now the false one is left of the lane.
+        astray = conelane.Detector("rld-pair").detect(np.delete(CONES, 4, axis=0), (0, 0, 0), ids=[0, 1, 2, 3, 5, 6])
+        self.assertEqual(astray.ids[astray.left].tolist(), [0, 2, 6])
+        bad = conelane.score(scene, astray, course)
+        self.assertEqual((bad.category, bad.usable, bad.success), ("diverging_below_20", False, False))
+        self.assertLess(bad.iou, 1.0)
+        self.assertIsNone(bad.lateral_error_m)
+
+    def test_without_boundaries_divergence_is_unknown(self):
+        scene = conelane.Scene(CONES, (0, 0, 0), ground_truth=TRUTH)
+        self.assertIsNone(conelane.score(scene, conelane.Detector("front").detect_scene(scene)).usable)
+
+    def test_faults(self):
+        lane = conelane.Detector("front").detect(CONES, (0, 0, 0))
+        with self.assertRaises(ValueError):
+            conelane.score(conelane.Scene(CONES, (0, 0, 0)), lane)  # no ground truth
+        other = conelane.Scene(CONES[:4], (0, 0, 0), ground_truth=([0, 2], [1, 3]))
+        with self.assertRaisesRegex(ValueError, r"left\[2\]"):
+            conelane.score(other, lane)
+
+
+class Rld(unittest.TestCase):
+    def test_both_exact_solvers_prove_the_same_optimum(self):
+        cones = CONES + [[3.0, 0.2]]
+        by = {name: conelane.solve_rld(cones, (0, 0, 0), solver=name) for name in ("path-pair", "exhaustive")}
+        for solution in by.values():
+            self.assertEqual(solution.status, "optimal")
+            self.assertEqual((solution.left.tolist(), solution.right.tolist()), TRUTH)
+            self.assertEqual(sorted(map(tuple, solution.edges)), [(0, 2), (1, 3), (2, 4), (3, 5)])
+            self.assertLessEqual(solution.bound, solution.objective)
+        self.assertAlmostEqual(by["path-pair"].objective, by["exhaustive"].objective)
+
+    def test_infeasible_and_stopped(self):
+        none = conelane.solve_rld(CONES[:3], (0, 0, 0))
+        self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)),
+                         ("infeasible", (0, 2), None, 0))
+        self.assertEqual(conelane.solve_rld(CONES, (0, 0, 0), time_limit_ms=0).status, "time_limit")
+
+    def test_parameters(self):
+        heavy = conelane.solve_rld(CONES, (0, 0, 0), parameters={"w_b": 2.0})
+        default = conelane.solve_rld(CONES, (0, 0, 0))
+        self.assertAlmostEqual(heavy.objective, default.objective - 4.0)  # four edges, each worth 1 more
+        everything = conelane.rld_parameters("context")
+        same = [conelane.solve_rld(CONES, (0, 0, 0), parameters=p).objective for p in ("context", everything)]
+        self.assertEqual(same[0], same[1])
+
+    def test_faults(self):
+        for message, options in (("there is no solver 'cbc', only path-pair, exhaustive", {"solver": "cbc"}),
+                                 ("limits: ", {"absolute_gap": -1.0}), ("limits: ", {"time_limit_ms": np.nan}),
+                                 ("d_max: ", {"parameters": {"d_max": np.inf}}),
+                                 ("neither None, the name of a set nor a dict", {"parameters": 3})):
+            with self.subTest(options), self.assertRaisesRegex(ValueError, message):
+                conelane.solve_rld(CONES, (0, 0, 0), **options)
+        with self.assertRaisesRegex(ValueError, r"cones\[1\].id: cone id 1 is there twice"):
+            conelane.solve_rld(CONES[:2], (0, 0, 0), ids=[1, 1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,195 @@
+"""The planner of ft-fsd-path-planning, answered by conelane: small scenes, and the recorded runs frame by frame."""
+import json
+import os
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import conelane
+from conelane.ft_fsd import ConeTypes, MissionTypes, PathPlanner
+
+HERE = np.array([0.0, 0.0])
+AHEAD = np.array([1.0, 0.0])
+
+
+def by_type(**arrays):
+    cones = [np.zeros((0, 2)) for _ in ConeTypes]
+    for name, array in arrays.items():
+        cones[ConeTypes[name]] = np.array(array, dtype=float)
+    return cones
+
+
+STRAIGHT = by_type(LEFT=[[x, 1.5] for x in (0, 4, 8, 12)], RIGHT=[[x, -1.5] for x in (0, 4, 8, 12)])
+
+
+class Interface(unittest.TestCase):
+    def test_the_path_of_a_straight_lane(self):
+        path = PathPlanner(MissionTypes.trackdrive).calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+        self.assertEqual(path.shape, (40, 4))
+        np.testing.assert_allclose(path[:, 0], np.linspace(0, 12, 40), atol=1e-9)  # the lane ends at 12 m
+        np.testing.assert_allclose(path[:, 1], path[:, 0], atol=1e-9)
+        np.testing.assert_allclose(path[:, 2:], 0.0, atol=1e-9)
+
+    def test_a_lane_that_begins_ahead_is_joined_to_the_car(self):
+        path = PathPlanner(MissionTypes.trackdrive, points=400).calculate_path_in_global_frame(
+            STRAIGHT, np.array([-5.0, 0.5]), np.array([np.cos(0.1), np.sin(0.1)]))
+        np.testing.assert_allclose(path[0, 1:3], [-5.0, 0.5])
+        steps = np.diff(path[:, 1:3], axis=0)
+        heading = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+        self.assertAlmostEqual(heading[0], 0.1, delta=0.01)
+        np.testing.assert_allclose(np.linalg.norm(steps, axis=1), np.diff(path[:, 0]), rtol=1e-3)
+        # The curvature is that of the way: it turns the heading from step to step.
+        turned = np.cumsum(path[:-1, 3] * np.diff(path[:, 0]))
+        np.testing.assert_allclose(heading[0] + turned, heading, atol=0.03)
+        np.testing.assert_allclose(path[path[:, 1] > 0.1, 2], 0.0, atol=1e-6)
+
+    def test_a_path_of_the_length_that_is_asked_for(self):
+        planner = PathPlanner(MissionTypes.autocross, path_length_m=6.0, points=7, method="clc")
+        path = planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+        np.testing.assert_allclose(path[:, 0], np.arange(7.0), atol=1e-9)
+
+    def test_the_curvature_of_a_left_circle_is_positive(self):
+        angle = np.arange(0.0, 2.2, 0.3)
+        circle = np.column_stack([np.sin(angle), 1.0 - np.cos(angle)])
+        cones = by_type(UNKNOWN=np.vstack([10 * circle + [0, 2], 14 * circle + [0, -2]]))  # about (0, 12)
+        path = PathPlanner(MissionTypes.trackdrive).calculate_path_in_global_frame(cones, HERE, AHEAD)
+        np.testing.assert_allclose(path[5:35, 3], 1 / 12, atol=0.02)
+
+    def test_directions(self):
+        for direction in (AHEAD, 5 * AHEAD, 0.0, np.array([0.0]), [1, 0]):
+            path = PathPlanner(MissionTypes.trackdrive).calculate_path_in_global_frame(STRAIGHT, HERE, direction)
+            np.testing.assert_allclose(path[-1, 1:3], [12, 0], atol=1e-9)
+
+    def test_intermediate_results(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        results = planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD, return_intermediate_results=True)
+        path, left, right, left_virtual, right_virtual, to_right, to_left = results
+        self.assertEqual(path.shape, (40, 4))
+        np.testing.assert_array_equal(left, STRAIGHT[ConeTypes.LEFT])
+        np.testing.assert_array_equal(right, STRAIGHT[ConeTypes.RIGHT])
+        np.testing.assert_array_equal(left_virtual, left)
+        np.testing.assert_array_equal(right_virtual, right)
+        self.assertEqual((to_right.tolist(), to_left.tolist()), ([0, 1, 2, 3], [0, 1, 2, 3]))
+
+    def test_a_cone_without_partner_is_matched_to_none(self):
+        cones = by_type(LEFT=[[x, 1.5] for x in (0, 4, 8, 12)])  # one boundary alone
+        planner = PathPlanner(MissionTypes.trackdrive)
+        path, left, right, *_, to_right, to_left = planner.calculate_path_in_global_frame(cones, HERE, AHEAD, True)
+        self.assertEqual((len(left), len(right), to_right.tolist(), to_left.tolist()), (4, 0, [-1] * 4, []))
+        np.testing.assert_allclose(path[:, 2], 1.5 - 3.5 / 2)  # half the usual width beside it
+
+    def test_a_path_ends_where_colours_contradict_the_lane(self):
+        def length(left_colors):
+            cones = by_type(RIGHT=[[x, -1.5] for x in (0, 4, 8, 12)])
+            for x, color in zip((0, 4, 8, 12), left_colors):
+                cones[ConeTypes[color]] = np.vstack([cones[ConeTypes[color]], [[x, 1.5]]])
+            planner = PathPlanner(MissionTypes.trackdrive)
+            found = planner.calculate_path_in_global_frame(cones, HERE, AHEAD)[-1, 0]
+            return None if planner._last_path is None else round(found, 6)
+
+        self.assertEqual(length(["BLUE", "BLUE", "BLUE", "BLUE"]), 12)
+        self.assertEqual(length(["BLUE", "ORANGE_BIG", "UNKNOWN", "BLUE"]), 12)
+        self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "BLUE"]), 4)
+        self.assertIsNone(length(["BLUE", "YELLOW", "BLUE", "BLUE"]))  # the last path, of which there is none
+
+    def test_the_last_path_where_nothing_is_found(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        nothing = by_type()
+        first = planner.calculate_path_in_global_frame(nothing, np.array([1.0, 2.0]), np.array([0.0, 1.0]))
+        np.testing.assert_allclose(first[:, 1], 1.0)  # none yet: straight ahead
+        np.testing.assert_allclose(first[:, 2], 2.0 + np.linspace(0, 20, 40))
+        found = planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+        lost = planner.calculate_path_in_global_frame(nothing, np.array([1.0, 0.0]), AHEAD, True)
+        np.testing.assert_array_equal(lost[0], found)
+        self.assertTrue(all(len(result) == 0 for result in lost[1:]))
+        lost[0][:] = 0.0  # what a caller does to its path stays with it
+        np.testing.assert_array_equal(planner.calculate_path_in_global_frame(nothing, HERE, AHEAD), found)
+
+    def test_cones_keep_their_ids_while_they_move_a_little(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
+        ids = planner._memory.ids_of
+        self.assertEqual(ids(np.array([[0.0, 0], [4, 0], [8, 0]])).tolist(), [0, 1, 2])
+        # One is gone, two have moved, two are new; the new one beside an old cone is farther from it than that is.
+        self.assertEqual(ids(np.array([[8.3, 0], [0.2, 0], [0.6, 0], [12, 0]])).tolist(), [2, 0, 3, 4])
+        self.assertEqual(ids(np.zeros((0, 2))).tolist(), [])
+        self.assertEqual(ids(np.array([[0.0, 0.0]])).tolist(), [5])
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(ValueError, "skidpad is not supported"):
+            PathPlanner(MissionTypes.skidpad)
+        with self.assertRaisesRegex(ValueError, "only front"):
+            PathPlanner(MissionTypes.trackdrive, method="fsd")
+        plan = PathPlanner(MissionTypes.trackdrive).calculate_path_in_global_frame
+        broken = by_type(BLUE=[[0, np.nan]])
+        for message, arguments in (("4 arrays, not 5", (STRAIGHT[:4], HERE, AHEAD)),
+                                   (r"cones\[2\]: must be a finite number", (broken, HERE, AHEAD)),
+                                   (r"cones\[0\]: has shape \(1, 3\)", ([np.ones((1, 3))] + STRAIGHT[1:], HERE, AHEAD)),
+                                   (r"vehicle_position: has shape \(3,\)", (STRAIGHT, np.zeros(3), AHEAD)),
+                                   ("vehicle_direction: ", (STRAIGHT, HERE, np.zeros(2))),
+                                   (r"pose\.x: must be a finite number", (STRAIGHT, np.array([np.inf, 0]), AHEAD))):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                plan(*arguments)
+
+
+def data():
+    """The folder of recorded runs, or None."""
+    here = Path(os.environ.get("CONELANE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
+    return here / "ft_fsd" if (here / "ft_fsd").is_dir() else None
+
+
+def frames(name):
+    for frame in json.loads((data() / f"{name}.json").read_text(encoding="utf-8")):
+        cones = [np.array(kind, dtype=float).reshape(-1, 2) for kind in frame["slam_cones"]]
+        yield cones, np.array(frame["car_position"]), np.array(frame["car_direction"])
+
+
+def crosses(path, wall):
+    """Whether a polyline crosses another one."""
+    a, b, c, d = path[:-1, None], path[1:, None], wall[None, :-1], wall[None, 1:]
+
+    def side(p, q, r):
+        return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
+                       - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0]))
+
+    return bool(((side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)).any())
+
+
+@unittest.skipIf(data() is None, "no recorded runs in CONELANE_DATA or in ../shared/data")
+class RecordedRuns(unittest.TestCase):
+    def test_every_path_of_two_laps_stays_inside_the_coloured_boundaries(self):
+        from matplotlib.path import Path as Polygon
+
+        track, = conelane.load_tracks(f"ftlog:{data() / 'fsg_19_2_laps.json'}")
+        walls = [np.vstack([wall, wall[:1]]) for wall in (track.boundaries.left, track.boundaries.right)]
+        planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=5000.0)
+        count = at_car = both = 0
+        for i, (cones, position, direction) in enumerate(frames("fsg_19_2_laps")):
+            path, left, right, *_ = planner.calculate_path_in_global_frame(cones, position, direction, True)
+            self.assertEqual(path.shape, (40, 4))
+            self.assertTrue(np.isfinite(path).all())
+            places = path[:, 1:3]
+            inside = Polygon(walls[0]).contains_points(places) != Polygon(walls[1]).contains_points(places)
+            self.assertTrue(inside.all(), f"frame {i}")
+            self.assertFalse(crosses(places, walls[0]) or crosses(places, walls[1]), f"frame {i}")
+            count += 1
+            at_car += np.linalg.norm(path[0, 1:3] - position) < 1.0  # no path of an earlier frame
+            both += len(left) > 0 and len(right) > 0
+        self.assertEqual(count, 440)
+        self.assertGreater(at_car, 400)
+        self.assertGreater(both, 420)
+
+    def test_every_frame_of_a_real_turn_has_a_path(self):
+        planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=5000.0)
+        count = 0
+        for i, (cones, position, direction) in enumerate(frames("one_turn")):
+            path = planner.calculate_path_in_global_frame(cones, position, direction)
+            self.assertEqual(path.shape, (40, 4))
+            self.assertTrue(np.isfinite(path).all())
+            self.assertLess(np.linalg.norm(path[0, 1:3] - position), 3.0, f"frame {i}")
+            count += 1
+        self.assertEqual(count, 111)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)  # says what is skipped, and why
