@@ -81,7 +81,7 @@ class Links(unittest.TestCase):
         for page in glob.glob(os.path.join(ROOT, "docs", "*.md")):
             name = os.path.basename(page)
             if name != "README.md":
-                self.assertIn(f"({name})", index)
+                self.assertTrue(f"({name})" in index, f"docs/README.md does not lead to {name}")
 
     def test_every_picture_is_shown(self):
         shown = " ".join(text_of(page) for page in PAGES)
@@ -89,7 +89,7 @@ class Links(unittest.TestCase):
                     glob.glob(os.path.join(ROOT, "experiments", "figures", "*")))
         self.assertGreater(len(pictures), 3)
         for picture in pictures:
-            self.assertIn(os.path.basename(picture), shown)
+            self.assertTrue(os.path.basename(picture) in shown, f"no page shows {os.path.relpath(picture, ROOT)}")
 
     def test_what_is_wrong_is_found(self):
         here = os.path.join(ROOT, "docs", "README.md")
