@@ -50,6 +50,7 @@ _COLOR_OF = {
     ConeTypes.ORANGE_BIG: Color.orange,
 }
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
+_FARTHEST_START_M = 3.0  # a lane is wider than twice this nowhere, so the car is not in it
 _STEP_M = 0.1  # of the line that a path is read off
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
 
@@ -91,19 +92,20 @@ class PathPlanner:
         Skidpad is not supported; all others are planned alike.
     experimental_performance_improvements : bool
         Without effect.
-    method : str
-        A detector, one of `conelane.methods()`.
+    methods : sequence of str
+        Detectors, out of `conelane.methods()`. The first one whose lane has both boundaries and the colours that
+        belong there is taken; else the first that has one boundary alone.
     path_length_m : float
         The path ends there [m], or where the lane does.
     points : int
         M, rows of the path.
     time_limit_ms : float
-        Of each call [ms].
+        Of each call, all detectors together [ms].
 
     Raises
     ------
     ValueError
-        For the mission skidpad and for an unknown method.
+        For the mission skidpad, for an unknown method and for none.
 
     Notes
     -----
@@ -133,17 +135,17 @@ class PathPlanner:
         mission: MissionTypes,
         experimental_performance_improvements: bool = False,
         *,
-        method: str = "front-warm",
+        methods: Sequence[str] = ("front-warm", "clc"),
         path_length_m: float = 20.0,
         points: int = 40,
         time_limit_ms: float = 50.0,
     ) -> None:
         if mission == MissionTypes.skidpad:
             raise ValueError("mission: skidpad is not supported: its circles cross, which is no lane")
-        if not path_length_m > 0.0 or points < 2:
-            raise ValueError("path_length_m must be above 0, points at least 2")
+        if not path_length_m > 0.0 or points < 2 or not methods:
+            raise ValueError("path_length_m must be above 0, points at least 2, methods at least 1")
         self.mission = MissionTypes(mission)
-        self._detector = Detector(method)
+        self._detectors = [Detector(method) for method in methods]
         self._length_m = path_length_m
         self._points = points
         self._time_limit_ms = time_limit_ms
@@ -173,8 +175,8 @@ class PathPlanner:
         Returns
         -------
         path : (M, 4) ndarray of float
-            s [m], x, y [m], curvature [1/m]. Where no lane is found: the last path, or straight ahead where there was
-            none yet.
+            s [m], x, y [m], curvature [1/m]. Where no lane is found, or none within 3 m of the car: the last path, or
+            straight ahead where there was none yet.
         sorted_left, sorted_right : (L, 2), (R, 2) ndarray of float
             Boundaries from the car outward [m]; empty where no lane is found.
         left_with_virtual, right_with_virtual : (L, 2), (R, 2) ndarray of float
@@ -189,18 +191,35 @@ class PathPlanner:
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)
-        lane = self._detector.detect(places, pose, ids=self._memory.ids_of(places), colors=colors,
-                                     time_limit_ms=self._time_limit_ms)
-        path = self._path_of(lane)
-        if path is None:
+        planned = self._plan(places, colors, pose)
+        if planned is None:
             path = self._last_path if self._last_path is not None else self._straight(pose)
+            left = right = np.zeros((0, 2))
         else:
+            path, lane = planned
+            left, right = lane.left_points, lane.right_points
             self._last_path = path
         path = path.copy()
         if not return_intermediate_results:
             return path
-        left, right = lane.left_points, lane.right_points
         return path, left, right, left.copy(), right.copy(), _nearest(left, right), _nearest(right, left)
+
+    def _plan(self, places: FloatArray, colors: IntArray,
+              pose: Tuple[float, float, float]) -> Optional[Tuple[FloatArray, Lane]]:
+        """The path to be driven and its lane."""
+        ids = self._memory.ids_of(places)
+        left_ms = self._time_limit_ms
+        of_one_boundary = None
+        for detector in self._detectors:
+            lane = detector.detect(places, pose, ids=ids, colors=colors, time_limit_ms=left_ms)
+            left_ms -= lane.latency_ms
+            path = self._path_of(lane)
+            if path is None:
+                continue
+            if len(lane.left) and len(lane.right):
+                return path, lane
+            of_one_boundary = of_one_boundary or (path, lane)
+        return of_one_boundary
 
     def _path_of(self, lane: Lane) -> Optional[FloatArray]:
         line = _as_coloured(lane.centre_line(step_m=_STEP_M), lane)
@@ -208,6 +227,8 @@ class PathPlanner:
             return None
         rows = np.vstack([_way_to(line[0], lane.pose), line[:, [0, 1, 2, 4]]])  # s, x, y, curvature
         rows[:, 0] = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows[:, 1:3], axis=0), axis=1))])
+        if np.linalg.norm(rows[0, 1:3] - lane.pose[:2]) > _FARTHEST_START_M:
+            return None
         s = np.linspace(0.0, min(self._length_m, rows[-1, 0]), self._points)
         return np.column_stack([s] + [np.interp(s, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
 
