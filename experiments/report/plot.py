@@ -8,6 +8,8 @@ import sys
 import warnings
 
 import numpy as np
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from .drawing import MARKS, driven_ahead, in_car_frame, solid_and_bridged
 from .load import InputError, label_of, read_lines
@@ -101,8 +103,6 @@ def _band(panel, cones, truth):
     if not left or not right:
         return
     if closed:  # the ring between both, the inner one run backwards
-        from matplotlib.patches import PathPatch
-        from matplotlib.path import Path
         rings = [np.vstack([left, left[:1]]), np.vstack([right[::-1], right[-1:]])]
         codes = [code for ring in rings for code in [Path.MOVETO] + [Path.LINETO] * (len(ring) - 1)]
         patch = PathPatch(Path(np.vstack(rings), codes), linewidth=0, zorder=1)
