@@ -409,8 +409,11 @@ TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
 }
 
 /// The clock strikes at each of the looks at it in turn: what is claimed complete is, and the bound is one.
+/// It never falls, and where nodes branch it rises on the way.
 TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
     int cut_short = 0;
+    int rises = 0;
+    std::uint64_t run = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
         SearchClock no_limit;
@@ -422,13 +425,15 @@ TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
             system.kinds[0].end.push_back(graph.near(cone) ? 0 : 1);
         }
         Incumbent incumbent;
-        const PathPairOptions options;
+        PathPairOptions options;
+        if (run++ % 2 == 1) options = {.search_fronts = false, .root_steps = 10, .node_steps = 5};
         BranchAndBound search(graph, incumbent, options);
         constexpr double kTolerance = 1e-9;
         int looks = 0;
         incumbent.reset(graph, 0.0);
         ASSERT_TRUE(search.run(system, kTolerance, [&looks] { return ++looks < 0; }).complete);
         const double optimum = incumbent.cutoff();
+        double bound_before = -kUnreachable;
         for (int strike = 1; strike <= looks + 1; strike += 1 + looks / 200) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike << " of " << looks);
             int look = 0;
@@ -437,6 +442,9 @@ TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
                 search.run(system, kTolerance, [&] { return ++look >= strike; });
             EXPECT_GE(incumbent.cutoff(), optimum - kTolerance);
             EXPECT_LE(outcome.bound, optimum + kTolerance);
+            EXPECT_GE(outcome.bound, bound_before - 1e-6);
+            if (outcome.bound > bound_before + 1e-6) ++rises;
+            bound_before = outcome.bound;
             if (outcome.complete) {
                 EXPECT_NEAR(incumbent.cutoff(), optimum, 2.0 * kTolerance);
             } else {
@@ -445,6 +453,7 @@ TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
         }
     }
     EXPECT_GT(cut_short, 100);
+    EXPECT_GT(rises, 100);
 }
 
 TEST(PathPair, TakesLargeConeSets) {

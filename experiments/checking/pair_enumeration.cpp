@@ -54,7 +54,8 @@ void PairEnumeration::find_taken() {
         insert(edges + scene_.tail(arc));
         insert(edges + scene_.head(arc));
         const boost::dynamic_bitset<>& excluded = scene_.excluded[arc / 2];
-        for (auto e = excluded.find_first(); e != excluded.npos; e = excluded.find_next(e)) insert(e);
+        for (auto e = excluded.find_first(); e != boost::dynamic_bitset<>::npos; e = excluded.find_next(e))
+            insert(e);
     }
 }
 
