@@ -105,6 +105,25 @@ TEST_F(PlotCommand, DrawsSeveralMethodsOrThoseThatAreNamed) {
     EXPECT_EQ(svg("--lanes clc.lanes.jsonl --given"), given);
 }
 
+TEST_F(PlotCommand, DrawsCandidatesAndClosedLanes) {
+    make_scene();
+    file_with(lane("clc", "1, 3", "4, 6",
+                   R"(, "iterations": 9, "complete": true, "candidates": )"
+                   R"([{"left": [1, 99], "right": [4, 5], "iteration": 1}])"),
+              "many.lanes.jsonl");
+    EXPECT_THAT(svg("--lanes many.lanes.jsonl"), HasSubstr(">steps of its candidates<"));
+    file_with(R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 2, "y": -1}, )"
+              R"({"id": 2, "x": 4, "y": 1}, {"id": 3, "x": 4, "y": -1}, {"id": 4, "x": 0, "y": -3}, )"
+              R"({"id": 5, "x": 6, "y": 3}, {"id": 6, "x": 6, "y": -3}], "ground_truth": )"
+              R"({"left": [1, 3, 2], "right": [4, 6, 5], "closed": true}})"
+              "\n",
+              "s.scenes.jsonl");
+    file_with(lane("clc", "1, 3, 2", "4, 6, 5", R"(, "closed": true)"), "ring.lanes.jsonl");
+    const std::string ring = svg("--lanes ring.lanes.jsonl");
+    EXPECT_THAT(ring, HasSubstr(">ground truth<"));
+    EXPECT_EQ(points_in(ring, "found-cone"), 6U);
+}
+
 TEST_F(PlotCommand, WritesPngByItsEnding) {
     make_scene();
     EXPECT_EQ(run("plot --scenes s.scenes.jsonl --id a --lanes clc.lanes.jsonl --out p.png").exit_code, 0);

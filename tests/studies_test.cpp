@@ -2,9 +2,11 @@
 
 #include "conelane/invalid_input.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "experiments/studies/anytime.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/differential.hpp"
+#include "experiments/studies/growth.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 #include "solvers/registry.hpp"
@@ -211,6 +213,64 @@ TEST(Differential, FindsNoDifference) {
     options.reference = "exhaustive";  // takes 9 cones only
     EXPECT_THROW((void)differential_rows(set.scenes, options), InvalidInput);
     EXPECT_THROW((void)differential_rows({}, {}), InvalidInput);
+}
+
+TEST(Anytime, GapIsFromTheBoundToTheBestLaneGraphKnown) {
+    AnytimeRow row;
+    row.objective = -18.0;
+    row.best_known = -20.0;
+    row.bound = -25.0;
+    EXPECT_DOUBLE_EQ(proven_gap(row).value(), 0.25);
+    row.proven = true;
+    EXPECT_EQ(proven_gap(row), 0.0);
+    row.proven = false;
+    row.best_known = -0.5;  // small costs are not divided by
+    row.bound = -1.0;
+    EXPECT_DOUBLE_EQ(proven_gap(row).value(), 0.5);
+    row.bound.reset();
+    EXPECT_FALSE(proven_gap(row));
+}
+
+TEST(Anytime, WhatIsProvenStaysProven) {
+    const std::vector<AnnotatedScene> scenes(3, straight_scene());
+    AnytimeOptions options;
+    options.limits_ms = {1e-6, 5000.0, 6000.0};
+    options.limit = 2;
+    const std::vector<AnytimeRow> rows = anytime_rows(scenes, options);
+    ASSERT_EQ(rows.size(), 6U);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        EXPECT_EQ(rows[k].limit_ms, options.limits_ms[k % 3]);
+        EXPECT_EQ(rows[k].proven, k % 3 > 0);
+        EXPECT_EQ(rows[k].scene, &scenes[k / 3]);
+        EXPECT_TRUE(rows[k].best_known);
+    }
+    EXPECT_EQ(rows[1].objective, rows[2].objective);
+    EXPECT_THAT(anytime_table(rows, options.limits_ms), testing::HasSubstr("100.0"));
+    options.limits_ms = {10.0, 10.0};
+    EXPECT_THROW((void)anytime_rows(scenes, options), InvalidInput);
+}
+
+/// A cone every 4 m on both sides of a lane of 3.5 m: each has the one across, those of the ends one
+/// neighbour along, all others two; the diagonal is 5.3 m.
+TEST(Growth, CountsConesEdgesAndNeighbours) {
+    const std::vector<AnnotatedScene> scenes{straight_scene()};
+    EXPECT_DOUBLE_EQ(neighbours_per_cone(scenes[0].scene), (16 * 5 + 4 * 3) / 20.0);
+    EXPECT_EQ(neighbours_per_cone({}), 0.0);
+    GrowthOptions options;
+    options.sizes = {6, 20, 30};
+    const std::vector<GrowthRow> rows = growth_rows(scenes, options);
+    ASSERT_EQ(rows.size(), 2U);  // 6, and all 20
+    EXPECT_EQ(rows[0].cones, 6U);
+    EXPECT_FALSE(rows[0].all_visible);
+    EXPECT_EQ(rows[1].cones, 20U);
+    EXPECT_TRUE(rows[1].all_visible);
+    EXPECT_GE(rows[1].edges, 18U + 10U);
+    for (const GrowthRow& row : rows) {
+        EXPECT_TRUE(row.proven);
+        EXPECT_GE(row.nodes, 1);
+        EXPECT_GT(row.cpu_ms, 0.0);
+    }
+    EXPECT_THAT(growth_tables(rows), testing::HasSubstr("4-5"));
 }
 
 }  // namespace

@@ -229,7 +229,15 @@ MethodMaker make_front(const fs::path& folder, const RunOptions& options) {
         "front", [front = front_options(folder)] { return make_front_detector(front); }, options);
 }
 
+MethodMaker make_warm_front(const fs::path& folder, const RunOptions& options) {
+    FrontOptions front = front_options(folder);
+    front.repeat_bonus = warm_front_options().repeat_bonus;
+    return maker_of(
+        "front-warm", [front] { return make_front_detector(front); }, options);
+}
+
 constexpr std::array kLearners{Learner{"front", learn_front, make_front},
+                               Learner{"front-warm", learn_front, make_warm_front},
                                Learner{"clc", learn_clc, make_clc},
                                Learner{"clc-warm", learn_clc, make_warm_clc},
                                Learner{"clc-paper", learn_clc_paper, make_paper_clc},

@@ -8,6 +8,8 @@ import sys
 import warnings
 
 import numpy as np
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from .drawing import MARKS, driven_ahead, in_car_frame, solid_and_bridged
 from .load import InputError, label_of, read_lines
@@ -75,14 +77,15 @@ class _Panel:
         drawn.set_gid(f"{self.name}-{kind}")
         self.shown.setdefault(kind, drawn)
 
-    def arcs(self, reach):
-        """Distances from the car, named beside it on the right, where no lane is."""
+    def arcs(self, reach, right):
+        """Distances from the car, named beside it on the right, where no lane is; as far as the drawing goes there."""
         angles = np.linspace(0.0, math.pi, 91)
         for radius in np.arange(_ARC_EVERY_M, reach + 1e-6, _ARC_EVERY_M):
             self.axes.plot(radius * np.cos(angles), radius * np.sin(angles), color=_colour("grid"), linewidth=0.75,
                            zorder=0)
-            self.axes.annotate(f"{radius:g} m", (radius, 0), xytext=(-2, -9), textcoords="offset points", ha="right",
-                               fontsize=7, color=_colour("muted"), annotation_clip=False)
+            if radius <= right:
+                self.axes.annotate(f"{radius:g} m", (radius, 0), xytext=(-2, -9), textcoords="offset points", ha="right",
+                                   fontsize=7, color=_colour("muted"), annotation_clip=False)
 
     def car(self):
         outline = np.array(MARKS["car"]["outline"], dtype=float) * (1, -1)
@@ -100,8 +103,6 @@ def _band(panel, cones, truth):
     if not left or not right:
         return
     if closed:  # the ring between both, the inner one run backwards
-        from matplotlib.patches import PathPatch
-        from matplotlib.path import Path
         rings = [np.vstack([left, left[:1]]), np.vstack([right[::-1], right[-1:]])]
         codes = [code for ring in rings for code in [Path.MOVETO] + [Path.LINETO] * (len(ring) - 1)]
         patch = PathPatch(Path(np.vstack(rings), codes), linewidth=0, zorder=1)
@@ -126,6 +127,14 @@ def _lane(panel, cones, lane, pose, colour, width, longest_gap_m):
         panel.line(_up(in_car_frame(pose, np.array(beside["inferred"]).reshape(-1, 2))), "inferred", colour, linewidth=width)
     if "trusted_end" in beside:
         panel.line(_up(in_car_frame(pose, np.array(beside["trusted_end"]))), "trusted", colour, zorder=3)
+
+
+def _candidates(panel, cones, candidates, colour):
+    """Every step that a candidate takes, once."""
+    steps = {(min(step), max(step)) for sides in candidates for side in sides for step in zip(side, side[1:])}
+    gap = (np.nan, np.nan)
+    panel.line([point for start, end in sorted(steps) for point in (cones[start], cones[end], gap)], "candidate", colour,
+               alpha=MARKS["candidate"]["opacity"])
 
 
 def _said(line):
@@ -162,7 +171,7 @@ def _limits(panels, points, reach):
     low, high = points.min(axis=0) - _MARGIN_M, points.max(axis=0) + _MARGIN_M
     low[1] = min(low[1], -2.0)
     for panel in panels:
-        panel.arcs(min(reach, max(abs(low[0]), abs(high[0]), high[1])))
+        panel.arcs(min(reach, max(abs(low[0]), abs(high[0]), high[1])), high[0])
         panel.axes.set_xlim(low[0], high[0])
         panel.axes.set_ylim(low[1], high[1])
     return high - low
@@ -176,6 +185,7 @@ def draw(scene_file, tracks_file, lanes_file, how):
     frame, pose, index_of = frame_of(scene_file, number, scene, boundary_points(boundaries), how["noise_m"])
     lines = list(read_lines(lanes_file))
     lanes = [{"sides": sides_of(lanes_file, number, line, pose, index_of), "closed": line.get("closed", False),
+              "candidates": [sides_of(lanes_file, number, one, pose, index_of) for one in line.get("candidates", ())],
               "beside": beside, "said": _said(line)} for (number, line), beside in zip(lines, how["overlays"])]
     cones = _of_frame(frame["c"])
     count = len(cones) - frame["f"]
@@ -189,9 +199,12 @@ def draw(scene_file, tracks_file, lanes_file, how):
         _band(found, cones, frame["g"])
     found.line(_up(driven_ahead(boundaries, pose)), "driven")
     handles = []
+    mark = MARKS["lane"]
+    wider = min(mark["wider"], (mark["widest"] - mark["width"]) / max(1, len(lanes) - 1))
     for place, lane in enumerate(lanes):  # lanes that lie on one another show as stripes: the first ones are broader
         colour = _colour(f"m{place % METHOD_COLOURS}")
-        width = _POINTS * (MARKS["lane"]["width"] + MARKS["lane"]["wider"] * (len(lanes) - 1 - place))
+        width = _POINTS * (mark["width"] + wider * (len(lanes) - 1 - place))
+        _candidates(found, cones, lane["candidates"], colour)
         _lane(found, cones, lane, pose, colour, width, how["longest_gap_m"])
         handles.append((pyplot.Line2D([], [], color=colour, linewidth=width), lane["said"]))
     found.points(cones[:count], "cone")

@@ -141,10 +141,11 @@
 
     // Lanes that lie on one another show as stripes: the first ones are broader.
     const visible = data.methods.map((_, i) => i).filter((i) => current.a[i] && state.shown[i]);
+    const wider = Math.min(marks.lane.wider, (marks.lane.widest - marks.lane.width) / Math.max(1, visible.length - 1));
     visible.forEach((i, place) => {
       const answer = current.a[i];
       context.strokeStyle = colour("--m" + data.methods[i].colour);
-      context.lineWidth = marks.lane.width + marks.lane.wider * (visible.length - 1 - place);
+      context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
       for (const one of answer.slice(0, 2)) strokeSide(context, side(one), answer[2], data.longest_gap * view.scale);
     });
 

@@ -1,10 +1,12 @@
 #include "experiments/studies/study.hpp"
 
+#include "experiments/studies/anytime.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "experiments/studies/differential.hpp"
 #include "experiments/studies/formulations.hpp"
 #include "experiments/studies/front_beam.hpp"
+#include "experiments/studies/growth.hpp"
 #include "experiments/studies/optimality.hpp"
 #include "experiments/studies/relaxations.hpp"
 
@@ -14,6 +16,8 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     std::vector<std::unique_ptr<Study>> studies;
     studies.push_back(make_optimality_study());
     studies.push_back(make_backends_study());
+    studies.push_back(make_anytime_study());
+    studies.push_back(make_growth_study());
     studies.push_back(make_differential_study());
     studies.push_back(make_formulations_study());
     studies.push_back(make_relaxations_study());

@@ -32,10 +32,10 @@ struct FrontOptions {
 /// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence. Enumeration counts
 /// the states that moved, and says `complete` where no lane that the rules allow was left out.
 ///
-/// Where no lane was found before time or memory was spent, or none that is usable with a probability of 20
-/// %, a boundary is looked for that is seen alone (see BoundarySearch): three cones at least, the other side
-/// of the answer empty, no confidence. The bonus of the last lane has no part in it, and it is not remembered
-/// as one.
+/// Where no lane was found before time or memory was spent, or none that is usable with a probability of 0.1,
+/// a boundary is looked for that is seen alone (see BoundarySearch): three cones at least, five in place of a
+/// lane, the other side of the answer empty, no confidence. The bonus of the last lane has no part in it, and
+/// it is not remembered as one.
 ///
 /// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none, nor a boundary
 /// alone; `stopped` by iterations where none was found but the beam left some out; `stopped_by` time or

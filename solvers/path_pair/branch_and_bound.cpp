@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -32,11 +34,13 @@ constexpr int kBeams = 2;
 constexpr int kBeamSteps[kBeams] = {20, 60};  ///< of the root's ascent, or later
 constexpr std::size_t kBeamWidth = 8;
 constexpr double kTargets[] = {0.3, 0.6, 1.0};  ///< shares of the gap
+constexpr double kLowerTargets[] = {0.3, 0.1};  ///< shares of a target's gap that was too wide
 constexpr double kLeastTargetGap = 1.0;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr int kLargeGraph = 250;  ///< arcs
 constexpr int kNearArcs = 100;
 constexpr int kRestSteps = 2;
+constexpr std::size_t kMostOpenNodes = 2000;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
 
@@ -49,35 +53,42 @@ std::size_t at(int index) {
 BranchAndBound::BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
     : graph_(graph), incumbent_(incumbent), options_(options) {}
 
-BranchAndBound::Node& BranchAndBound::node(std::size_t depth) {
-    while (nodes_by_depth_.size() <= depth) nodes_by_depth_.push_back(std::make_unique<Node>());
-    return *nodes_by_depth_[depth];
-}
-
 BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
                                             std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
     if (options_.search_fronts) begin_near();
-    explore(0, graph_.share_bound(), options_.root_steps);
-    return {std::min(open_bound_, cutoff()), open_bound_ == kUnreachable};
+    root_.bound = graph_.share_bound();
+    root_.most_steps = options_.root_steps;
+    ++nodes_;
+    double open_bound = kUnreachable;
+    if (explore(root_) == Verdict::stopped) open_bound = root_.bound;
+    while (open_bound == kUnreachable && !open_.empty()) {
+        std::unique_ptr<Node> next = take_next();
+        if (next->bound < cutoff()) {
+            ++nodes_;
+            if (explore(*next) == Verdict::stopped) open_bound = std::min(next->bound, least_open_bound());
+        }
+        spare_nodes_.push_back(std::move(next));
+    }
+    return {std::min(open_bound, cutoff()), open_bound == kUnreachable};
 }
 
 double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
-    double bound = -kUnreachable;
-    ascend(0, bound, options_.root_steps);
-    return bound;
+    root_.most_steps = options_.root_steps;
+    ascend(root_, true);
+    return root_.bound;
 }
 
 std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& system, double unit,
                                                             std::function<bool()> stopped) {
     unit_ = unit;
     stages_.clear();
-    double bound = -kUnreachable;
     begin(system, 0.0, std::move(stopped));
-    ascend(0, bound, options_.root_steps);
+    root_.most_steps = options_.root_steps;
+    ascend(root_, true);
     unit_ = 0.0;
-    if (bound > -kUnreachable) stages_.push_back(root_multipliers());
+    if (root_.bound > -kUnreachable) stages_.push_back(root_multipliers());
     return std::move(stages_);
 }
 
@@ -99,85 +110,123 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     for (std::size_t cone = 0; cone < starting.size(); ++cone) {
         if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting[cone] = 1;
     }
-    Node& root = node(0);
-    root.graph.assign(graph_, starting);
-    root.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
-    root.multipliers.clique.clear();
-    root.multipliers.heading = 0.0;
-    open_bound_ = kUnreachable;
+    root_.graph.assign(graph_, starting);
+    root_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
+    root_.multipliers.clique.clear();
+    root_.multipliers.heading = 0.0;
+    root_.bound = -kUnreachable;
+    std::ranges::move(open_, std::back_inserter(spare_nodes_));
+    open_.clear();
+    // The same search takes the same nodes again, whose memory has the right size.
+    std::ranges::sort(spare_nodes_, std::greater(), [](const auto& node) { return node->number; });
 }
 
 /// A large graph is first searched on the arcs that a leg reaches first: their best pair is an incumbent.
 void BranchAndBound::begin_near() {
-    const ResidualGraph& whole = node(0).graph;
+    const ResidualGraph& whole = root_.graph;
     if (whole.size() < kLargeGraph) return;
     order_.resize(at(kNearArcs));
     std::iota(order_.begin(), order_.end(), 0);
     keep_successor_.assign(whole.out_arc.size(), 1);
-    Node& near = node(1);
-    near.graph.filter(whole, order_, keep_successor_, index_);
-    near.multipliers = node(0).multipliers;
-    double bound = -kUnreachable;
-    ascend(1, bound, options_.node_steps);
+    near_.graph.filter(whole, order_, keep_successor_, index_);
+    near_.multipliers = root_.multipliers;
+    near_.bound = -kUnreachable;
+    near_.most_steps = options_.node_steps;
+    ascend(near_, false);
     std::ranges::fill(edge_use_, 0.0);
     std::ranges::fill(end_use_, 0.0);
 }
 
-void BranchAndBound::explore(std::size_t depth, double bound, int most_steps) {
-    ++nodes_;
-    const Verdict verdict = ascend(depth, bound, most_steps);
-    if (verdict == Verdict::closed) return;
-    if (verdict == Verdict::stopped) {
-        open_bound_ = std::min(open_bound_, bound);
-        return;
-    }
-    const Branching branching = choose(node(depth).graph);
-    // On an end: first all pairs that have it, then the rest, from the same multipliers.
+/// Bounds and searches the node, and branches where that leaves it open.
+BranchAndBound::Verdict BranchAndBound::explore(Node& node) {
+    take_decisions(node);
+    const Verdict verdict = ascend(node, &node == &root_);
+    if (verdict == Verdict::open) add_children(node);
+    return verdict;
+}
+
+/// On an end: first all pairs that have it, then the rest, from the same multipliers.
+void BranchAndBound::add_children(const Node& parent) {
+    const Branching branching = choose(parent.graph);
     const bool on_end = branching.on == Branching::On::end;
     const bool in_first = on_end || branching.use >= 0.4;
-    for (const bool in : {in_first, !in_first}) {
-        Node& child = node(depth + 1);
-        branch(node(depth).graph, branching, in, child.graph);
-        child.multipliers = node(depth).multipliers;
-        decide(branching, in, false);
-        explore(depth + 1, bound, on_end && !in ? kRestSteps : options_.node_steps);
-        decide(branching, in, true);
-        if (open_bound_ < kUnreachable) {  // stopped: what is not yet explored is no better bounded than here
-            open_bound_ = std::min(open_bound_, bound);
-            return;
-        }
-        if (bound >= cutoff()) return;
+    for (const bool in : {!in_first, in_first}) {  // the last one comes next
+        Node& child = add_open_node();
+        branch(parent.graph, branching, in, child.graph);
+        child.multipliers = parent.multipliers;
+        child.decisions = parent.decisions;
+        child.decisions.push_back({branching, in});
+        child.bound = parent.bound;
+        child.most_steps = on_end && !in ? kRestSteps : options_.node_steps;
     }
 }
 
-BranchAndBound::Verdict BranchAndBound::ascend(std::size_t depth, double& bound, int most_steps) {
-    Node& here = node(depth);
+BranchAndBound::Node& BranchAndBound::add_open_node() {
+    if (spare_nodes_.empty()) {
+        spare_nodes_.push_back(std::make_unique<Node>());
+        spare_nodes_.back()->number = nodes_made_++;
+    }
+    open_.push_back(std::move(spare_nodes_.back()));
+    spare_nodes_.pop_back();
+    return *open_.back();
+}
+
+std::unique_ptr<BranchAndBound::Node> BranchAndBound::take_next() {
+    auto next = open_.end() - 1;
+    if (open_.size() < kMostOpenNodes) {  // else depth-first, which bounds the memory
+        for (auto node = open_.end(); node-- != open_.begin();) {
+            if ((*node)->bound < (*next)->bound) next = node;
+        }
+    }
+    std::unique_ptr<Node> taken = std::move(*next);
+    open_.erase(next);
+    return taken;
+}
+
+void BranchAndBound::take_decisions(const Node& node) {
+    decisions_.reset(graph_);
+    for (const auto& [branching, in] : node.decisions) {
+        if (branching.on == Branching::On::end) {
+            decisions_.decide_end(branching.what, in ? Decisions::End::always : Decisions::End::never);
+        } else if (in) {
+            decisions_.require_edge(graph_, branching.what, true);
+        }
+    }
+}
+
+double BranchAndBound::least_open_bound() const {
+    double least = kUnreachable;
+    for (const std::unique_ptr<Node>& node : open_) least = std::min(least, node->bound);
+    return least;
+}
+
+BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
     begin_ascent(here);
     AscentState state;
     // The root looks for an incumbent of its own, whatever its near part found.
-    state.is_root = depth == 0;
-    if (depth == 0) state.first_cutoff = incumbent_.cutoff();
+    state.is_root = is_root;
+    if (is_root) state.first_cutoff = incumbent_.cutoff();
     for (;; ++state.step) {
         if (stopped_()) return Verdict::stopped;
         state.value = evaluate(here.graph);
         if (state.value == -kUnreachable) return Verdict::stopped;
         note_value(here, state);
-        bound = std::max(bound, state.value);
+        here.bound = std::max(here.bound, state.value);
         if (state.value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
         if (clock_.struck()) return Verdict::stopped;
         count_usage(here.graph);
         if (options_.complete_walks && state.step == state.next_completion) complete_walks(here.graph, state);
         if (state.value >= cutoff()) return Verdict::closed;
-        state.last =
-            state.step + 1 >= most_steps || state.scale < (state.is_root ? kRootLeastScale : kLeastScale);
+        state.last = state.step + 1 >= here.most_steps ||
+                     state.scale < (state.is_root ? kRootLeastScale : kLeastScale);
         if (state.last) {
             take_best_multipliers(here);
             if (relaxation_.evaluate(here.graph, multipliers_) == -kUnreachable) return Verdict::stopped;
         }
         if (options_.search_fronts) {
             const Verdict verdict = try_fronts(here.graph, state);
-            bound = std::max(bound, state.best);
+            here.bound = std::max(here.bound, state.best);
             if (verdict != Verdict::open) return verdict;
         }
         if (state.last) break;
@@ -275,21 +324,35 @@ void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
 
 /// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
 /// fewer below a lower target; a pair that is found there is the best one, and where there is none the target
-/// is a bound.
+/// is a bound. Where they are too many, a still lower target raises the bound that the node leaves open.
 BranchAndBound::Verdict BranchAndBound::search_fronts_by_target(const ResidualGraph& graph,
                                                                 AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     for (const double share : kTargets) {
         const double target = state.best + share * (incumbent - state.best);
         if (share < 1.0 && incumbent - target < kLeastTargetGap) continue;
-        incumbent_.set_cutoff(target);
-        const Verdict verdict = search_fronts(graph, kMostFronts, kMostLabels);
-        const bool found = incumbent_.cutoff() < target;
-        if (!found) incumbent_.set_cutoff(incumbent);
-        if (found || verdict != Verdict::closed) return verdict;
-        state.best = std::max(state.best, target - tolerance_);
+        Verdict verdict = search_below(graph, target, state);
+        for (const double part : kLowerTargets) {
+            const double step = part * (target - state.best);
+            if (verdict != Verdict::open || incumbent_.cutoff() < target || step < kLeastTargetGap) break;
+            if (search_below(graph, state.best + step, state) == Verdict::closed) break;
+        }
+        if (incumbent_.cutoff() < target || verdict != Verdict::closed) return verdict;
     }
     return Verdict::closed;
+}
+
+/// All pairs of the node that cost less than the target, which is not above the incumbent. Where there is
+/// none the target is the node's bound; a pair that is found is the incumbent from then on.
+BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph, double target,
+                                                     AscentState& state) {
+    const double incumbent = incumbent_.cutoff();
+    incumbent_.set_cutoff(target);
+    const Verdict verdict = search_fronts(graph, kMostFronts, kMostLabels);
+    if (incumbent_.cutoff() < target) return verdict;
+    incumbent_.set_cutoff(incumbent);
+    if (verdict == Verdict::closed) state.best = std::max(state.best, target - tolerance_);
+    return verdict;
 }
 
 BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph, std::size_t most_fronts) {
@@ -410,19 +473,9 @@ bool BranchAndBound::fix(Node& here) {
     }
     if (10 * (order_.size() + kept) > 9 * (graph.arc.size() + graph.out_arc.size())) return false;
     spare_.filter(graph, order_, keep_successor_, index_);
-    std::swap(spare_, here.graph);
+    here.graph = spare_;  // no swap: a node keeps its memory from search to search
     if (unit_ > 0.0) stages_.push_back(evaluated_);
     return true;
-}
-
-void BranchAndBound::decide(const Branching& branching, bool in, bool back) {
-    if (branching.on == Branching::On::edge) {
-        if (in) decisions_.require_edge(graph_, branching.what, !back);
-    } else {
-        decisions_.decide_end(branching.what, back ? Decisions::End::open
-                                              : in ? Decisions::End::always
-                                                   : Decisions::End::never);
-    }
 }
 
 void BranchAndBound::branch(const ResidualGraph& source, const Branching& branching, bool in,

@@ -24,7 +24,7 @@
 
 namespace conelane::path_pair {
 
-/// Depth-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
+/// Best-first branch and bound over the far ends of the legs and over edges, in or out. Each node raises the
 /// bound of the relaxation by ascent, drops arcs and successions whose bound reaches the incumbent, and
 /// searches the fronts of what is left, which ends nearly every node. Else it branches where the relaxation
 /// is least sure: on ends first, for with both ends free half of the relaxed optimum may run along one
@@ -54,20 +54,38 @@ class BranchAndBound {
     void reset_nodes() { nodes_ = 0; }
 
     /// Multipliers of the root's best bound.
-    [[nodiscard]] const Multipliers& root_multipliers() const { return nodes_by_depth_.front()->multipliers; }
+    [[nodiscard]] const Multipliers& root_multipliers() const { return root_.multipliers; }
     [[nodiscard]] const CliquePool& cliques() const { return cliques_; }
 
   private:
+    struct Branching {
+        enum class On { nothing, end, edge } on;
+        int what;  ///< the cone or the edge
+        double use;
+    };
+    struct Decision {
+        Branching branching;
+        bool in;
+    };
     struct Node {
         ResidualGraph graph;
         Multipliers multipliers;  ///< those of the best bound
+        std::vector<Decision> decisions;
+        double bound = -kUnreachable;
+        int most_steps = 0;
+        std::size_t number = 0;  ///< nodes that were made before it
     };
     enum class Verdict { closed, open, stopped };
 
     void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
     void begin_near();
-    Node& node(std::size_t depth);
-    void explore(std::size_t depth, double bound, int most_steps);
+    Verdict explore(Node& node);
+    void add_children(const Node& parent);
+    Node& add_open_node();
+    /// The open node that comes next, off the list: one of the lowest bound, of these the last that was made.
+    std::unique_ptr<Node> take_next();
+    void take_decisions(const Node& node);
+    [[nodiscard]] double least_open_bound() const;
 
     /// The ascent at a node, step by step.
     struct AscentState {
@@ -84,8 +102,8 @@ class BranchAndBound {
         std::int64_t work = 0;               ///< label updates since the fronts were last tried, about
         double failed_gap = kUnreachable;    ///< the gap at which the fronts were too many
     };
-    /// Raises `bound`. Closed where no better pair is left in the node.
-    Verdict ascend(std::size_t depth, double& bound, int most_steps);
+    /// Raises the node's bound. Closed where no better pair is left in it.
+    Verdict ascend(Node& here, bool is_root);
     void begin_ascent(const Node& here);
     /// The node's best multipliers so far, with 0 for cliques that came later.
     void take_best_multipliers(const Node& here);
@@ -102,19 +120,14 @@ class BranchAndBound {
     /// Precondition: the relaxation was evaluated on the node's graph.
     Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
     Verdict search_fronts_by_target(const ResidualGraph& graph, AscentState& state);
+    Verdict search_below(const ResidualGraph& graph, double target, AscentState& state);
     /// Builds the fronts and drops what it can. Closed where nothing is left.
     Verdict build_fronts(const ResidualGraph& graph, std::size_t most_fronts);
     Verdict search_labels(std::size_t width, std::size_t most_labels);
     void find_tables();
     bool fix(Node& here);
-    struct Branching {
-        enum class On { nothing, end, edge } on;
-        int what;  ///< the cone or the edge
-        double use;
-    };
     [[nodiscard]] Branching choose(const ResidualGraph& graph) const;
     void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
-    void decide(const Branching& branching, bool in, bool back);
     void count_usage(const ResidualGraph& graph);
     void separate(const ResidualGraph& graph, Multipliers& multipliers);
     [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
@@ -141,7 +154,11 @@ class BranchAndBound {
     Multipliers multipliers_;       ///< of the current step
     std::vector<double> edge_use_;  ///< averaged over the steps
     std::vector<double> end_use_;   ///< legs that end at a cone, averaged
-    std::vector<std::unique_ptr<Node>> nodes_by_depth_;
+    Node root_;
+    Node near_;  ///< the part of the root that is searched for an incumbent
+    std::vector<std::unique_ptr<Node>> open_;
+    std::vector<std::unique_ptr<Node>> spare_nodes_;
+    std::size_t nodes_made_ = 0;
     ResidualGraph spare_;
     std::vector<int> order_;
     std::vector<int> index_;
@@ -152,7 +169,6 @@ class BranchAndBound {
     Multipliers evaluated_;  ///< in whole units, those last evaluated
     std::vector<Multipliers> stages_;
     bool fronts_are_built_ = false;
-    double open_bound_ = 0.0;
     std::int64_t nodes_ = 0;
 };
 

@@ -13,6 +13,8 @@ conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rl
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
 conelane(study optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
 conelane(study backends --warm-start --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
+conelane(study anytime --scenes ${scenes} --limit 6 --limits 0.1,400 --out ${RESULTS}/anytime.jsonl)
+conelane(study growth --scenes ${scenes} --sizes 6,12 --limit 6 --out ${RESULTS}/growth.jsonl)
 conelane(study formulations --scenes ${scenes} --sizes 6 --limit 10 --out ${RESULTS}/formulations.jsonl)
 conelane(study relaxations --scenes ${scenes} --sizes 8 --limit 4 --out ${RESULTS}/relaxations.jsonl)
 conelane(tune --tracks generated:straight generated:circle --nearest 8 --fp 0.3 --every 40 --folds 2 --evaluations 1

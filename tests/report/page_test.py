@@ -113,7 +113,8 @@ class ReportPage(unittest.TestCase):
     def test_has_every_figure_or_says_why_not(self):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
-                     "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start",
+                     "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start", "anytime-shares", "anytime-gap",
+                     "growth-size", "growth-density",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
                      "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
                      "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
@@ -124,7 +125,7 @@ class ReportPage(unittest.TestCase):
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 25 + BENCHMARKED)
+        self.assertEqual(len(articles), 27 + BENCHMARKED)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -315,6 +316,8 @@ class ReportPage(unittest.TestCase):
                 stream.writelines(whole)
             for name, text, complaint in (("optimality.jsonl", '{"scene": "a"}\n', "optimality.jsonl:1: track: "),
                                           ("backends.jsonl", "[]\n", "backends.jsonl:1: "),
+                                          ("anytime.jsonl", '{"scene": "a"}\n', "anytime.jsonl:1: limit_ms"),
+                                          ("growth.jsonl", '{"cones": 6}\n', "growth.jsonl:1: all_visible"),
                                           ("formulations.jsonl", '{"cones": 6}\n', "formulations.jsonl:1: formulation"),
                                           ("relaxations.jsonl", '{"cones": 6}\n', "relaxations.jsonl:1: solver"),
                                           ("confidence-and-colour.jsonl", '{"known": "a"}\n', "confidence-and-colour.jsonl:1: false_positive_rate"),
@@ -480,7 +483,7 @@ class ReportPage(unittest.TestCase):
             os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
             shutil.rmtree(os.path.join(copy, "sweep"))
             for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
-                         "confidence-and-colour.jsonl", "benchmarks.json"):
+                         "anytime.jsonl", "growth.jsonl", "confidence-and-colour.jsonl", "benchmarks.json"):
                 if name != "benchmarks.json" or BENCHMARKED:
                     os.unlink(os.path.join(copy, name))
             page = os.path.join(folder, "page.html")
@@ -490,6 +493,7 @@ class ReportPage(unittest.TestCase):
             self.assertIn("the results hold no scenes.scenes.jsonl", text)
             for complaint in ("there is no sweep over cone-set sizes.", "there is no optimality.jsonl.",
                               "there is no backends.jsonl.", "there is no formulations.jsonl.",
+                              "there is no anytime.jsonl.", "there is no growth.jsonl.",
                               "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
                               "there is no benchmarks.json."):
                 self.assertIn(complaint, text)
