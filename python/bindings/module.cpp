@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "The C++ part of the package conelane; use that.";
     module.attr("version") = std::string(conelane::version());
     // InvalidInput is a std::invalid_argument, which pybind11 turns into ValueError by itself.
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): what pybind11 takes
     py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);
