@@ -56,7 +56,8 @@ def html(results, published):
     logarithmic(axes.xaxis)
     percent_axis(axes)
     legend(axes)
-    shares = drawn("anytime-shares", f"Share of {len(by_limit[limits[0]])} scenes, by the limit. {origin}".strip(), figure,
+    shares = drawn("anytime-shares", "Where a curve turns level, more time proves no more. Share of "
+                   f"{len(by_limit[limits[0]])} scenes, by the limit. {origin}".strip(), figure,
                    "Proven, and nearly best")
     # Scenes that the first limit is too short for: the same ones at every limit.
     hard = {row["scene"] for row in by_limit[limits[0]] if not row["proven"]}
@@ -69,6 +70,7 @@ def html(results, published):
     axes.set_ylim(bottom=0.0)
     logarithmic(axes.xaxis)
     legend(axes)
-    gap = drawn("anytime-gap", f"Of the {len(hard)} scenes that {limits[0]:g} ms are too short for. {origin}".strip(),
+    gap = drawn("anytime-gap", "The faster a curve falls, the more its first answer is worth. Of the "
+                f"{len(hard)} scenes that {limits[0]:g} ms are too short for. {origin}".strip(),
                 figure, "Gap against time")
     return group([shares, gap])

@@ -52,11 +52,12 @@ def html(results, published):
             by_size.setdefault(row["cones"], []).append(row)
     figures = []
     if by_size:
-        figures.append(_curves("nearest cones", dict(sorted(by_size.items())), f"Scenes that have more cones. {origin}".strip(),
-                               "growth-size", "By the number of cones"))
+        figures.append(_curves("nearest cones", dict(sorted(by_size.items())), "A straight line on this scale: each cone more "
+                               f"multiplies the time. Scenes that have more cones. {origin}".strip(), "growth-size", "By the number of cones"))
     if by_density:
         figures.append(_curves("others within 5.5 m of a cone", dict(sorted(by_density.items())),
-                               f"All visible cones. {origin}".strip(), "growth-density", "By density"))
+                               "The right end, where cones stand densely, is what takes the time. All visible cones. "
+                               f"{origin}".strip(), "growth-density", "By density"))
     if not figures:
         raise Missing(f"{FILE} holds no row.")
     return group(figures)
