@@ -170,7 +170,7 @@ void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cone
     if (left.empty() || right.empty()) return;
     // How many cones are left of each side.
     const auto evened = [&](double widest_m) {
-        std::array<std::size_t, 2> counts{left.size(), right.size()};
+        std::array<std::size_t, 2> counts{cones[kLeft].size(), cones[kRight].size()};
         while (counts[kLeft] > 0 && counts[kRight] > 0) {
             const auto far = [&](Side side) {
                 const std::span<const Vertex> other(cones[opposite(side)].data(), counts[opposite(side)]);
