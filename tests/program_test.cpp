@@ -262,7 +262,7 @@ TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
 TEST_F(Program, CertifiesWholeSearches) {
     make_scenes("--fp 0.2");
     ASSERT_EQ(run("certify --whole --nearest 16 --scenes s.scenes.jsonl --out c.jsonl").exit_code, 0);
-    const std::string verify = "certify --whole --nearest 16 --scenes s.scenes.jsonl --verify ";
+    const std::string verify = "certify --nearest 16 --scenes s.scenes.jsonl --verify ";
     const Outcome good = run(verify + "c.jsonl");
     EXPECT_EQ(good.exit_code, 0);
     EXPECT_THAT(good.output, testing::AllOf(HasSubstr("0 refused"), HasSubstr("0 not verified")));
@@ -274,7 +274,7 @@ TEST_F(Program, CertifiesWholeSearches) {
     const Outcome bad = run(verify + "forged.jsonl");
     EXPECT_EQ(bad.exit_code, 1);
     EXPECT_THAT(bad.output, testing::AllOf(HasSubstr("does not cost"), HasSubstr("1 refused")));
-    EXPECT_EQ(run("certify --whole --nearest 4 --scenes s.scenes.jsonl --verify c.jsonl").exit_code, 1);
+    EXPECT_EQ(run("certify --nearest 4 --scenes s.scenes.jsonl --verify c.jsonl").exit_code, 1);
     expect_refused(verify + "c.jsonl --most-steps 0", {"--most-steps"});
 }
 

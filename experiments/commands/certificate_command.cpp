@@ -191,7 +191,7 @@ void run(const Options& options, const RldParameters& parameters) {
         } else {
             write_certificates(options.out, root_certificates(options, parameters));
         }
-    } else if (options.whole) {
+    } else if (options.whole || holds_search_certificates(options.verify)) {
         verify_searches(options, parameters);
     } else {
         verify_bounds(options, parameters);
@@ -213,8 +213,10 @@ void add_certify_command(CLI::App& program) {
     add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");
     what.add_option("--verify", options->verify, "*.certificates.jsonl to verify");
     what.require_option(1);
-    command.add_flag("--whole", options->whole,
-                     "of the whole search, verified in rational arithmetic, not of the root's bound alone");
+    command.add_flag(
+        "--whole", options->whole,
+        "of the whole search, verified in rational arithmetic, not of the root's bound alone; --verify "
+        "sees what a file holds");
     command
         .add_option("--most-steps", options->most_steps,
                     "labels and fronts for verifying a whole search; with more it is not verified")

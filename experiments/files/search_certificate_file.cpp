@@ -3,7 +3,9 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
 
+#include <fstream>
 #include <limits>
+#include <string>
 #include <unordered_map>
 
 namespace conelane::experiments {
@@ -190,6 +192,15 @@ std::optional<SearchCertificate> from_search_record(const Scene& scene, const Se
     if (!index.missing) return certificate;
     missing = *index.missing;
     return std::nullopt;
+}
+
+bool holds_search_certificates(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    std::string line;
+    std::getline(stream, line);
+    constexpr bool kThrows = false;
+    const nlohmann::json first = nlohmann::json::parse(line, nullptr, kThrows);
+    return first.is_object() && first.contains("parts");
 }
 
 std::vector<SearchCertificateRecord> read_search_certificates(const std::filesystem::path& file) {

@@ -46,6 +46,9 @@ struct SearchCertificateRecord {
                                                                   const SearchCertificateRecord& record,
                                                                   ConeId& missing);
 
+/// Whether the first record is one of a whole search; false where there is none, or no file.
+[[nodiscard]] bool holds_search_certificates(const std::filesystem::path& file);
+
 /// Records in the order of the file. Throws InputError naming file, line and key.
 [[nodiscard]] std::vector<SearchCertificateRecord> read_search_certificates(
     const std::filesystem::path& file);
