@@ -195,8 +195,8 @@ class PathPairSolver : public RldSolver {
         constexpr double kRounding = 1e-7;
         SearchCertificate::Part part;
         // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
-        const double most = cost_limit(problem) +
-                            2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
+        const double most =
+            cost_limit(problem) + 2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
         incumbent_.reset(graph_, std::min(bound, most) + kRounding);
         const std::vector<Multipliers> stages =
             search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });

@@ -15,8 +15,8 @@ namespace {
 /// From 0.1 to 0.45 recorded courses gain in steadiness, overlap and usable lanes; 0.2 loses on none of the
 /// sets that were measured, more is a little steadier, and with 0.8 fewer lanes are usable.
 constexpr double kRepeatBonus = 0.2;
-/// A lane that is less surely usable gives way to a boundary seen alone. Of views that show one boundary only,
-/// half have such a lane at best; of the others one in a thousand.
+/// A lane that is less surely usable gives way to a boundary seen alone. Of views that show one boundary
+/// only, half have such a lane at best; of the others one in a thousand.
 constexpr double kLeastConfidence = 0.1;
 constexpr std::size_t kFewestInsteadOfALane = 5;  ///< cones of such a boundary: fewer are found in noise
 /// A wide lane may widen by a quarter before its far ends are dropped.
