@@ -49,6 +49,8 @@ class CMakeBuild(build_ext):
             options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
         except ImportError:
             pass
+        if shutil.which("ninja") and "CMAKE_GENERATOR" not in os.environ:
+            options.append("-GNinja")  # CMake's default is make, which need not be there
         subprocess.run(["cmake", "-S", str(PROJECT), "-B", str(build), *options], check=True)
 
 
