@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -83,36 +84,35 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
     return certificate;
 }
 
-std::vector<SearchCertificateRecord> search_certificates(const Options& options,
-                                                         const RldParameters& parameters) {
+/// What `certify` makes of each scene of the file.
+template <typename Certify>
+auto certificates(const Options& options, const Certify& certify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    std::vector<SearchCertificateRecord> records;
+    std::vector<std::invoke_result_t<Certify, const Scene&>> records;
     records.reserve(scenes.size());
     Progress progress("certify", scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
-        const Scene scene = cone_set(options, annotated.scene);
-        records.push_back(
-            to_search_record(scene, certify_search(make_problem(scene, parameters), options.time_limit_ms)));
+        records.push_back(certify(cone_set(options, annotated.scene)));
         progress.advance();
     }
     return records;
+}
+
+std::vector<SearchCertificateRecord> search_certificates(const Options& options,
+                                                         const RldParameters& parameters) {
+    return certificates(options, [&](const Scene& scene) {
+        return to_search_record(scene,
+                                certify_search(make_problem(scene, parameters), options.time_limit_ms));
+    });
 }
 
 std::vector<CertificateRecord> root_certificates(const Options& options, const RldParameters& parameters) {
     if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
         throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
     }
-    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    std::vector<CertificateRecord> records;
-    records.reserve(scenes.size());
-    Progress progress("certify", scenes.size());
-    for (const AnnotatedScene& annotated : scenes) {
-        const Scene scene = cone_set(options, annotated.scene);
-        records.push_back(
-            to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms)));
-        progress.advance();
-    }
-    return records;
+    return certificates(options, [&](const Scene& scene) {
+        return to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms));
+    });
 }
 
 /// Calls `verify(record, scene)` for each record with the scene that it names.
