@@ -26,7 +26,8 @@ Registry& registry() {
 [[noreturn]] void end_by(int signal) {
     // Held to the end: nothing that was cleared away can be made again.
     registry().mutex.lock();
-    for (const std::function<void()>& clear : registry().to_clear) clear();
+    // The last one first, as destructors: a program that was started ends before its folder goes.
+    for (auto clear = registry().to_clear.rbegin(); clear != registry().to_clear.rend(); ++clear) (*clear)();
     // A progress bar may stand in the line.
     const std::string line =
         std::string(isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + "conelane: interrupted\n";
