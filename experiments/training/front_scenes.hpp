@@ -20,7 +20,7 @@ struct FrontSceneOptions {
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
     bool other_course = false;
-    double highest_rate = 0.7;  ///< where false positives stay, half of all means so many in places
+    double highest_rate = 0.7;  ///< some views have so many where false positives stay at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,

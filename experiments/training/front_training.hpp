@@ -17,8 +17,7 @@ namespace conelane::experiments {
 struct FrontTrainingOptions {
     FrontSceneOptions scenes;
     FrontLossOptions loss;
-    /// Inputs of the cost, by their names in the feature tables, that stay without weight: what is each
-    /// worth?
+    /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
     std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam
     std::size_t imitation_steps = 800;  ///< of teacher forcing
