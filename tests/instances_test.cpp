@@ -3,6 +3,7 @@
 #include "conelane/solve_scene.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "solvers/milp/clp_bb_solver.hpp"
+#include "solvers/path_pair_solver.hpp"
 #include "tests/contestants.hpp"
 #include "tests/program_fixture.hpp"
 
@@ -102,6 +103,32 @@ TEST_F(Instances, ASliceOfTheStoredLibraryIsTheSameAgain) {
         EXPECT_EQ(stored[name].mark, "=opt=") << name;
         EXPECT_NEAR(known.value, stored[name].value, kSameObjective) << name;
     }
+}
+
+/// What is stored as open cannot be beaten by a bound: no search may prove that there is nothing so good.
+TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
+    InstanceOptions options;
+    options.tracks = {"generated:legs", "generated:infield"};
+    options.scenes.false_positive_rates = {0.5};
+    options.scenes.ranges_m = {30.0};
+    options.scenes.every_m = 60.0;
+    options.scenes.seed = 7;
+    options.nearest = {std::nullopt};
+    const std::map<std::string, Known> stored = read_solu(kStored / "hard.solu");
+    const auto solver = make_path_pair_solver();
+    int compared = 0;
+    for (const InstanceScene& set : instance_scenes(options)) {
+        const auto known = stored.find(set.name + std::string(ending_of(Formulation::tight)));
+        if (known == stored.end()) continue;
+        SCOPED_TRACE(set.name);
+        EXPECT_EQ(known->second.mark, "=best=");
+        const RldReport report = solve_scene(*solver, set.scene, options.parameters, {50.0}).report;
+        ASSERT_NE(report.status, SolveStatus::error) << report.message;
+        ASSERT_NE(report.status, SolveStatus::infeasible);
+        EXPECT_LE(report.bound.value(), known->second.value + kSameObjective);
+        ++compared;
+    }
+    EXPECT_EQ(compared, 4);
 }
 
 TEST_F(Instances, EverySolverFindsTheStoredOptima) {
