@@ -174,6 +174,11 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
         const ProblemEdge& e = problem.edges[edge];
         return e.i == cone ? e.j : e.i;
     };
+    // A vector that grows copies what it has, and no clock is looked at meanwhile.
+    std::size_t turns = 0;
+    for (const std::vector<std::size_t>& incident : problem.incident)
+        turns += incident.empty() ? 0 : incident.size() * (incident.size() - 1) / 2;
+    problem.turns.reserve(std::min(turns, kMostProblemEntries));
     for (std::size_t middle = 0; middle < problem.cone_count; ++middle) {
         const std::vector<std::size_t>& incident = problem.incident[middle];
         const Point& at = scene.cones[middle].position;
@@ -212,6 +217,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
     if (extent == EdgeExtent::all_pairs) problem.distance_m.assign(n, std::vector<double>(n, 0.0));
     for (std::size_t i = 0; i < n; ++i) {
         if (limits.stop(problem, 2 * (n - i))) return;
+        const std::size_t edges_before = problem.edges.size();
         for (std::size_t j = i + 1; j < n; ++j) {
             const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
             if (!problem.near[i] && !problem.near[j] && !within(distance, parameters.d_max)) {
@@ -228,6 +234,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
             problem.incident[j].push_back(problem.edges.size());
             problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
         }
+        if (limits.stop(problem, 50 * (problem.edges.size() - edges_before))) return;
     }
 }
 

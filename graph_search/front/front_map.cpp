@@ -102,8 +102,9 @@ void FrontMap::find_edges(Vertex from) {
     if (used_ % kEdgesPerBlock + found_.size() > kEdgesPerBlock)
         used_ += kEdgesPerBlock - used_ % kEdgesPerBlock;
     while (used_ + found_.size() > blocks_.size() * kEdgesPerBlock) {
+        // In this order: where there is no memory for a block, the room beside it does no harm later.
+        neighbourhoods_.resize((blocks_.size() + 1) * kEdgesPerBlock);
         blocks_.emplace_back(kEdgesPerBlock);
-        neighbourhoods_.resize(blocks_.size() * kEdgesPerBlock);
     }
     places_[from] = {used_, static_cast<std::uint32_t>(found_.size())};
     for (FrontEdge& edge : found_) {

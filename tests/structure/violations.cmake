@@ -82,6 +82,16 @@ expect("" includes model/scene.cpp "#include \"model/scene.hpp\"\n#include <cmat
 expect("model/scene.cpp does not include model/scene.hpp first" includes model/scene.cpp
        "#include <cmath>\n#include \"model/scene.hpp\"")
 
+set(now "const auto now = std::chrono::")
+expect("" clocks model/deadline.hpp "${now}steady_clock::now()")
+expect("solvers/a.cpp has a clock of its own" clocks solvers/a.cpp "${now}steady_clock::now()")
+expect("model/deadline.hpp looks at a clock that may jump" clocks model/deadline.hpp "${now}system_clock::now()")
+foreach(clock IN ITEMS "std::chrono::high_resolution_clock::now()" "gettimeofday(&now, nullptr)" "std::time(nullptr)"
+                       "clock_gettime(CLOCK_REALTIME, &now)" "seed = time(nullptr)")
+    expect("detectors/a.cpp looks at a clock that may jump" clocks detectors/a.cpp "${clock}")
+endforeach()
+expect("" clocks detectors/a.cpp "deadline_for(time) + remaining_time(0)")
+
 set(home home) # put together here, so that this file itself passes
 set(later DO)
 expect("" words model/a.cpp "// https://example.org/${home}/page, build/tmp/file, To do, \"\${dir}/tmp/x\"")

@@ -1,0 +1,133 @@
+// What detectors and solvers have of clocks: they look at one that nobody sets, and often enough that a limit
+// is kept.
+
+#include "conelane/core_solvers.hpp"
+#include "conelane/detectors.hpp"
+#include "conelane/solve_scene.hpp"
+#include "experiments/scenes/scene_set.hpp"
+#include "solvers/registry.hpp"
+#include "tests/observed_clocks.hpp"
+#include "tests/random_scenes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using tests::clock_looks;
+using tests::forget_looks;
+
+constexpr double kLongLimit_ms = 60'000.0;
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
+constexpr double kSlowness = 20.0;
+#else
+constexpr double kSlowness = 1.0;
+#endif
+
+TEST(Clocks, AreReplacedInThisProgram) {
+    forget_looks();
+    (void)std::chrono::steady_clock::now();
+    EXPECT_EQ(clock_looks.monotonic, 1);
+    const auto before = std::chrono::system_clock::now();
+    EXPECT_GE(std::chrono::abs(std::chrono::system_clock::now() - before), std::chrono::hours(1));
+    EXPECT_EQ(clock_looks.time_of_day, 2);
+}
+
+TEST(Clocks, NoDetectorReadsTheTimeOfDay) {
+    for (const DetectorInfo& info : detectors()) {
+        SCOPED_TRACE(info.name);
+        const std::unique_ptr<LaneDetector> detector = make_detector(info.name);
+        forget_looks();
+        for (std::uint64_t seed = 0; seed < 8; ++seed) {
+            const LaneAnswer answer =
+                detector->detect(tests::random_scene(seed, 20), {.time_limit_ms = kLongLimit_ms});
+            EXPECT_NE(answer.stopped_by, StopReason::time);
+        }
+        EXPECT_EQ(clock_looks.time_of_day, 0);
+        EXPECT_GT(clock_looks.monotonic, 8);
+    }
+}
+
+/// Backends that look at the time of day find it an hour before or behind at each look, and are none the
+/// worse: their limits are kept by the adapter's own clock.
+TEST(Clocks, NoSolverIsMisledByTheTimeOfDay) {
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        SCOPED_TRACE(entry.name);
+        const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
+        const auto core = core_solvers();
+        const bool is_core = std::ranges::find(core, entry.name, &RldSolverEntry::name) != core.end();
+        for (std::uint64_t seed = 0; seed < 8; ++seed) {
+            const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 8), {}, solver->extent());
+            const RldReport unlimited = solver->solve(problem, {});
+            forget_looks();
+            const RldReport report = solver->solve(problem, {kLongLimit_ms});
+            if (is_core) {
+                EXPECT_EQ(clock_looks.time_of_day, 0);
+            }
+            EXPECT_EQ(report.status, unlimited.status) << report.message;
+            EXPECT_EQ(report.stopped_by, unlimited.stopped_by);
+            EXPECT_EQ(report.lane_graph, unlimited.lane_graph);
+        }
+    }
+}
+
+/// Up to about 480 cones within 80 m, half of them false.
+std::vector<Scene> crowded_scenes() {
+    experiments::SceneOptions options;
+    options.false_positive_rates = {0.5};
+    options.ranges_m = {80.0};
+    options.every_m = 120.0;
+    options.noise_sigma_m = 0.1;
+    std::vector<Scene> scenes;
+    for (experiments::AnnotatedScene& made :
+         experiments::make_scene_set({"generated:serpentine", "generated:gates"}, options).scenes) {
+        scenes.push_back(std::move(made.scene));
+    }
+    return scenes;
+}
+
+/// Processor time that passes at most between two looks at the clock, from the call to the answer. The least
+/// of three tries: a processor that is taken away for a while is not the call's fault.
+double longest_gap_ms(const std::function<void()>& call) {
+    double least_ms = std::numeric_limits<double>::infinity();
+    for (int repeat = 0; repeat < 3; ++repeat) {
+        forget_looks();
+        call();
+        tests::note_look();
+        least_ms = std::min(least_ms, clock_looks.longest_gap_ms);
+    }
+    return least_ms;
+}
+
+/// A limit can be overrun by no more than what is done between two looks at the clock.
+TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
+    const std::vector<Scene> scenes = crowded_scenes();
+    std::size_t most_cones = 0;
+    for (const Scene& scene : scenes) most_cones = std::max(most_cones, scene.cones.size());
+    EXPECT_GE(most_cones, 450U);
+    for (const DetectorInfo& info : detectors()) {
+        SCOPED_TRACE(info.name);
+        const std::unique_ptr<LaneDetector> detector = make_detector(info.name);
+        for (const Scene& scene : scenes) {
+            const double gap_ms = longest_gap_ms([&] {
+                detector->reset();
+                (void)detector->detect(scene, {.time_limit_ms = 400.0});
+            });
+            EXPECT_LT(gap_ms, 1.0 * kSlowness) << scene.id << ", " << scene.cones.size() << " cones";
+        }
+    }
+}
+
+}  // namespace
+}  // namespace conelane

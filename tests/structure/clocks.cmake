@@ -1,0 +1,24 @@
+# cmake -D ROOT=DIR -P clocks.cmake: the installed libraries look at the steady clock only, which nobody sets, and at one
+# place: model/deadline.hpp. tests/clock_test.cpp shows it of calls.
+cmake_minimum_required(VERSION 3.25)
+
+set(time_of_day "system_clock|high_resolution_clock|utc_clock|gettimeofday|clock_gettime|CLOCK_REALTIME|[^a-z_]ftime *[(]|std::time *[(]|[^a-zA-Z_.:>]time *[(] *(0|NULL|nullptr)")
+
+foreach(folder IN ITEMS model solvers graph_search detectors)
+    file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
+    foreach(file IN LISTS files)
+        math(EXPR checked "${checked} + 1")
+        file(STRINGS ${ROOT}/${file} lines REGEX "${time_of_day}|steady_clock")
+        foreach(line IN LISTS lines)
+            if(line MATCHES "${time_of_day}")
+                message(SEND_ERROR "${file} looks at a clock that may jump: ${line}")
+            elseif(NOT file STREQUAL "model/deadline.hpp")
+                message(SEND_ERROR "${file} has a clock of its own, instead of model/deadline.hpp: ${line}")
+            endif()
+        endforeach()
+    endforeach()
+endforeach()
+if(NOT checked)
+    message(FATAL_ERROR "no sources below ${ROOT}")
+endif()
+message(STATUS "${checked} files checked")
