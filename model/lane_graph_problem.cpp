@@ -11,6 +11,9 @@
 namespace conelane {
 namespace {
 
+/// Of a shorter edge the squares, and so the direction, may be lost in double [m].
+constexpr double kShortestEdge_m = 1e-100;
+
 /// What may end the making of a problem early.
 class Limits {
   public:
@@ -106,7 +109,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             0.0,
             p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
             along_heading,
-            !within(spacing_cost, p.s_crit) || length == 0.0};
+            !within(spacing_cost, p.s_crit) || length < kShortestEdge_m};
 }
 
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
@@ -221,7 +224,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
                 problem.distance_m[i][j] = problem.distance_m[j][i] = distance;
             } else if (!within(fourth_power((distance - parameters.d_e) / parameters.d_t),
                                parameters.s_crit) ||
-                       distance == 0.0) {
+                       distance < kShortestEdge_m) {
                 continue;
             }
             problem.incident[i].push_back(problem.edges.size());

@@ -1,12 +1,14 @@
 // Scenes and parameters at the end of what doubles can hold: every solver answers, and none brings the
 // program down.
 
+#include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 #include "tests/random_scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -70,6 +72,22 @@ TEST(ExtremeScenes, EverySolverAnswersAtEveryScale) {
                 EXPECT_FALSE(report.lane_graph) << entry.name << " at " << factor;
             }
         }
+    }
+}
+
+/// Cones 10^-160 m apart where that spacing is expected: the model's numbers and the checker's agree that no
+/// edge is that short, and on what is longer.
+TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
+    for (const double spacing : {1e-160, 0.9e-100, 1.1e-100, 1e-9}) {
+        Scene scene;
+        scene.cones = {{1, {0.0, 0.0}}, {2, {spacing, 0.0}}};
+        RldParameters parameters;
+        parameters.d_e = spacing;
+        const bool allowed = spacing > 1e-100;
+        EXPECT_EQ(make_problem(scene, parameters).edges.empty(), !allowed) << spacing;
+        EXPECT_EQ(make_problem(scene, parameters, EdgeExtent::all_pairs).edges.at(0).high_cost, !allowed);
+        const CheckReport checked = check(scene, parameters, LaneGraph{{{0, 1}}});
+        EXPECT_EQ(std::ranges::count(checked.violations, "edge {1, 2} has no length"), allowed ? 0 : 1);
     }
 }
 
