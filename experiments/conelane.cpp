@@ -93,6 +93,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_solve_command(program);
     experiments::add_solvers_command(program);
     experiments::add_check_command(program);
+    experiments::add_cross_check_command(program);
     experiments::add_certify_command(program);
     experiments::add_exchange_commands(program);
     experiments::add_instances_command(program);

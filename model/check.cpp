@@ -13,6 +13,8 @@ namespace {
 using Real = long double;
 constexpr Real kTie = 1e-9L;
 constexpr double kAgreement = 1e-6;
+/// Of a shorter edge the squares, and so the direction, may be lost in double.
+constexpr Real kShortestEdge = 1e-100L;
 
 struct Vector {
     Real x;
@@ -232,7 +234,7 @@ class Checker {
                 const Vector way = position(l) - position(k);
                 const Real apart = length(way);
                 const Real spacing = fourth((apart - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
-                if (apart == 0 || spacing > static_cast<Real>(p_.s_crit) + kTie) continue;
+                if (apart < kShortestEdge || spacing > static_cast<Real>(p_.s_crit) + kTie) continue;
                 edges.push_back(
                     {k, l, apart, along(position(k), position(l), 0.5L), {way.x / apart, way.y / apart}});
             }
@@ -278,7 +280,7 @@ class Checker {
             const Real spacing = fourth((length(v) - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
             if (spacing > static_cast<Real>(p_.s_crit) + kTie)
                 violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
-            if (length(v) == 0) violated_for_good("edge " + name(edge) + " has no length");
+            if (length(v) < kShortestEdge) violated_for_good("edge " + name(edge) + " has no length");
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
             sum += static_cast<Real>(p_.w_s) * spacing +

@@ -4,6 +4,23 @@
 #include "model/deadline.hpp"
 
 namespace conelane {
+namespace {
+
+/// A column that rows fix at 0 may cost what it likes: costs that grow with the fourth power of a distance
+/// would end in numbers that no solver can take.
+double column_cost(double cost, bool never_chosen) {
+    constexpr double kMostOfNeverChosen = 1e9;
+    return never_chosen && !(cost <= kMostOfNeverChosen) ? kMostOfNeverChosen : cost;
+}
+double column_cost(const ProblemEdge& edge) {
+    return column_cost(edge.cost, edge.high_cost);
+}
+double column_cost(const ProblemTurn& turn, const LaneGraphProblem& problem) {
+    return column_cost(turn.cost, turn.high_cost || problem.edges[turn.edge_i].high_cost ||
+                                      problem.edges[turn.edge_k].high_cost);
+}
+
+}  // namespace
 
 LaneGraphModel::LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation)
     : formulation_(formulation) {
@@ -56,7 +73,8 @@ void LaneGraphModel::add_columns() {
 
     columns_.edge.reserve(problem.edges.size());
     for (const ProblemEdge& edge : problem.edges) {
-        columns_.edge.push_back(program_.add_column({"a", {index(edge.i), index(edge.j)}}, edge.cost, true));
+        columns_.edge.push_back(
+            program_.add_column({"a", {index(edge.i), index(edge.j)}}, column_cost(edge), true));
     }
     columns_.turn.reserve(problem.turns.size());
     for (const ProblemTurn& turn : problem.turns) {
@@ -70,7 +88,7 @@ void LaneGraphModel::add_columns() {
             program_.add_column({"f",
                                  {index(a.i == turn.middle ? a.j : a.i), index(turn.middle),
                                   index(b.i == turn.middle ? b.j : b.i)}},
-                                turn.cost, all_integer));
+                                column_cost(turn, problem), all_integer));
     }
     if (formulation_parts.inliers) {
         for (std::size_t cone = 0; cone < problem.cone_count; ++cone) {
@@ -99,10 +117,12 @@ void LaneGraphModel::add_columns() {
 
 void LaneGraphModel::refresh_costs() {
     for (std::size_t e = 0; e < problem_->edges.size(); ++e) {
-        program_.columns[static_cast<std::size_t>(columns_.edge[e])].objective = problem_->edges[e].cost;
+        program_.columns[static_cast<std::size_t>(columns_.edge[e])].objective =
+            column_cost(problem_->edges[e]);
     }
     for (std::size_t t = 0; t < problem_->turns.size(); ++t) {
-        program_.columns[static_cast<std::size_t>(columns_.turn[t])].objective = problem_->turns[t].cost;
+        program_.columns[static_cast<std::size_t>(columns_.turn[t])].objective =
+            column_cost(problem_->turns[t], *problem_);
     }
 }
 

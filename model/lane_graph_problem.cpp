@@ -11,6 +11,9 @@
 namespace conelane {
 namespace {
 
+/// Of a shorter edge the squares, and so the direction, may be lost in double [m].
+constexpr double kShortestEdge_m = 1e-100;
+
 /// What may end the making of a problem early.
 class Limits {
   public:
@@ -106,7 +109,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             0.0,
             p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
             along_heading,
-            !within(spacing_cost, p.s_crit) || length == 0.0};
+            !within(spacing_cost, p.s_crit) || length < kShortestEdge_m};
 }
 
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
@@ -227,7 +230,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
                 problem.distance_m[i][j] = problem.distance_m[j][i] = distance;
             } else if (!within(fourth_power((distance - parameters.d_e) / parameters.d_t),
                                parameters.s_crit) ||
-                       distance == 0.0) {
+                       distance < kShortestEdge_m) {
                 continue;
             }
             problem.incident[i].push_back(problem.edges.size());
@@ -238,10 +241,27 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
     }
 }
 
+/// Farther than this from the origin, sums of coordinates lose what tells cones apart; their differences do
+/// not. Closer, the numbers of a problem are off by less than 1e-9 for it [m].
+constexpr double kFarFromOrigin_m = 1e5;
+
+bool is_far_from_origin(const Scene& scene) {
+    return scene.pose.position.cwiseAbs().maxCoeff() > kFarFromOrigin_m;
+}
+
+/// The same scene with the car at the origin.
+Scene seen_from_car(const Scene& scene) {
+    Scene seen = scene;
+    for (Cone& cone : seen.cones) cone.position -= scene.pose.position;
+    seen.pose.position = {0.0, 0.0};
+    return seen;
+}
+
 LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
                               Limits& limits) {
     validate(scene);
     validate(parameters);
+    if (is_far_from_origin(scene)) return make_problem(seen_from_car(scene), parameters, extent, limits);
     LaneGraphProblem problem;
     const std::size_t n = scene.cones.size();
     // The table of distances is the one part that is allocated at once.

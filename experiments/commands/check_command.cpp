@@ -1,4 +1,5 @@
 #include "conelane/check.hpp"
+#include "experiments/checking/exact_program.hpp"
 #include "experiments/checking/infeasibility.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/comparison/answer_check.hpp"
@@ -15,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -34,6 +36,7 @@ struct Options {
     std::optional<std::size_t> nearest;
     double time_limit_ms = 10'000.0;
     bool partial = false;
+    bool exact = false;
 };
 
 /// A lane graph that the checker accepts, and where it is from.
@@ -50,6 +53,17 @@ struct ConeSet {
     void learn(const KnownLaneGraph& known) {
         if (!best || known.objective < best->objective) best = known;
     }
+};
+
+/// What rational arithmetic says of all records together.
+struct ExactTotals {
+    std::size_t programs = 0;
+    std::size_t too_large = 0;
+    std::size_t rows = 0;
+    double objective_difference = 0.0;  ///< of a stated objective
+    double objective_rounding = 0.0;    ///< of the program's objective, summed in double
+    double row_rounding = 0.0;          ///< of a row's sum in double
+    double violation = 0.0;             ///< of a row or of a column's bounds
 };
 
 /// The record's edges, or what is wrong with them.
@@ -114,6 +128,7 @@ class Check {
             progress.advance();
         }
         failed += count_missing();
+        if (options_.exact) print_exact();
         if (silent > 0) fmt::print("{} claim nothing (stopped or error) and are not counted\n", silent);
         fmt::print("{} passed, {} failed\n", passed, failed);
         return failed;
@@ -149,9 +164,58 @@ class Check {
         if (lane.violations.empty()) {
             set.learn({fmt::format("{} ({})", record.solver, record.formulation), lane.objective.value()});
         }
-        return check(set.scene, parameters_, std::get<LaneGraph>(graph),
-                     {record.status == "optimal", *record.objective, record.bound})
-            .violations;
+        std::vector<std::string> violations =
+            check(set.scene, parameters_, std::get<LaneGraph>(graph),
+                  {record.status == "optimal", *record.objective, record.bound})
+                .violations;
+        // What is no lane graph may have no point in the program.
+        if (options_.exact && lane.violations.empty()) {
+            if (auto fault = check_exactly(record, set.scene, std::get<LaneGraph>(graph)))
+                violations.push_back(std::move(*fault));
+        }
+        return violations;
+    }
+
+    /// What is wrong in rational arithmetic with a lane graph that the checker accepts.
+    std::optional<std::string> check_exactly(const SolutionRecord& record, const Scene& scene,
+                                             const LaneGraph& graph) {
+        std::optional<ExactProgramReport> exact;
+        try {
+            exact = recompute_exactly(scene, parameters_,
+                                      record.formulation == "paper" ? Formulation::paper : Formulation::tight,
+                                      graph);
+        } catch (const std::invalid_argument& fault) {
+            return fmt::format("in the {} program {}", record.formulation, fault.what());
+        }
+        if (!exact) {
+            ++exact_.too_large;
+            return std::nullopt;
+        }
+        const double difference = exact_difference(exact->objective, *record.objective);
+        ++exact_.programs;
+        exact_.rows += exact->rows;
+        exact_.objective_difference = std::max(exact_.objective_difference, difference);
+        exact_.objective_rounding = std::max(exact_.objective_rounding, exact->objective_rounding);
+        exact_.row_rounding = std::max(exact_.row_rounding, exact->row_rounding);
+        exact_.violation = std::max(exact_.violation, exact->violation);
+        // Limits are met within 1e-9.
+        if (exact->violation > 1e-9)
+            return fmt::format("in rational arithmetic {} is violated by {:.3g}", exact->violated,
+                               exact->violation);
+        if (difference > 1e-9 * std::max(1.0, std::abs(*record.objective)))
+            return fmt::format("in rational arithmetic the objective is {:.12g}, {:.3g} from the stated one",
+                               exact->objective.convert_to<double>(), difference);
+        return std::nullopt;
+    }
+
+    void print_exact() const {
+        fmt::print(
+            "{} lane graphs in rational arithmetic, {} rows; largest differences: {:.2g} of a stated "
+            "objective, {:.2g} and {:.2g} of an objective's and of a row's sum in double; largest violation "
+            "{:.2g}\n",
+            exact_.programs, exact_.rows, exact_.objective_difference, exact_.objective_rounding,
+            exact_.row_rounding, exact_.violation);
+        if (exact_.too_large > 0) fmt::print("{} programs are too large for it\n", exact_.too_large);
     }
 
     /// What is wrong with a bound or with a claim that there is no lane graph.
@@ -219,6 +283,7 @@ class Check {
     const std::vector<SolutionRecord> records_;
     std::unordered_map<std::string, const AnnotatedScene*> scene_of_;
     std::map<std::pair<std::string, std::optional<std::size_t>>, ConeSet> cone_sets_;
+    ExactTotals exact_;
 };
 
 }  // namespace
@@ -242,6 +307,11 @@ void add_check_command(CLI::App& program) {
     add_nearest_option(command, options->nearest,
                        "cone-set size of `solve`, where the solutions do not say it");
     add_time_limit_option(command, options->time_limit_ms);
+    command.add_flag(
+        "--exact", options->exact,
+        "recompute objective, rows and bounds of the program that the solver was handed in "
+        "rational arithmetic too, and say how far doubles are off; a violation above 1e-9 fails, "
+        "and an objective off by more than 1e-9 of max(1, |objective|)");
     command.add_flag("--partial", options->partial, "scenes without an answer are no failure");
     command.callback([options] {
         if (Check(*options).run() > 0) throw CLI::RuntimeError(1);

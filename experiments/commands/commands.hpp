@@ -13,6 +13,7 @@ void add_echo_command(CLI::App& program);
 void add_solvers_command(CLI::App& program);
 void add_solve_command(CLI::App& program);
 void add_check_command(CLI::App& program);
+void add_cross_check_command(CLI::App& program);
 void add_certify_command(CLI::App& program);
 void add_exchange_commands(CLI::App& program);  ///< export, import-solution
 void add_instances_command(CLI::App& program);

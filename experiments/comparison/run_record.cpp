@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/file_hash.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_options_json.hpp"
@@ -61,20 +62,6 @@ std::vector<std::string> differing_keys(const std::string& stored, const std::st
     return {keys.begin(), keys.end()};
 }
 
-/// FNV-1a of a file; empty where it cannot be read.
-std::string hash_of(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return "";
-    std::uint64_t hash = 14695981039346656037U;
-    std::array<char, 1U << 16U> block{};
-    while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
-        for (std::streamsize i = 0; i < stream.gcount(); ++i) {
-            hash = (hash ^ static_cast<unsigned char>(block[static_cast<std::size_t>(i)])) * 1099511628211U;
-        }
-    }
-    return fmt::format("{:016x}", hash);
-}
-
 nlohmann::ordered_json to_json(const RldParameters& parameters) {
     nlohmann::ordered_json json;
     for (const RldParameterField& field : rld_parameter_fields()) {
@@ -92,7 +79,7 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
 nlohmann::ordered_json to_json(const OutsideMethod& method) {
     nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_method_json(method));
     if (method.is_program()) return json;
-    json["hash"] = hash_of(method.source);
+    json["hash"] = file_hash(method.source);
     if (json["hash"].empty()) throw InputError(method.source, 0, "", "cannot be read");
     return json;
 }
@@ -141,7 +128,7 @@ std::string run_record(const ComparisonOptions& options) {
     if (!options.cross_validation.empty())
         record["cross_validation"] = nlohmann::ordered_json::parse(options.cross_validation);
     if (origin.commit == "unknown" || origin.commit.ends_with("-dirty"))
-        record["program"] = hash_of("/proc/self/exe");
+        record["program"] = file_hash("/proc/self/exe");
     if (std::isfinite(options.run.limits.time_limit_ms))
         record["time_limit_ms"] = options.run.limits.time_limit_ms;
     if (options.shard.count > 1) record["shard"] = {options.shard.index, options.shard.count};
@@ -155,7 +142,13 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
     FolderLock lock(directory);
     const std::vector<fs::path> earlier = files_of_a_run(directory);
     if (fs::exists(directory / kRunFile)) {
-        const std::string stored = read_run_record(directory);
+        // A record that cannot be read is no reason to refuse what is to be replaced anyway.
+        std::string stored;
+        try {
+            stored = read_run_record(directory);
+        } catch (const InputError&) {
+            if (!overwrite) throw;
+        }
         if (stored == record) return lock;
         if (!overwrite) {
             throw InputError(directory, 0, "",
@@ -179,7 +172,9 @@ std::string read_run_record(const fs::path& directory) {
     std::ifstream stream(file);
     std::string record;
     if (!std::getline(stream, record)) throw InputError(file, 0, "", "cannot be read");
-    if (!nlohmann::json::accept(record)) throw InputError(file, 1, "", "is no JSON");
+    const nlohmann::json json = nlohmann::json::parse(record, nullptr, false);
+    if (json.is_discarded()) throw InputError(file, 1, "", "is no JSON");
+    if (!json.is_object()) throw InputError(file, 1, "", "must be an object");
     return record;
 }
 

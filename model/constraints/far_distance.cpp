@@ -1,7 +1,15 @@
 #include "model/constraints/conflict_graph.hpp"
 #include "model/constraints/families.hpp"
 
+#include <algorithm>
+
 namespace conelane::constraints {
+namespace {
+
+/// Above every valid d_max; numbers beyond it would only disturb solvers [m].
+constexpr double kLongestDistance_m = 1e6;
+
+}  // namespace
 
 void far_marks(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
@@ -19,7 +27,8 @@ void far_distance(const FamilyContext& context) {
         for (std::size_t j = 0; j < problem.cone_count; ++j) {
             if (i == j) continue;
             if (rows.stop()) return;
-            const double distance = problem.distance_m[i][j];
+            // Any distance above d_max says the same.
+            const double distance = std::min(problem.distance_m[i][j], kLongestDistance_m);
             rows.begin({"far_distance", {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)}},
                        -kInfinity, problem.parameters.d_max);
             if (!problem.near[i]) add_endpoint_mark(context, i, distance);

@@ -18,7 +18,7 @@ set(tests_depends_on model solvers graph_search detectors experiments tests)
 # From tracks to tables, each folder and each file of experiments/ itself, without its ending: what stands later may
 # include what stands before.
 set(experiments_layers provenance progress seeded_random files tracks training_courses scenes scoring methods outside options comparison
-                       checking training tuning cross_validation instances studies report commands conelane benchmarks examples)
+                       checking cross_check training tuning cross_validation instances studies report commands conelane benchmarks examples)
 set(private_libraries
     "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <coin/ClpSimplex.hpp>
 #include <coin/ClpSolve.hpp>
@@ -17,6 +18,9 @@ double coin_lower(double bound) {
 double coin_upper(double bound) {
     return bound >= kInfinity ? COIN_DBL_MAX : bound;
 }
+
+/// Clp ends the program where it is handed a larger one.
+constexpr double kClpMostCost = 1e25;
 
 }  // namespace
 
@@ -38,6 +42,9 @@ std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& prog
     std::vector<int> integers;
     std::vector<double> lower(columns), upper(columns), costs(columns);
     for (std::size_t c = 0; c < columns; ++c) {
+        if (!(std::abs(program.columns[c].objective) < kClpMostCost))
+            throw std::runtime_error("the cost of column " + to_string(program.columns[c].label) +
+                                     " is too large for Clp");
         lower[c] = program.columns[c].lower;
         upper[c] = program.columns[c].upper;
         costs[c] = program.columns[c].objective;

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "conelane/formulation.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "conelane/scene.hpp"
+#include "experiments/scenes/annotated_scene.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A scene and parameters on which all exact solvers are to agree.
+struct CrossCheckCase {
+    std::size_t number = 0;
+    std::string kind;  ///< one of cross_check_kinds(), or "given"
+    Scene scene;       ///< a cone at least
+    RldParameters parameters;
+    Formulation formulation = Formulation::tight;  ///< of the solvers that use one
+    double tight_limit_ms = 1.0;                   ///< under which each solver is asked a second time
+};
+
+/// Kinds of scenes that are made up:
+///   lane        a bent lane with false positives
+///   strewn      cones strewn at random
+///   collinear   all cones on one line or on two parallel ones, evenly spaced
+///   lattice     cones at points of a square lattice: ties of every kind
+///   coincident  a lane, some of whose cones lie on others or up to 5 cm beside them
+///   symmetric   each cone has its mirror image across the car's axis
+///   at_limits   a lane, and a parameter that one of its distances, costs or angles meets exactly or nearly
+///   far_away    one of the above, 1 km to 10^12 m from the origin
+///   scaled      one of the above, 10^-300 to 10^300 times as large, in part with the lengths among the
+///   parameters
+[[nodiscard]] std::vector<std::string_view> cross_check_kinds();
+
+/// Case `number` of a seed: it depends on these two and on the given scenes alone, so a run may be cut into
+/// parts. Three in ten are the nearest cones of a given scene, where there is one. 1 to 24 cones, mostly
+/// 4 to 9. Parameters: both pairings, both sets of costs, and in half of the cases any of them drawn
+/// from its range.
+[[nodiscard]] CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std::uint64_t seed,
+                                                   std::size_t number);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,193 @@
+#include "experiments/cross_check/judge.hpp"
+
+#include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/solve_scene.hpp"
+#include "experiments/checking/certificate_verifier.hpp"
+#include "experiments/checking/lane_graph_search.hpp"
+#include "solvers/path_pair_solver.hpp"
+#include "solvers/registry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kTolerance = 1e-6;
+constexpr double kOwnSearch_ms = 20.0;
+constexpr std::size_t kMostCertifiedCones = 12;
+constexpr std::int64_t kMostCertificateSteps = 20'000;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What someone claims, and under which limit.
+struct Answer {
+    std::string by;
+    bool is_generous;
+    RldReport report;
+};
+
+bool is_proof(const RldReport& report) {
+    return report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
+}
+
+class Judgement {
+  public:
+    Judgement(const CrossCheckCase& drawn, std::span<const Contestant> contestants, double time_limit_ms)
+        : drawn_(drawn), contestants_(contestants), time_limit_ms_(time_limit_ms) {}
+
+    CrossCheckVerdict run() {
+        ask(time_limit_ms_, true);
+        ask(drawn_.tight_limit_ms, false);
+        for (const Answer& answer : answers_) hold_against_itself(answer);
+        hold_against_each_other();
+        conclude();
+        if (verdict_.outcome == CrossCheckOutcome::infeasible) search_without_solvers();
+        if (drawn_.scene.cones.size() <= kMostCertifiedCones) repeat_proof();
+        if (!verdict_.findings.empty()) verdict_.outcome = CrossCheckOutcome::differ;
+        return std::move(verdict_);
+    }
+
+  private:
+    template <typename... Values>
+    void find(fmt::format_string<Values...> text, Values&&... values) {
+        verdict_.findings.push_back(fmt::format(text, std::forward<Values>(values)...));
+    }
+
+    void ask(double limit_ms, bool is_generous) {
+        for (const Contestant& contestant : contestants_) {
+            if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
+            answers_.push_back({fmt::format("{} within {} ms", contestant.name, limit_ms), is_generous,
+                                contestant.solve(drawn_.scene, drawn_.parameters, limit_ms)});
+        }
+    }
+
+    void hold_against_itself(const Answer& answer) {
+        const RldReport& report = answer.report;
+        const std::string status(to_string(report.status));
+        if (report.status == SolveStatus::error) return find("{}: error, {}", answer.by, report.message);
+        const bool wants_graph =
+            report.status == SolveStatus::optimal || report.status == SolveStatus::feasible;
+        if (wants_graph != report.lane_graph.has_value() || wants_graph != report.objective.has_value())
+            return find("{}: {} with{} a lane graph", answer.by, status, report.lane_graph ? "" : "out");
+        if (report.bound && std::isnan(*report.bound)) find("{}: a bound that is no number", answer.by);
+        if (report.status == SolveStatus::optimal && !report.bound)
+            find("{}: optimal without a bound", answer.by);
+        if (!report.lane_graph) return;
+        const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
+        for (const std::string& violation :
+             check(drawn_.scene, drawn_.parameters, *report.lane_graph, claim).violations) {
+            find("{}: {}", answer.by, violation);
+        }
+    }
+
+    static double lower(const RldReport& report) {
+        if (report.status == SolveStatus::infeasible) return kInfinity;
+        return report.bound.value_or(-kInfinity);
+    }
+
+    void hold_against_each_other() {
+        for (const Answer& proof : answers_) {
+            for (const Answer& other : answers_) {
+                if (!other.report.objective) continue;
+                const double upper = *other.report.objective;
+                if (!(lower(proof.report) > upper + kTolerance * std::max(1.0, std::abs(upper)))) continue;
+                find("{}: {}, bound {}; but {}: {}, objective {}", proof.by, to_string(proof.report.status),
+                     lower(proof.report), other.by, to_string(other.report.status), upper);
+            }
+        }
+    }
+
+    void conclude() {
+        bool all_optimal = true;
+        bool all_infeasible = true;
+        for (const Answer& answer : answers_) {
+            if (answer.is_generous) {
+                all_optimal = all_optimal && answer.report.status == SolveStatus::optimal;
+                all_infeasible = all_infeasible && answer.report.status == SolveStatus::infeasible;
+            } else {
+                ++verdict_.tight_answers;
+                if (is_proof(answer.report)) ++verdict_.tight_proofs;
+            }
+        }
+        if (answers_.empty()) return;
+        const RldReport& first = answers_.front().report;
+        if (first.status == SolveStatus::optimal) verdict_.objective = first.objective;
+        if (all_optimal) verdict_.outcome = CrossCheckOutcome::same_optimum;
+        if (all_infeasible) verdict_.outcome = CrossCheckOutcome::infeasible;
+    }
+
+    void search_without_solvers() {
+        const auto search = search_lane_graph(drawn_.scene, drawn_.parameters, kOwnSearch_ms);
+        if (search.witness) find("all: infeasible; but the checker's own search has a lane graph");
+    }
+
+    void repeat_proof() {
+        const SearchCertificate certificate =
+            certify_search(make_problem(drawn_.scene, drawn_.parameters), time_limit_ms_);
+        const SearchVerdict proof =
+            verify_search(drawn_.scene, drawn_.parameters, certificate, kMostCertificateSteps);
+        if (proof.kind == SearchVerdict::Kind::refused && certificate.bound > -kInfinity)
+            find("the certificate of path-pair is refused: {}", proof.reason);
+        verdict_.certified = proof.kind == SearchVerdict::Kind::verified;
+    }
+
+    const CrossCheckCase& drawn_;
+    std::span<const Contestant> contestants_;
+    double time_limit_ms_;
+    std::vector<Answer> answers_;
+    CrossCheckVerdict verdict_;
+};
+
+}  // namespace
+
+std::vector<std::string> exact_solver_names() {
+    std::vector<std::string> names;
+    for (const RldSolverEntry& solver : rld_solvers()) {
+        if (solver.exact) names.emplace_back(solver.name);
+    }
+    return names;
+}
+
+std::vector<Contestant> make_contestants(std::span<const std::string> names, Formulation formulation) {
+    std::vector<Contestant> contestants;
+    for (const std::string& name : names) {
+        const RldSolverEntry* const entry = find_rld_solver(name);
+        if (entry == nullptr || !entry->exact)
+            throw InvalidInput("--solvers", "'" + name + "' is no exact solver of this build");
+        const std::shared_ptr<RldSolver> solver = entry->make(formulation);
+        contestants.push_back(
+            {entry->uses_formulation ? fmt::format("{} ({})", name, to_string(formulation)) : name,
+             [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
+                 return solve_scene(*solver, scene, parameters, {time_limit_ms}).report;
+             },
+             entry->most_cones});
+    }
+    return contestants;
+}
+
+std::string_view to_string(CrossCheckOutcome outcome) {
+    switch (outcome) {
+        case CrossCheckOutcome::same_optimum:
+            return "same optimum";
+        case CrossCheckOutcome::infeasible:
+            return "infeasible";
+        case CrossCheckOutcome::undecided:
+            return "undecided";
+        case CrossCheckOutcome::differ:
+            break;
+    }
+    return "differ";
+}
+
+CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const Contestant> contestants,
+                        double time_limit_ms) {
+    return Judgement(drawn, contestants, time_limit_ms).run();
+}
+
+}  // namespace conelane::experiments

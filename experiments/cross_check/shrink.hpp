@@ -1,0 +1,17 @@
+#pragma once
+
+#include "experiments/cross_check/drawn_case.hpp"
+
+#include <cstddef>
+#include <functional>
+
+namespace conelane::experiments {
+
+/// The case with as many cones left out, and as many parameters at their defaults, as `differs` allows: it
+/// holds for the result, and no single further cone can go. It is asked `most_trials` times at most.
+/// Precondition: it holds for `drawn`.
+[[nodiscard]] CrossCheckCase shrink(CrossCheckCase drawn,
+                                    const std::function<bool(const CrossCheckCase&)>& differs,
+                                    std::size_t most_trials = 2000);
+
+}  // namespace conelane::experiments
