@@ -92,12 +92,16 @@ class PathPairSolver : public RldSolver {
 
     void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
                 const Deadline& deadline, RldReport& report) {
-        const double tolerance = std::max(limits.absolute_gap, kLeastGap);
+        // No two lane graphs differ by more: beyond it a wider gap means the same.
+        const double most = cost_limit(problem);
+        const double tolerance =
+            std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kLeastGap);
         search_.reset_nodes();
         const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
-        // Nearly every lane costs less than 0; the rare scene without one is searched again without a limit.
+        // Nearly every lane costs less than 0; the rare scene without one is searched again with a cutoff
+        // that every lane is below by more than the tolerance.
         Outcome outcome{};
-        for (const double cutoff : {0.0, cost_limit(problem)}) {
+        for (const double cutoff : {0.0, most + tolerance}) {
             incumbent_.reset(graph_, cutoff);
             if (start_is_feasible) offer(problem, *start);
             outcome = search(problem, tolerance, deadline);

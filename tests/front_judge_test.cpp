@@ -3,6 +3,7 @@
 #include "graph_search/front/front_judge.hpp"
 
 #include "graph_search/front/front_detector.hpp"
+#include "graph_search/front/front_evidence.hpp"
 #include "tests/front_fixture.hpp"
 #include "tests/no_time_limit.hpp"
 #include "tests/random_scenes.hpp"
@@ -38,8 +39,9 @@ float cone_feature(const FrontJudge::Step& step, std::string_view name) {
 /// A search run to its end, and its best lanes judged.
 class Judged {
   public:
-    Judged(const Scene& scene, const FrontWeights& weights) : cost_(weights), judge(weights) {
-        search.begin(scene, cost_, {});
+    Judged(const Scene& scene, const FrontWeights& weights, FrontEvidence* evidence = nullptr)
+        : cost_(weights), judge(weights) {
+        search.begin(scene, cost_, {}, evidence);
         SearchBudget unlimited;
         search.run(unlimited);
         search.sort_finished(FrontJudge::kContenders);
@@ -140,6 +142,33 @@ TEST(FrontJudge, AllAgreeOnALaneWithoutAnyOther) {
     EXPECT_EQ(lane_feature(judged.judge, 0, "behind"), 0.0F);
 }
 
+/// What the lane of the scene before earns in the search is no evidence for the judge.
+TEST(FrontJudge, DoesNotSeeTheBonusOfTheLastLane) {
+    const Scene scene = straight_front_scene(4);
+    const FrontWeights weights = random_front_weights(4);
+    const Judged without(scene, weights);
+    const Cones& best = without.lanes.front();
+    Lane last;
+    for (const Vertex cone : best[kLeft])
+        last.left.push_back(scene.cones[without.search.map().scene_index(cone)].id);
+    for (const Vertex cone : best[kRight])
+        last.right.push_back(scene.cones[without.search.map().scene_index(cone)].id);
+    FrontEvidence evidence(0.5);
+    evidence.remember(last);
+    const Judged with(scene, weights, &evidence);
+    ASSERT_EQ(with.lanes.front(), best);
+    EXPECT_NEAR(with.contenders.front().score,
+                without.contenders.front().score +
+                    0.5 * static_cast<double>(best[kLeft].size() + best[kRight].size()),
+                1e-5);
+    const std::vector<std::uint32_t>& steps = with.judge.path(0);
+    ASSERT_EQ(steps.size(), without.judge.path(0).size());
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        EXPECT_NEAR(cone_feature(with.judge.steps()[steps[k]], "move_score"),
+                    cone_feature(without.judge.steps()[without.judge.path(0)[k]], "move_score"), 1e-5);
+    }
+}
+
 TEST(FrontJudge, RankLiftsALaneOverBetterScores) {
     FrontWeights weights = random_front_weights(1);
     // Worth more than any difference of scores for each cone that a lane has less.
@@ -174,6 +203,7 @@ TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
     EXPECT_EQ(trusted_m(0.9), 0.0);  // not even the first pair
     // The pair, the next left cone and the next right one: a segment on each side, and half a metre less.
     EXPECT_NEAR(trusted_m(0.5), std::min(segment_m(kLeft, 1), segment_m(kRight, 1)) - 0.5, 1e-5);
+    EXPECT_EQ(trusted_m(0.6), 0.0);  // a segment on the left alone is none of the lane
     EXPECT_LE(trusted_m(0.5), trusted_m(0.2));
     double whole_m = 0.0;
     for (const Side side : {kLeft, kRight}) {

@@ -196,6 +196,25 @@ TEST(FrontState, AStoppedSideLetsTheOtherGoOn) {
     EXPECT_EQ(moving_side(map, state), kLeft);
 }
 
+/// Both cones are near enough to the heading to begin either boundary, yet the left one is to the left. A
+/// third one, on the right, is too far off to be the partner of the left one.
+TEST(FrontStarts, PairsStandOnTheirSidesAndNotTooFarApart) {
+    Scene scene;
+    scene.cones = {{0, {2.0, 1.5}}, {1, {2.0, -1.5}}, {2, {2.0, -8.9}}};
+    FrontMap map;
+    map.build(scene);
+    FrontStarts starts;
+    starts.list(map, {});
+    EXPECT_EQ(starts.cones[kLeft].size(), 2U);
+    EXPECT_EQ(starts.cones[kRight].size(), 3U);
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    for (const auto& [left, right] : starts.pairs) {
+        pairs.emplace(map.scene_index(starts.cones[kLeft][left]),
+                      map.scene_index(starts.cones[kRight][right]));
+    }
+    EXPECT_THAT(pairs, ElementsAre(std::pair(0U, 1U), std::pair(1U, 2U)));
+}
+
 TEST(FrontMoves, LongSegmentsBridgeAMissedConeButNotOneThatIsThere) {
     Scene scene = straight_front_scene(4);
     const auto leads_on = [&](double to_x_m) {

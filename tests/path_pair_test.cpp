@@ -9,6 +9,7 @@
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/branch_and_bound.hpp"
 #include "solvers/path_pair/clique_separation.hpp"
+#include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"
 #include "solvers/path_pair/leg_search.hpp"
 #include "solvers/path_pair/multipliers.hpp"
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -101,6 +103,92 @@ struct SceneWithMultipliers {
     std::vector<int> before, cycle;
     int raised = 0;
 };
+
+/// Two straight boundaries of three cones, 3.2 m apart along them, which is expected, and 3.5 m across; 2 and
+/// 5 are far. Every edge along them costs -1. The right boundary may be moved ahead.
+///     0 ----- 1 ----- 2
+/// car >
+///     3 ----- 4 ----- 5
+Scene straight_lane(double right_ahead_m = 0.0) {
+    Scene scene;
+    for (const double y : {1.75, -1.75}) {
+        for (const double x : {1.0, 4.2, 7.4}) {
+            const double ahead_m = y < 0.0 ? right_ahead_m : 0.0;
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x + ahead_m, y}});
+        }
+    }
+    return scene;
+}
+
+class Offers {
+  public:
+    Offers(const Scene& scene, const RldParameters& parameters) {
+        SearchClock clock;
+        graph.build(make_problem(scene, parameters), clock);
+        incumbent.reset(graph, 0.0);
+    }
+    bool offer(const std::vector<int>& first_cones, const std::vector<int>& second_cones) {
+        return incumbent.offer(leg(first_cones), leg(second_cones));
+    }
+    [[nodiscard]] std::vector<int> leg(const std::vector<int>& cones) const {
+        std::vector<int> arcs;
+        for (std::size_t k = 1; k < cones.size(); ++k) arcs.push_back(graph.arc(cones[k - 1], cones[k]));
+        return arcs;
+    }
+
+    ArcGraph graph;
+    Incumbent incumbent;
+};
+
+TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
+    Offers lane(straight_lane(), {});
+    EXPECT_TRUE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_NEAR(lane.incumbent.cutoff(), -3.0, 1e-9);
+    EXPECT_TRUE(lane.offer({0, 1, 2}, {3, 4, 5}));
+    EXPECT_NEAR(lane.incumbent.cutoff(), -4.0, 1e-9);
+    EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 4, 5})) << "no cheaper";
+    EXPECT_FALSE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_EQ(lane.incumbent.edges().size(), 4U);
+}
+
+TEST(PathPairIncumbent, PaysForEveryTurn) {
+    RldParameters parameters;
+    parameters.t_crit = 1e6;
+    const Offers lane(straight_lane(), parameters);
+    const double corner = 0.5 * std::pow(std::numbers::pi / 2.0 / 0.9, 4);
+    const double across = lane.incumbent.leg_cost(lane.leg({1, 4}));
+    EXPECT_NEAR(lane.incumbent.leg_cost(lane.leg({0, 1, 4, 5})), -1.0 + corner + across + corner - 1.0, 1e-9);
+}
+
+TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
+    RldParameters parameters;
+    parameters.t_crit = 1e6;
+    parameters.d_min = 1.0;
+    EXPECT_FALSE(Offers(straight_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
+    parameters = {};
+    parameters.d_min = 3.6;
+    EXPECT_FALSE(Offers(straight_lane(1.6), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too narrow";
+    parameters = {};
+    parameters.d_h = 2.1;  // 0 - 1 and 3 - 4 alone are near enough to the car
+    EXPECT_FALSE(Offers(straight_lane(), parameters).offer({0, 1, 2}, {4, 5}))
+        << "one edge along the heading";
+    EXPECT_TRUE(Offers(straight_lane(), parameters).offer({0, 1, 2}, {3, 4, 5}));
+}
+
+/// Of one boundary alone: each cone has half of its edges, and its turn.
+TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
+    LaneGraphProblem problem;
+    problem.cone_count = 3;
+    problem.near = {true, true, false};
+    for (const std::size_t i : {0U, 1U}) {
+        problem.edges.push_back({i, i + 1, 0.0, 0.0, 0.0, 0.0, -1.0, true, false});
+    }
+    problem.turns.push_back({0, 1, 1, 0.0, 0.0, 0.25, false});
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(problem, clock));
+    EXPECT_DOUBLE_EQ(graph.share_bound(), -0.5 + (-0.5 + 0.25 - 0.5) - 0.5);
+}
 
 TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
     int legs = 0;
@@ -347,6 +435,24 @@ TEST(PathPair, StartsFromALaneGraph) {
         EXPECT_NEAR(*solver->solve(problem, {}, &torn).objective, *cold.objective, 1e-9);
     }
     EXPECT_GT(started, 20);
+}
+
+/// With a gap wider than any difference of costs every lane graph is good enough: the start is the answer.
+/// Without one it is any, but there is one.
+TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
+    const LaneGraphProblem problem = make_problem(straight_lane(), {});
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    for (const double gap : {100.0, 1e6, std::numeric_limits<double>::infinity()}) {
+        SCOPED_TRACE(testing::Message() << "gap " << gap);
+        const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &whole);
+        EXPECT_EQ(warm.status, SolveStatus::optimal);
+        EXPECT_EQ(warm.lane_graph, whole);
+        const RldReport cold = solver->solve(problem, {.absolute_gap = gap});
+        EXPECT_EQ(cold.status, SolveStatus::optimal);
+        ASSERT_TRUE(cold.lane_graph);
+        EXPECT_TRUE(is_feasible(problem, *cold.lane_graph));
+    }
 }
 
 /// Cones on a lattice, where walks of equal cost and cycles that are neutral abound: labels that improve by

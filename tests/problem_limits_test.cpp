@@ -105,10 +105,10 @@ TEST(ProblemLimits, InvalidInputIsThrownWhateverTheDeadline) {
 }
 
 TEST(ProgramLimits, AStoppedUpdateLeavesTheModelFitForTheNext) {
-    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+    const auto update_after_a_stop = [](Formulation formulation, std::size_t cones) {
         const EdgeExtent extent = parts(formulation).extent;
         const LaneGraphProblem first = make_problem(tests::random_scene(1, 12), {}, extent);
-        const LaneGraphProblem second = make_problem(tests::random_scene(2, 12), {}, extent);
+        const LaneGraphProblem second = make_problem(tests::random_scene(2, cones), {}, extent);
         LaneGraphModel model(formulation);
         EXPECT_FALSE(model.update(first, Deadline()));
         EXPECT_EQ(model.update(second, Deadline(0.0)), StopReason::time);
@@ -118,6 +118,11 @@ TEST(ProgramLimits, AStoppedUpdateLeavesTheModelFitForTheNext) {
         EXPECT_EQ(model.program().row_starts, anew.program().row_starts);
         EXPECT_EQ(model.program().entry_columns, anew.program().entry_columns);
         EXPECT_EQ(model.program().entry_values, anew.program().entry_values);
+    };
+    // With other columns the program is built anew, and then by a model that was stopped on the way.
+    for (const std::size_t cones : {12, 13}) {
+        for (const Formulation formulation : {Formulation::tight, Formulation::paper})
+            update_after_a_stop(formulation, cones);
     }
 }
 
