@@ -47,9 +47,7 @@ void add_study_command(CLI::App& program) {
         CLI::App& one = *command.add_subcommand(name, std::string(description.question));
         one.footer("Protocol: " + std::string(description.protocol));
         study->add_options(one);
-        add_output_option(
-            one, "--out", options->out,
-            "write the rows as JSON lines too; the page shows DIR/" + name + ".jsonl of its results");
+        add_output_option(one, "--out", options->out, "write the rows as JSON lines too");
         one.callback([options, &measured = *study] { run(measured, options->out); });
     }
     command.callback([options, &command] {
