@@ -57,3 +57,19 @@ inline void free_memory(void* memory) {
                                        std::align_val_t /*alignment*/) noexcept {
     conelane::tests::free_memory(memory);
 }
+// The address sanitizer has forms of its own, which do not call those above.
+[[gnu::noinline]] void* operator new[](std::size_t size) {
+    return operator new(size);
+}
+[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+    return conelane::tests::allocate(size, 0);
+}
+[[gnu::noinline]] void operator delete[](void* memory) noexcept {
+    conelane::tests::free_memory(memory);
+}
+[[gnu::noinline]] void operator delete[](void* memory, std::size_t /*size*/) noexcept {
+    conelane::tests::free_memory(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t& /*tag*/) noexcept {
+    conelane::tests::free_memory(memory);
+}

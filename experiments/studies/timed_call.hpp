@@ -12,7 +12,7 @@ namespace conelane::experiments {
 /// One call of a method or of a solver on a scene, under a limit of wall clock.
 struct TimedCall {
     std::string name;
-    /// Throws InvalidInput naming the scene where the answer is an error.
+    /// Throws InvalidInput naming the scene where the answer of a method or of an exact solver is an error.
     std::function<void(const Scene& scene, double time_limit_ms)> run;
 };
 
