@@ -91,6 +91,23 @@ TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
     }
 }
 
+/// Found by cross-check: CBC's preprocessing makes up a point of this program, which has none.
+TEST(ExtremeScenes, APointThatCbcMakesUpIsNoAnswer) {
+    Scene scene;
+    scene.pose.yaw_rad = 2.281;
+    scene.cones = {{8, {5.8825, 4.6447}}, {1, {-1.9522, 1.3658}}, {0, {-2.0448, 6.9194}},
+                   {4, {7.1187, 2.5888}}, {3, {-3.6651, 0.7825}}, {5, {3.2839, 4.6543}},
+                   {2, {-4.04, 5.0428}}};
+    RldParameters parameters;
+    parameters.pairing = Pairing::paper;
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        if (!entry.exact) continue;
+        const RldReport report =
+            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
+        EXPECT_EQ(report.status, SolveStatus::infeasible) << entry.name << ": " << report.message;
+    }
+}
+
 /// Edges of kilometres that the parameters allow, and weights at the end of their range: costs of 1e26. Who
 /// cannot take them says so.
 TEST(ExtremeScenes, CostsThatNoLibraryTakesAreAnErrorNotTheEnd) {

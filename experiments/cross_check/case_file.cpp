@@ -47,7 +47,7 @@ fs::path write_case(const fs::path& directory, const StoredCase& stored,
                                 {"time_limit_ms", stored.time_limit_ms},
                                 {"tight_limit_ms", drawn.tight_limit_ms},
                                 {"findings", findings}};
-    const fs::path file = directory / (name + ".case.json");
+    fs::path file = directory / (name + ".case.json");
     AtomicFile output(file);
     output.stream() << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     output.commit();

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
@@ -18,7 +17,7 @@ namespace {
 /// Numbers are drawn without functions whose last digit depends on the machine's library, or rounded.
 class Draw {
   public:
-    explicit Draw(boost::random::mt19937_64 random) : random_(std::move(random)) {}
+    explicit Draw(const boost::random::mt19937_64& random) : random_(random) {}
 
     double real(double low, double high) {
         return boost::random::uniform_real_distribution<double>(low, high)(random_);
@@ -68,7 +67,8 @@ void make_lane(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
         double x = draw.real(0.0, 14.0);
         double y = draw.real(-7.0, 7.0);
         if (!draw.chance(false_share)) {
-            x = 1.0 + spacing * static_cast<double>(i / 2) + draw.real(-0.4, 0.4);
+            const std::size_t pair = i / 2;
+            x = 1.0 + spacing * static_cast<double>(pair) + draw.real(-0.4, 0.4);
             y = 0.5 * curvature * x * x + (i % 2 == 0 ? half_width : -half_width) + draw.real(-0.3, 0.3);
         }
         const Point place = scene.pose.position + x * ahead + y * left;
@@ -97,7 +97,8 @@ void make_collinear(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     if (slopes) drawn.scene.pose.yaw_rad = 0.75;
     const Point ahead = drawn.scene.pose.heading();
     for (std::size_t i = 0; i < cones; ++i) {
-        const double along = step * static_cast<double>(is_lane ? i / 2 : i);
+        const std::size_t place = is_lane ? i / 2 : i;
+        const double along = step * static_cast<double>(place);
         const double across = offset + (is_lane && i % 2 == 0 ? width : 0.0);
         add_cone(drawn.scene, along * ahead.x() - across * ahead.y(), along * ahead.y() + across * ahead.x());
     }

@@ -21,6 +21,8 @@ namespace {
 
 std::timed_mutex one_at_a_time;
 
+constexpr double kRowTolerance = 1e-4;  // well above CBC's own
+
 int no_callback(CbcModel*, int) {
     return 0;
 }
@@ -45,7 +47,13 @@ class CbcMainSession : public MilpSession {
             report.stopped_by = StopReason::time;
             return report;
         }
-        detail::with_std_errors([&] { run(limits, report); });
+        detail::with_std_errors([&] {
+            run(limits, true, report);
+            // On programs without a solution CBC 2.10.8's preprocessing was seen to invent one.
+            if (!violates_a_row(report.point) || watch_.struck) return;
+            report = {};
+            run(limits, false, report);
+        });
         return report;
     }
 
@@ -56,7 +64,7 @@ class CbcMainSession : public MilpSession {
   private:
     /// CBC is given no limit of its own: preprocessing that runs out of time calls the program infeasible,
     /// and says of no part whether it was cut short.
-    void run(const MilpLimits& limits, MilpReport& report) {
+    void run(const MilpLimits& limits, bool preprocess, MilpReport& report) {
         CbcModel model(lp_);
         CbcSolverUsefulData data;
         data.noPrinting_ = true;
@@ -69,13 +77,28 @@ class CbcMainSession : public MilpSession {
         const std::string gap = fixed(limits.absolute_gap);
         // The feasibility pump's changes of the objective run into an assertion of Clp 1.17.6, which ends the
         // process.
-        const std::array arguments{"conelane",  "-log",       "0",    "-slog",
-                                   "0",         "-increment", "1e-7", "-allowableGap",
-                                   gap.c_str(), "-ratioGap",  "0",    "-feasibilityPump",
-                                   "off",       "-solve",     "-quit"};
-        CbcMain1(static_cast<int>(arguments.size()), const_cast<const char**>(arguments.data()), model,
-                 no_callback, data);
+        std::vector<const char*> arguments{"conelane",  "-log",       "0",    "-slog",
+                                           "0",         "-increment", "1e-7", "-allowableGap",
+                                           gap.c_str(), "-ratioGap",  "0",    "-feasibilityPump",
+                                           "off"};
+        if (!preprocess) arguments.insert(arguments.end(), {"-preprocess", "off"});
+        arguments.insert(arguments.end(), {"-solve", "-quit"});
+        CbcMain1(static_cast<int>(arguments.size()), arguments.data(), model, no_callback, data);
         read(model, report);
+    }
+
+    /// Of a point without coordinates none.
+    [[nodiscard]] bool violates_a_row(const std::vector<double>& point) const {
+        if (point.empty()) return false;
+        std::vector<double> activity(static_cast<std::size_t>(lp_.getNumRows()));
+        lp_.getMatrixByRow()->times(point.data(), activity.data());
+        for (std::size_t r = 0; r < activity.size(); ++r) {
+            if (activity[r] < lp_.getRowLower()[r] - kRowTolerance ||
+                activity[r] > lp_.getRowUpper()[r] + kRowTolerance) {
+                return true;
+            }
+        }
+        return false;
     }
 
     static std::string fixed(double value) {
