@@ -444,7 +444,7 @@ TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
     scene.cones.push_back({6, {10.6, 1.75}});  // the best lane goes on to it
     const LaneGraphProblem problem = make_problem(scene, {});
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-    const LaneGraph start{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    const LaneGraph start{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}}};
     for (const double gap : {100.0, 1e6, std::numeric_limits<double>::infinity()}) {
         SCOPED_TRACE(testing::Message() << "gap " << gap);
         const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &start);
