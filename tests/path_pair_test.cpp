@@ -440,14 +440,16 @@ TEST(PathPair, StartsFromALaneGraph) {
 /// With a gap wider than any difference of costs every lane graph is good enough: the start is the answer.
 /// Without one it is any, but there is one.
 TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
-    const LaneGraphProblem problem = make_problem(straight_lane(), {});
+    Scene scene = straight_lane();
+    scene.cones.push_back({6, {10.6, 1.75}});  // the best lane goes on to it
+    const LaneGraphProblem problem = make_problem(scene, {});
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
-    const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    const LaneGraph start{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}}};
     for (const double gap : {100.0, 1e6, std::numeric_limits<double>::infinity()}) {
         SCOPED_TRACE(testing::Message() << "gap " << gap);
-        const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &whole);
+        const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &start);
         EXPECT_EQ(warm.status, SolveStatus::optimal);
-        EXPECT_EQ(warm.lane_graph, whole);
+        EXPECT_EQ(warm.lane_graph, start);
         const RldReport cold = solver->solve(problem, {.absolute_gap = gap});
         EXPECT_EQ(cold.status, SolveStatus::optimal);
         ASSERT_TRUE(cold.lane_graph);
