@@ -161,24 +161,24 @@ TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
     weights.usable.output_bias = 50.0F;
     const auto trusted_m = [&](double least_trust) {
         weights.least_trust = least_trust;
-        const Judged judged(straight_front_scene(6), weights);
+        Judged judged(straight_front_scene(6), weights);
         const Cones& lane = judged.lanes.front();
         return judged.judge.trusted_m(judged.search, 0, {lane[kLeft].size(), lane[kRight].size()});
     };
-    EXPECT_EQ(trusted_m(0.9), 0.0);  // not even the first pair
-    // The pair, the next left cone and the next right one: a segment on each side.
-    EXPECT_NEAR(trusted_m(0.5), 4.0, 0.5);
-    EXPECT_LE(trusted_m(0.5), trusted_m(0.2));
     const Judged judged(straight_front_scene(6), weights);
+    const auto segment_m = [&](Side side, std::size_t i) {
+        const std::vector<Vertex>& boundary = judged.lanes.front()[side];
+        const FrontMap& map = judged.search.map();
+        return (map.position(boundary[i]) - map.position(boundary[i - 1])).norm();
+    };
+    EXPECT_EQ(trusted_m(0.9), 0.0);  // not even the first pair
+    // The pair, the next left cone and the next right one: a segment on each side, and half a metre less.
+    EXPECT_NEAR(trusted_m(0.5), std::min(segment_m(kLeft, 1), segment_m(kRight, 1)) - 0.5, 1e-5);
+    EXPECT_LE(trusted_m(0.5), trusted_m(0.2));
     double whole_m = 0.0;
     for (const Side side : {kLeft, kRight}) {
-        const std::vector<Vertex>& boundary = judged.lanes.front()[side];
-        for (std::size_t i = 1; i < boundary.size(); ++i) {
-            whole_m +=
-                (judged.search.map().position(boundary[i]) - judged.search.map().position(boundary[i - 1]))
-                    .norm() /
-                2.0;
-        }
+        for (std::size_t i = 1; i < judged.lanes.front()[side].size(); ++i)
+            whole_m += segment_m(side, i) / 2.0;
     }
     EXPECT_NEAR(trusted_m(0.0), whole_m, 1e-5);
 }

@@ -34,7 +34,8 @@ _VIEWER = """
 </tr></thead><tbody id="view-methods"></tbody></table></div>
 <p class="note">Arrow keys: pose and false positives. Space: play. Digits: methods on and off. Click the small map to go
 there; point at a cone for its place. <span class="key"><span class="band-key"></span> ground truth</span>
-<span class="key">┅ gap that a lane bridges</span>
+<span class="key">┅ gap that a lane bridges</span> <span class="key">┈ boundary inferred from the other one</span>
+<span class="key">— across a lane: trusted up to here</span>
 <span class="key">● cone</span> <span class="key">○ cone that was missed</span> <span class="key">× false positive</span>
 <span class="key"><span class="driven-key">┅</span> path that was driven</span></p>
 </div>"""
@@ -72,7 +73,9 @@ def _viewer(results, data):
               for track, boundaries in results.tracks.items() if track in shown}
     methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
                for sample in results.samples]
-    content = {"methods": methods, "marks": MARKS, "longest_gap": 100 * data.longest_gap_m, "tracks": tracks, "laps": data.laps, "start": data.start, "frames": data.frames,
+    content = {"methods": methods, "marks": MARKS, "longest_gap": 100 * data.longest_gap_m,
+               "usual_width": 100 * data.usual_width_m, "tracks": tracks, "laps": data.laps, "start": data.start,
+               "frames": data.frames,
                "categories": [gallery.CATEGORY_WORDS[category] for category in CATEGORIES],
                "causes": gallery.CAUSE_WORDS}
     return (f'{_part_shown(data)}{_VIEWER}<script type="application/json" id="scene-data">{_embedded(content)}'
@@ -133,7 +136,7 @@ def _lead(results):
 
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
-    data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"])
+    data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"], published["usual_width_m"])
     sections = _sections(results, published, data)
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'

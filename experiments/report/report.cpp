@@ -47,6 +47,7 @@ std::string published() {
                               {"persistent", condition.persistent}});
     }
     return nlohmann::ordered_json{{"longest_gap_m", DrivableOptions{}.longest_gap_m},
+                                  {"usual_width_m", DrivableOptions{}.usual_width_m},
                                   {"conditions", conditions},
                                   {"clc", clc},
                                   {"clc_median_below_ms", kPublishedClcMedianBelow_ms},

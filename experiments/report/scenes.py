@@ -38,6 +38,7 @@ class SceneData:
     worst: dict = field(default_factory=dict)  # (label, condition) -> [scene ids]
     missing: str = ""  # why there are none
     longest_gap_m: float = math.inf  # from boundary cone to boundary cone; what is longer is drawn as bridged
+    usual_width_m: float = 3.5  # of a lane whose other boundary is inferred
 
 
 def gallery_rate(results):
@@ -279,7 +280,7 @@ def _start(results, lap_list, worst):
     return first["scenes"][0] if first else next(iter(worst.values()))[0]
 
 
-def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf):
+def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual_width_m=3.5):
     """What fits on the page, or why there is nothing. `conditions`: what the program knows by name, each with its
     noise. `tracks`: those whose laps the viewer shall have; else the most interesting."""
     scenes_file = results.path("scenes.scenes.jsonl")
@@ -307,4 +308,4 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf):
                 for (track, condition, rate, range_m), scenes in laps.scenes.items()]
     lap_list = [lap for lap in lap_list if lap["scenes"]]
     return SceneData(frames, lap_list, _start(results, lap_list, worst), laps.scene_count, len(chosen),
-                     len(laps.scenes), stride, worst, longest_gap_m=longest_gap_m)
+                     len(laps.scenes), stride, worst, longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)

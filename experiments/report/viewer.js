@@ -117,6 +117,39 @@
     context.setLineDash([]);
   };
 
+  /// A boundary beside one that is known alone, at the usual width.
+  const strokeInferred = (context, points, known, width) => {
+    const left = known === 0 ? -width : width;
+    context.setLineDash(marks.inferred.dash);
+    context.beginPath();
+    trace(context, points.map(([x, y], i) => {
+      const [ax, ay] = points[Math.max(0, i - 1)], [bx, by] = points[Math.min(points.length - 1, i + 1)];
+      const length = Math.hypot(bx - ax, by - ay) || 1;
+      return [x + left * (by - ay) / length, y - left * (bx - ax) / length];
+    }), false);
+    context.stroke();
+    context.setLineDash([]);
+  };
+
+  /// Where a boundary has that length; its end where it is shorter.
+  const pointAt = (points, length) => {
+    for (let i = 1; i < points.length; ++i) {
+      const [ax, ay] = points[i - 1], [bx, by] = points[i];
+      const step = Math.hypot(bx - ax, by - ay);
+      if (step >= length && step > 0) return [ax + (bx - ax) * length / step, ay + (by - ay) * length / step];
+      length -= step;
+    }
+    return points[points.length - 1];
+  };
+
+  /// Across the lane, where it is trusted no farther.
+  const strokeTrusted = (context, sides, length) => {
+    context.lineWidth = marks.trusted.width;
+    context.beginPath();
+    trace(context, sides.map((points) => pointAt(points, length)), false);
+    context.stroke();
+  };
+
   const drawScene = () => {
     const { context, width, height } = prepare(scene);
     const view = fit(width, height), current = frame(), points = placed(view);
@@ -146,7 +179,13 @@
       const answer = current.a[i];
       context.strokeStyle = colour("--m" + data.methods[i].colour);
       context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
-      for (const one of answer.slice(0, 2)) strokeSide(context, side(one), answer[2], data.longest_gap * view.scale);
+      const sides = answer.slice(0, 2).map(side), trusted = answer[10];
+      for (const points of sides) strokeSide(context, points, answer[2], data.longest_gap * view.scale);
+      const known = sides.findIndex((points) => points.length > 1);
+      if (known >= 0 && sides[1 - known].length === 0)
+        strokeInferred(context, sides[known], known, data.usual_width * view.scale);
+      if (trusted !== null && sides.every((points) => points.length > 1))
+        strokeTrusted(context, sides, 100 * trusted * view.scale);
     });
 
     const cones = points.length - current.f;

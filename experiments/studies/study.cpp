@@ -3,10 +3,12 @@
 #include "experiments/studies/anytime.hpp"
 #include "experiments/studies/backends.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
+#include "experiments/studies/deadlines.hpp"
 #include "experiments/studies/differential.hpp"
 #include "experiments/studies/formulations.hpp"
 #include "experiments/studies/front_beam.hpp"
 #include "experiments/studies/growth.hpp"
+#include "experiments/studies/memory.hpp"
 #include "experiments/studies/optimality.hpp"
 #include "experiments/studies/relaxations.hpp"
 
@@ -23,6 +25,8 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     studies.push_back(make_relaxations_study());
     studies.push_back(make_confidence_and_colour_study());
     studies.push_back(make_front_beam_study());
+    studies.push_back(make_deadlines_study());
+    studies.push_back(make_memory_study());
     return studies;
 }
 

@@ -62,6 +62,7 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
                         derivatives->usable);
     }
     add_right(boundaries, weights, judge, *chosen, loss, derivatives);
+    loss.trust_where_wrong = trust_where_wrong(boundaries, judge, *chosen);
     return loss;
 }
 
@@ -93,7 +94,6 @@ void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const Front
     const FrontTruth::Cones& lane = lanes_[chosen];
     const std::array<std::size_t, 2> right_cones = truth_.right_cones(lane, boundaries);
     std::array<std::size_t, 2> place{};
-    double trust = loss.confidence;
     for (const std::uint32_t number : judge.path(chosen)) {
         const FrontJudge::Step& step = judge.steps()[number];
         const FrontSearch::Node& node = front_.node(step.node);
@@ -106,16 +106,24 @@ void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const Front
             if (cone >= lane[node.side].size()) continue;  // off the lane as it is answered
             is_right = cone < right_cones[node.side];
         }
-        trust *= step.right;
         loss.sum += cross_entropy(step.right, is_right);
         if (derivatives != nullptr) {
             add_derivatives(weights.right, step.inputs,
                             static_cast<float>(step.right - (is_right ? 1.0 : 0.0)), derivatives->right);
         }
-        if (is_right) continue;
-        loss.trust_where_wrong = trust;
-        return;
+        if (!is_right) return;
     }
+}
+
+double FrontJudgeLearner::trust_where_wrong(const TrackBoundaries& boundaries, FrontJudge& judge,
+                                            std::size_t chosen) const {
+    const FrontTruth::Cones& lane = lanes_[chosen];
+    const std::optional<double> divergence_m = truth_.divergence_m(lane, boundaries);
+    if (!divergence_m) return -1.0;
+    const auto reaches = judge.reaches(front_, chosen, {lane[kLeft].size(), lane[kRight].size()});
+    const auto too_far = [&](const FrontJudge::Reach& reach) { return reach.trusted_m > *divergence_m; };
+    const auto wrong = std::ranges::find_if(reaches, too_far);
+    return wrong == reaches.end() ? -1.0 : wrong->trust;
 }
 
 }  // namespace conelane::experiments

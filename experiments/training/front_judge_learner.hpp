@@ -26,8 +26,8 @@ class FrontJudgeLearner {
         bool is_usable = false;
         double confidence = 0.0;
         double risk = 0.0;  ///< of the lane that is answered
-        /// Of the lane that is answered, what FrontWeights::least_trust is held against at its first cone
-        /// that is not right; below 0 where all are.
+        /// The highest FrontWeights::least_trust with which the lane that is answered is trusted farther than
+        /// it is right; below 0 where all of it is right.
         double trust_where_wrong = -1.0;
     };
 
@@ -41,6 +41,8 @@ class FrontJudgeLearner {
                   Loss& loss, FrontWeights* derivatives) const;
     void add_right(const TrackBoundaries& boundaries, const FrontWeights& weights, const FrontJudge& judge,
                    std::size_t chosen, Loss& loss, FrontWeights* derivatives) const;
+    [[nodiscard]] double trust_where_wrong(const TrackBoundaries& boundaries, FrontJudge& judge,
+                                           std::size_t chosen) const;
 
     FrontSearch front_;
     FrontTruth truth_;

@@ -70,7 +70,7 @@ bool FrontTruth::is_usable(const Cones& lane, const TrackBoundaries& boundaries)
     const LaneOutline predicted = outline_in_world(lane);
     const LaneOutline truth = outline_in_world(cones_);
     return experiments::is_usable(lane_length_m(predicted), lane_length_m(truth),
-                                  divergence_m(predicted, truth, boundaries));
+                                  experiments::divergence_m(predicted, truth, boundaries));
 }
 
 std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,
@@ -84,6 +84,10 @@ std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,
     };
     return {right(predicted.left, boundaries.left, truth.left.front()),
             right(predicted.right, boundaries.right, truth.right.front())};
+}
+
+std::optional<double> FrontTruth::divergence_m(const Cones& lane, const TrackBoundaries& boundaries) const {
+    return experiments::divergence_m(outline_in_world(lane), outline_in_world(cones_), boundaries);
 }
 
 }  // namespace conelane::experiments

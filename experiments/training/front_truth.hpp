@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace conelane::experiments {
@@ -37,6 +38,9 @@ class FrontTruth {
     /// Of each boundary, how many cones come before the first one that is off (see boundary_divergence).
     [[nodiscard]] std::array<std::size_t, 2> right_cones(const Cones& lane,
                                                          const TrackBoundaries& boundaries) const;
+    /// As SceneScore::divergence_distance_m.
+    [[nodiscard]] std::optional<double> divergence_m(const Cones& lane,
+                                                     const TrackBoundaries& boundaries) const;
 
   private:
     [[nodiscard]] LaneOutline outline(const Cones& lane) const;

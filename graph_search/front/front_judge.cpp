@@ -56,6 +56,7 @@ constexpr std::array<FrontFeature, kWholeLaneFeatures> kWholeLaneTable{{
 }};
 
 constexpr double kNear_m = 20.0;
+constexpr double kTrustMargin_m = 0.5;
 constexpr float kScore = 4.0F;
 constexpr float kMost = 2.0F;
 
@@ -320,22 +321,35 @@ double FrontJudge::confidence(std::size_t contender) const {
     return probability_of(static_cast<double>(usable_network_.score(features_[contender])));
 }
 
-double FrontJudge::trusted_m(const FrontSearch& search, std::size_t contender,
-                             const std::array<std::size_t, 2>& cones) const {
+std::span<const FrontJudge::Reach> FrontJudge::reaches(const FrontSearch& search, std::size_t contender,
+                                                       const std::array<std::size_t, 2>& cones) {
+    reaches_.clear();
     std::array<double, 2> length_m{};
     std::array<std::size_t, 2> counted{1, 1};
-    double right = confidence(contender);
+    double trust = confidence(contender);
     for (const std::uint32_t place : paths_[contender]) {
         const FrontSearch::Node& node = search.node(steps_[place].node);
-        const bool is_first = node.parent == kNone;
-        if (!is_first && counted[node.side] == cones[node.side]) continue;
-        right *= steps_[place].right;
-        if (right < least_trust_) return is_first ? 0.0 : std::min(length_m[kLeft], length_m[kRight]);
-        if (is_first) continue;
-        length_m[node.side] += static_cast<double>(node.state.ends[node.side].segment_m);
-        ++counted[node.side];
+        if (node.parent != kNone) {
+            if (counted[node.side] == cones[node.side]) continue;
+            length_m[node.side] += static_cast<double>(node.state.ends[node.side].segment_m);
+            ++counted[node.side];
+        }
+        trust *= steps_[place].right;
+        const double shorter_m = std::min(length_m[kLeft], length_m[kRight]);
+        reaches_.push_back({trust, std::max(0.0, shorter_m - kTrustMargin_m)});
     }
-    return (length_m[kLeft] + length_m[kRight]) / 2.0;
+    reaches_.back().trusted_m = (length_m[kLeft] + length_m[kRight]) / 2.0;
+    return reaches_;
+}
+
+double FrontJudge::trusted_m(const FrontSearch& search, std::size_t contender,
+                             const std::array<std::size_t, 2>& cones) {
+    double result_m = 0.0;
+    for (const Reach& reach : reaches(search, contender, cones)) {
+        if (reach.trust < least_trust_) break;
+        result_m = reach.trusted_m;
+    }
+    return result_m;
 }
 
 }  // namespace conelane

@@ -47,10 +47,21 @@ class FrontJudge {
     [[nodiscard]] std::span<const std::size_t> order() const { return order_; }
     /// That the contender is usable.
     [[nodiscard]] double confidence(std::size_t contender) const;
-    /// How far the contender is trusted, along the boundary that is shorter up to there; its whole length,
-    /// the mean of both boundaries, where all of it is. `cones`: of each boundary, those that count.
+    /// The contender as far as one of its cones.
+    struct Reach {
+        double trust;  ///< probability that it is usable, and all its cones so far right
+        /// How far a lane is trusted that is trusted up to this cone: half a metre less than the boundary
+        /// that is shorter so far, for the next cone may be off beside the right one. At the last cone the
+        /// whole length, the mean of both boundaries.
+        double trusted_m;
+    };
+    /// Cone by cone, the first pair first; trust never rises. `cones`: of each boundary, those that count.
+    /// Valid until the next call.
+    [[nodiscard]] std::span<const Reach> reaches(const FrontSearch& search, std::size_t contender,
+                                                 const std::array<std::size_t, 2>& cones);
+    /// How far the contender is trusted: up to the last cone whose trust is FrontWeights::least_trust.
     [[nodiscard]] double trusted_m(const FrontSearch& search, std::size_t contender,
-                                   const std::array<std::size_t, 2>& cones) const;
+                                   const std::array<std::size_t, 2>& cones);
 
     // For training.
     [[nodiscard]] const WholeLaneFeatures& features(std::size_t contender) const {
@@ -89,6 +100,7 @@ class FrontJudge {
     std::array<double, kContenders> probability_{};
     std::array<double, kContenders> rank_{};
     std::array<WholeLaneFeatures, kContenders> features_{};
+    std::vector<Reach> reaches_;
     std::vector<std::size_t> order_;
     double expected_m_ = 0.0;  ///< length of both boundaries together, weighed by probability
 };

@@ -32,8 +32,8 @@ void FrontBeam::run(const ResidualGraph& residual, const EdgeSets& edges, double
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
         relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
     }
-    labels_.clear();
-    lost_.clear();
+    labels_.reset(1);
+    lost_.reset(words_);
     waiting_.assign(residual.arc.size(), -1);
     begin(width);
     again_ = true;
@@ -95,9 +95,9 @@ void FrontBeam::begin(std::size_t width) {
 
 /// Takes `arc` (-1 for none) and lets the label wait.
 void FrontBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
-    const std::size_t row = lost_.size();
-    lost_.resize(row + words_);
-    std::copy_n(lost_before, words_, lost_.data() + row);
+    clock_->out_of_time(20 + 2 * words_);
+    std::uint64_t* const row = lost_.add();
+    std::copy_n(lost_before, words_, row);
     if (arc >= 0) {
         const int edge = residual_->edge(arc);
         label.cost += graph_->cost(edge);
@@ -106,34 +106,35 @@ void FrontBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
             label.along_heading = static_cast<std::int8_t>(std::min(2, label.along_heading + 1));
         }
         const std::uint64_t* const more = edges_->lost_after(arc);
-        for (std::size_t w = 0; w < words_; ++w) lost_[row + w] |= more[w];
+        for (std::size_t w = 0; w < words_; ++w) row[w] |= more[w];
     }
     label.next = std::exchange(waiting_[at(label.moving)], static_cast<int>(labels_.size()));
     again_ |= label.moving <= settled_;
-    labels_.push_back(label);
+    *labels_.add() = label;
 }
 
 void FrontBeam::settle(int arc, std::size_t width) {
     here_.clear();
-    for (int l = std::exchange(waiting_[at(arc)], -1); l >= 0; l = labels_[at(l)].next) {
-        if (labels_[at(l)].estimate < limit()) here_.push_back(l);
+    for (int l = std::exchange(waiting_[at(arc)], -1); l >= 0; l = label_at(l).next) {
+        if (label_at(l).estimate < limit()) here_.push_back(l);
     }
     clock_->out_of_time(50 * here_.size());
     // Cheapest first, by true costs: while the multipliers are far off, reduced ones favour two legs along
     // one boundary.
     const auto promise = [&](int l) {
-        const Label& label = labels_[at(l)];
+        const Label& label = label_at(l);
         return label.estimate - label.reduced + label.cost;
     };
     std::sort(here_.begin(), here_.end(),
               [&](int a, int b) { return promise(a) != promise(b) ? promise(a) < promise(b) : a < b; });
     std::ptrdiff_t expanded = 0;
     for (std::size_t k = 0; k < here_.size() && expanded < static_cast<std::ptrdiff_t>(width); ++k) {
-        const Label& label = labels_[at(here_[k])];
+        const Label& label = label_at(here_[k]);
         const bool same_front = std::any_of(here_.begin(), here_.begin() + expanded, [&](int l) {
-            return labels_[at(l)].waiting == label.waiting && labels_[at(l)].ended == label.ended;
+            return label_at(l).waiting == label.waiting && label_at(l).ended == label.ended;
         });
         if (same_front) continue;
+        if (clock_->struck()) return;
         here_[at(static_cast<int>(expanded++))] = here_[k];
         expand(here_[k]);
     }
@@ -141,7 +142,7 @@ void FrontBeam::settle(int arc, std::size_t width) {
 
 void FrontBeam::expand(int l) {
     const ResidualGraph& r = *residual_;
-    const Label label = labels_[at(l)];
+    const Label label = label_at(l);
     const int moving_kind = kind(label.moving_leg);
     const auto other_leg = static_cast<std::uint8_t>(1 - label.moving_leg);
     const int other_kind = kind(other_leg);
@@ -193,8 +194,8 @@ void FrontBeam::expand(int l) {
 
 void FrontBeam::offer(int label) {
     for (std::vector<int>& leg : legs_) leg.clear();
-    for (int l = label; l >= 0; l = labels_[at(l)].before) {
-        const Label& here = labels_[at(l)];
+    for (int l = label; l >= 0; l = label_at(l).before) {
+        const Label& here = label_at(l);
         const int last[2] = {here.moving_leg == 0 ? here.moving : here.waiting,
                              here.moving_leg == 0 ? here.waiting : here.moving};
         for (std::size_t leg = 0; leg < 2; ++leg) {

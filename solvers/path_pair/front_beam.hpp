@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/path_pair/block_rows.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
@@ -42,7 +43,8 @@ class FrontBeam {
     static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     [[nodiscard]] int kind(int leg) const { return relaxation_->symmetric() ? 0 : leg; }
     [[nodiscard]] double limit() const;
-    [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.data() + at(label) * words_; }
+    [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.row(at(label)); }
+    [[nodiscard]] const Label& label_at(int number) const { return *labels_.row(at(number)); }
     void begin(std::size_t width);
     void wait(Label label, const std::uint64_t* lost_before, int arc);
     void settle(int arc, std::size_t width);
@@ -58,9 +60,9 @@ class FrontBeam {
     double tolerance_ = 0.0;
     std::size_t words_ = 0;
     std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
-    std::vector<Label> labels_;
-    std::vector<std::uint64_t> lost_;  ///< by label
-    std::vector<int> waiting_;         ///< by arc, the label that came last
+    BlockRows<Label> labels_;
+    BlockRows<std::uint64_t> lost_;  ///< by label
+    std::vector<int> waiting_;       ///< by arc, the label that came last
     std::vector<int> here_;
     std::vector<std::uint64_t> lost_here_;  ///< of the label that is expanded
     std::array<std::vector<int>, 2> legs_;

@@ -12,6 +12,10 @@ constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
 constexpr int kFrontsPerClock = 256;
+/// Room is made for so many, and for steps, before the first one: a vector that grows copies what it has,
+/// which takes milliseconds. Memory that is not written to costs nothing.
+constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
+constexpr std::size_t kStepsPerFront = 4;
 constexpr std::size_t kMostFirstFronts = 1'000'000;
 
 }  // namespace
@@ -32,12 +36,51 @@ std::uint64_t FrontGraph::key(const Front& front) {
            (front.ended ? 1U : 0U);
 }
 
+void FrontGraph::Arrays::reserve(std::size_t count) {
+    fronts.reserve(count);
+    last.reserve(count);
+    begin.reserve(count);
+    end.reserve(count);
+    steps.reserve(kStepsPerFront * count);
+    forward.reserve(count);
+    onward.reserve(count);
+}
+
 bool FrontGraph::out_of_time() {
     if (--until_clock_ < 0) {
         until_clock_ = kFrontsPerClock;
         is_stopped_ = is_stopped_ || (*stopped_)();
     }
     return is_stopped_;
+}
+
+template <typename T>
+bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
+    constexpr std::size_t kPerClock = 16384;
+    values.clear();
+    values.reserve(count);
+    while (values.size() < count) {
+        if (is_stopped_ || (*stopped_)()) {
+            is_stopped_ = true;
+            return false;
+        }
+        values.resize(std::min(count, values.size() + kPerClock), value);
+    }
+    return true;
+}
+
+bool FrontGraph::fill_dominated(std::size_t words) {
+    dominated_.reset(words);
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return false;
+        std::fill_n(dominated_.add(), words, ~std::uint64_t{0});
+    }
+    return true;
+}
+
+void FrontGraph::forget_fronts() {
+    now_.clear();
+    starts_.clear();
 }
 
 double FrontGraph::start_cost(int f) const {
@@ -51,6 +94,7 @@ double FrontGraph::start_cost(int f) const {
 void FrontGraph::grow_table() {
     table_.assign(std::max(kFewSlots, table_.size() * 2), -1);
     for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return;  // those that are missing are numbered twice, and all are dropped
         std::size_t slot = (key(front(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
         while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
         table_[slot] = f;
@@ -71,7 +115,7 @@ int FrontGraph::number(const Front& wanted) {
     now_.begin.push_back(0);
     now_.end.push_back(0);  // no steps yet: the first one is at 1 or later
     next_open_.push_back(kNotOpen);
-    if (edges_ != nullptr) dominated_.resize(dominated_.size() + edges_->words(), ~std::uint64_t{0});
+    if (edges_ != nullptr) std::fill_n(dominated_.add(), edges_->words(), ~std::uint64_t{0});
     return size() - 1;
 }
 
@@ -102,8 +146,8 @@ void FrontGraph::begin(double limit) {
             now_.forward[at(f)] = start;
             starts_.push_back(f);
             if (edges_ != nullptr) {
-                intersect_with_union(dominated_.data() + at(f) * edges_->words(), edges_->lost_after(a),
-                                     edges_->lost_after(b), edges_->words());
+                intersect_with_union(dominated_.row(at(f)), edges_->lost_after(a), edges_->lost_after(b),
+                                     edges_->words());
             }
             open(f);
         }
@@ -149,16 +193,18 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
                        std::size_t most_fronts, const EdgeSets* edges) {
     residual_ = &residual;
     edges_ = edges;
-    dominated_.clear();
+    dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
     if (edges_ != nullptr) nothing_.assign(edges_->words(), 0);
     dominated_of_arcs_ = &dominated;
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
         relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
     }
     now_.clear();
+    now_.reserve(std::min(kReservedFronts, most_fronts));
+    next_open_.clear();
+    next_open_.reserve(std::min(kReservedFronts, most_fronts));
     now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
     starts_.clear();
-    next_open_.clear();
     open_at_.assign(residual.arc.size(), -1);
     open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
     moving_ = 0;
@@ -186,7 +232,7 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
         }
     }
     order();
-    return true;
+    return !is_stopped_;
 }
 
 void FrontGraph::open(int f) {
@@ -202,8 +248,7 @@ bool FrontGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
     const std::uint64_t* const own = arc < 0 ? nothing_.data() : edges_->lost_after(arc);
-    return intersect_with_union(dominated_.data() + at(to) * words, dominated_.data() + at(from) * words, own,
-                                words);
+    return intersect_with_union(dominated_.row(at(to)), dominated_.row(at(from)), own, words);
 }
 
 /// Lowers the forward costs of the fronts after this one. False where there are too many.
@@ -217,8 +262,7 @@ bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
     if (now_.end[at(f)] == 0) add_steps(f, limit);
     for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
         const int arc = now_.steps[p].arc;
-        if (edges_ != nullptr && arc >= 0 &&
-            EdgeSets::contains(dominated_.data() + at(f) * edges_->words(), edges_->number(arc))) {
+        if (edges_ != nullptr && arc >= 0 && EdgeSets::contains(dominated_.row(at(f)), edges_->number(arc))) {
             continue;
         }
         const double label = forward + cost(now_.steps[p]);
@@ -240,6 +284,22 @@ bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
 /// Renumbers the fronts that have steps, or are last, in reversed finishing order of a depth-first search:
 /// nearly every step leads to a later front.
 void FrontGraph::order() {
+    if (!order_fronts()) return forget_fronts();
+    const ResidualGraph& r = *residual_;
+    for (const Front& f : now_.fronts) {
+        if (out_of_time()) return forget_fronts();
+        const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
+                          relaxation_->ends_fit(r.head[at(f.moving)], r.head[at(f.waiting)]);
+        now_.last.push_back(last ? 1 : 0);
+    }
+    if (!fill(now_.onward, now_.fronts.size(), kUnreachable) ||
+        !fill(keep_step_, now_.steps.size(), char{1})) {
+        return forget_fronts();
+    }
+    keep(order_);
+}
+
+bool FrontGraph::order_fronts() {
     order_.clear();
     index_.assign(now_.fronts.size(), -1);
     next_step_.assign(now_.begin.begin(), now_.begin.end());
@@ -251,6 +311,10 @@ void FrontGraph::order() {
     for (const int start : starts_) {
         enter(start);
         while (!stack_.empty()) {
+            if (out_of_time()) {
+                stack_.clear();
+                return false;
+            }
             const int f = stack_.back();
             if (next_step_[at(f)] == now_.end[at(f)]) {
                 order_.push_back(f);
@@ -261,24 +325,18 @@ void FrontGraph::order() {
         }
     }
     std::ranges::reverse(order_);
-    const ResidualGraph& r = *residual_;
-    for (const Front& f : now_.fronts) {
-        const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
-                          relaxation_->ends_fit(r.head[at(f.moving)], r.head[at(f.waiting)]);
-        now_.last.push_back(last ? 1 : 0);
-    }
-    now_.onward.assign(now_.fronts.size(), kUnreachable);
-    keep_step_.assign(now_.steps.size(), 1);
-    keep(order_);
+    return true;
 }
 
 /// Renumbers: what is not in `order`, and steps that keep_step_ does not mark, are dropped.
 void FrontGraph::keep(std::span<const int> order) {
     std::swap(now_, old_);
     now_.clear();
+    now_.reserve(order.size());
     index_.assign(old_.fronts.size(), -1);
     for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
     for (const int f : order) {
+        if (out_of_time()) return forget_fronts();
         now_.fronts.push_back(old_.fronts[at(f)]);
         now_.last.push_back(old_.last[at(f)]);
         now_.forward.push_back(old_.forward[at(f)]);
@@ -299,7 +357,10 @@ void FrontGraph::keep(std::span<const int> order) {
 }
 
 double FrontGraph::find_onward(double limit) {
-    now_.onward.assign(now_.fronts.size(), kUnreachable);
+    if (!fill(now_.onward, now_.fronts.size(), kUnreachable)) {
+        forget_fronts();
+        return -kUnreachable;
+    }
     changed_.assign(now_.fronts.size(), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
@@ -323,7 +384,7 @@ double FrontGraph::find_onward(double limit) {
 }
 
 void FrontGraph::find_forward() {
-    now_.forward.assign(now_.fronts.size(), kUnreachable);
+    if (!fill(now_.forward, now_.fronts.size(), kUnreachable)) return forget_fronts();
     changed_.assign(now_.fronts.size(), 0);
     for (const int f : starts_) now_.forward[at(f)] = start_cost(f);
     bool again = true;
@@ -346,8 +407,9 @@ void FrontGraph::find_forward() {
 
 void FrontGraph::drop(double limit) {
     order_.clear();
-    keep_step_.assign(now_.steps.size(), 0);
+    if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_fronts();
     for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return forget_fronts();
         const double forward = now_.forward[at(f)];
         if (!(forward + onward(f) < limit)) continue;
         order_.push_back(f);
@@ -361,17 +423,17 @@ void FrontGraph::drop(double limit) {
 
 void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
     const std::size_t words = edges.words();
-    const auto row = [&](int f) { return dominated_.data() + at(f) * words; };
+    const auto row = [&](int f) { return dominated_.row(at(f)); };
     const auto is_dominated = [&](int f, int arc) {
         return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
     };
     nothing_.assign(words, 0);
     const std::uint64_t* const nothing = nothing_.data();
-    keep_step_.assign(now_.steps.size(), 1);
+    if (!fill(keep_step_, now_.steps.size(), char{1})) return;
     changed_.assign(now_.fronts.size(), 0);
 
     // Every walk from a first front up to this one has lost these edges.
-    dominated_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    if (!fill_dominated(words)) return;
     for (const int f : starts_) {
         intersect_with_union(row(f), edges.lost_after(front(f).moving), edges.lost_after(front(f).waiting),
                              words);
@@ -392,13 +454,14 @@ void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
         }
     }
     for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return;
         for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
             if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
         }
     }
 
     // Every walk from this front on to a last one excludes these edges.
-    dominated_.assign(now_.fronts.size() * words, ~std::uint64_t{0});
+    if (!fill_dominated(words)) return;
     changed_.assign(now_.fronts.size(), 0);
     again = true;
     for (int sweep = 1; again; ++sweep) {
@@ -423,6 +486,7 @@ void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
     }
     order_.clear();
     for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return;
         order_.push_back(f);
         for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
             if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/path_pair/block_rows.hpp"
 #include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
@@ -36,7 +37,8 @@ class FrontGraph {
         double turn;  ///< cost of the turn into it
     };
 
-    /// Once `stopped` says so, everything below ends early and what it found is of no use.
+    /// Once `stopped` says so, everything below ends early and what it found is of no use; where the fronts
+    /// were being renumbered, none is left.
     void bind(PairRelaxation& relaxation, const std::function<bool()>& stopped) {
         relaxation_ = &relaxation;
         stopped_ = &stopped;
@@ -85,10 +87,17 @@ class FrontGraph {
         std::vector<double> onward;
 
         void clear();
+        void reserve(std::size_t count);  ///< Precondition: cleared.
     };
     static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     static std::uint64_t key(const Front& front);
     bool out_of_time();
+    /// So many times the value; false, and fewer, where the time is up.
+    template <typename T>
+    bool fill(std::vector<T>& values, std::size_t count, T value);
+    /// The same rows of the set of all edges.
+    bool fill_dominated(std::size_t words);
+    void forget_fronts();
 
     void begin(double limit);
     void open(int f);
@@ -99,6 +108,7 @@ class FrontGraph {
     int number(const Front& wanted);
     void grow_table();
     void order();
+    bool order_fronts();
     void keep(std::span<const int> order);
 
     PairRelaxation* relaxation_ = nullptr;
@@ -124,10 +134,10 @@ class FrontGraph {
     std::vector<int> order_;
     std::vector<int> stack_;
     std::vector<std::size_t> next_step_;
-    std::vector<char> keep_step_;           ///< of old_.steps
-    std::vector<int> changed_;              ///< by front, the sweep that changed it last
-    std::vector<std::uint64_t> dominated_;  ///< by front
-    std::vector<std::uint64_t> nothing_;    ///< the empty set
+    std::vector<char> keep_step_;         ///< of old_.steps
+    std::vector<int> changed_;            ///< by front, the sweep that changed it last
+    BlockRows<std::uint64_t> dominated_;  ///< by front
+    std::vector<std::uint64_t> nothing_;  ///< the empty set
 };
 
 }  // namespace conelane::path_pair

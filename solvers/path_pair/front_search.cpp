@@ -9,6 +9,7 @@ namespace {
 
 // Sets of edges that are looked at between two looks at the clock.
 constexpr std::size_t kWorkPerClock = 10000;
+constexpr std::size_t kWorkPerLabel = 20;  ///< its detours, along its arcs
 
 std::size_t at(int index) {
     return static_cast<std::size_t>(index);
@@ -47,16 +48,17 @@ void FrontSearch::wait(Label label) {
     const std::size_t front = at(label.front);
     label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
     open_[front / 64] |= std::uint64_t{1} << (front % 64);
-    labels_.push_back(label);
+    *labels_.add() = label;
 }
 
 void FrontSearch::begin() {
     for (const int f : fronts_->starts()) {
+        if (out_of_time(1)) return;
         const double reduced = fronts_->start_cost(f);
         if (!(reduced + fronts_->onward(f) < limit())) continue;
         Label label{-1, -1, f, 0, -1, 0.0, reduced};
-        lost_.resize(lost_.size() + words_, 0);
-        std::uint64_t* const lost = lost_.data() + lost_.size() - words_;
+        std::uint64_t* const lost = lost_.add();
+        std::fill_n(lost, words_, std::uint64_t{0});
         take(fronts_->front(f).moving, label, lost);
         take(fronts_->front(f).waiting, label, lost);
         wait(label);
@@ -71,8 +73,8 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
     tables_ = &tables;
     limits_ = limits;
     words_ = edges.words();
-    labels_.clear();
-    lost_.clear();
+    labels_.reset(1);
+    lost_.reset(words_);
     waiting_.assign(at(fronts.size()), -1);
     open_.assign((at(fronts.size()) + 63) / 64, 0);
     wanted_.resize(words_);
@@ -81,6 +83,7 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
     is_stopped_ = false;
     is_narrow_ = false;
     begin();
+    if (is_stopped_) return Outcome::stopped;
     again_ = true;
     while (again_) {
         again_ = false;
@@ -100,16 +103,15 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
 /// Expands the labels that wait at a front.
 void FrontSearch::settle(int f) {
     here_.clear();
-    for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = labels_[at(l)].next) here_.push_back(l);
-    std::sort(here_.begin(), here_.end(),
-              [&](int a, int b) { return labels_[at(a)].cost < labels_[at(b)].cost; });
+    for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
+    std::sort(here_.begin(), here_.end(), [&](int a, int b) { return label_at(a).cost < label_at(b).cost; });
     kept_along_heading_.clear();
     kept_lost_.clear();
     any_lost_.assign(words_, 0);
     for (const int l : here_) {
-        const Label& label = labels_[at(l)];
+        const Label& label = label_at(l);
         if (!(label.reduced + fronts_->onward(f) < limit())) continue;
-        if (out_of_time(1 + kept_along_heading_.size())) return;
+        if (out_of_time(kWorkPerLabel + kept_along_heading_.size())) return;
         const int most = tables_->quanta_below(limit() - label.reduced - fronts_->onward(f));
         if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
         if (dominated(label, lost(l), most)) continue;
@@ -130,9 +132,9 @@ void FrontSearch::settle(int f) {
 
 /// Whether every walk on that uses none of the edges lost by some arc of the label has a detour above `most`.
 bool FrontSearch::detour_reaches_limit(int l, int most) const {
-    const int f = labels_[at(l)].front;
-    for (;; l = labels_[at(l)].before) {
-        const Label& label = labels_[at(l)];
+    const int f = label_at(l).front;
+    for (;; l = label_at(l).before) {
+        const Label& label = label_at(l);
         if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
         if (label.before >= 0) continue;
         const FrontGraph::Front& start = fronts_->front(label.front);
@@ -161,14 +163,13 @@ bool FrontSearch::dominated(const Label& label, const std::uint64_t* lost, int m
 }
 
 void FrontSearch::expand(int l) {
-    const Label label = labels_[at(l)];
+    const Label label = label_at(l);
     for (const FrontGraph::Step& step : fronts_->steps(label.front)) {
         const double reduced = label.reduced + fronts_->cost(step);
         if (!(reduced + fronts_->onward(step.to) < limit())) continue;
         if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
         Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
-        lost_.resize(lost_.size() + words_);
-        std::uint64_t* const lost_on = lost_.data() + lost_.size() - words_;
+        std::uint64_t* const lost_on = lost_.add();
         std::copy_n(lost(l), words_, lost_on);
         if (step.arc >= 0) take(step.arc, on, lost_on);
         wait(on);
@@ -179,15 +180,15 @@ void FrontSearch::expand(int l) {
 void FrontSearch::offer(int label) {
     const ResidualGraph& residual = fronts_->residual();
     chain_.clear();
-    for (int l = label; l >= 0; l = labels_[at(l)].before) chain_.push_back(l);
+    for (int l = label; l >= 0; l = label_at(l).before) chain_.push_back(l);
     std::ranges::reverse(chain_);
-    const FrontGraph::Front& start = fronts_->front(labels_[at(chain_.front())].front);
+    const FrontGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
     std::array<int, 2> last{start.moving, start.waiting};
     for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[at(last[leg])]);
     for (std::size_t k = 1; k < chain_.size(); ++k) {
-        const int arc = labels_[at(chain_[k])].arc;
+        const int arc = label_at(chain_[k]).arc;
         if (arc < 0) continue;
-        const std::size_t leg = last[0] == fronts_->front(labels_[at(chain_[k - 1])].front).moving ? 0 : 1;
+        const std::size_t leg = last[0] == fronts_->front(label_at(chain_[k - 1]).front).moving ? 0 : 1;
         last[leg] = arc;
         legs_[leg].push_back(residual.arc[at(arc)]);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/path_pair/block_rows.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/incumbent.hpp"
@@ -65,8 +66,10 @@ class FrontSearch {
     void offer(int label);
     /// With offset.
     [[nodiscard]] double limit() const;
-    [[nodiscard]] std::uint64_t* lost(int label) {
-        return lost_.data() + static_cast<std::size_t>(label) * words_;
+    [[nodiscard]] std::uint64_t* lost(int label) { return lost_.row(static_cast<std::size_t>(label)); }
+    [[nodiscard]] Label& label_at(int number) { return *labels_.row(static_cast<std::size_t>(number)); }
+    [[nodiscard]] const Label& label_at(int number) const {
+        return *labels_.row(static_cast<std::size_t>(number));
     }
 
     const ArcGraph* graph_ = nullptr;
@@ -82,8 +85,8 @@ class FrontSearch {
     bool is_narrow_ = false;  ///< the width left a label out
 
     std::size_t words_ = 0;
-    std::vector<Label> labels_;
-    std::vector<std::uint64_t> lost_;  ///< by label
+    BlockRows<Label> labels_;
+    BlockRows<std::uint64_t> lost_;    ///< by label
     std::vector<int> waiting_;         ///< by front, the label that came last
     std::vector<std::uint64_t> open_;  ///< fronts with labels that wait
     bool again_ = false;               ///< there is one before the front that is settled

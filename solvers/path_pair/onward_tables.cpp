@@ -38,6 +38,17 @@ bool OnwardTables::out_of_time(std::size_t work) {
     return is_stopped_;
 }
 
+/// So many times kTooMany; false, and fewer, where the time is up.
+bool OnwardTables::fill(std::vector<Quanta>& table, std::size_t count) {
+    table.clear();
+    table.reserve(count);
+    while (table.size() < count) {
+        if (out_of_time(kWorkPerClock)) return false;
+        table.resize(std::min(count, table.size() + kWorkPerClock), kTooMany);
+    }
+    return true;
+}
+
 Quanta OnwardTables::to_quanta(double cost) const {
     const double count = cost / quantum_;
     return count < kTooMany ? static_cast<Quanta>(std::max(0.0, count)) : kTooMany;
@@ -76,7 +87,7 @@ void OnwardTables::find(const FrontGraph& fronts, const EdgeSets& edges, double 
 
 void OnwardTables::find_regrets() {
     const std::size_t count = edge_count_;
-    regret_.assign(at(fronts_->size()) * count, kTooMany);
+    if (!fill(regret_, at(fronts_->size()) * count)) return;
     nothing_.assign(count, 0);
     changed_.assign(at(fronts_->size()), 0);
     bool again = true;
@@ -142,7 +153,7 @@ void OnwardTables::find_excluded() {
 
 void OnwardTables::find_detours() {
     const std::size_t count = arc_count_;
-    detour_.assign(at(fronts_->size()) * count, kTooMany);
+    if (!fill(detour_, at(fronts_->size()) * count)) return;
     nothing_.assign(count, 0);
     changed_.assign(at(fronts_->size()), 0);
     bool again = true;

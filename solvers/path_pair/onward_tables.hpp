@@ -46,6 +46,7 @@ class OnwardTables {
     [[nodiscard]] Quanta more(int front, const FrontGraph::Step& step) const;
     [[nodiscard]] Quanta to_quanta(double cost) const;
     bool out_of_time(std::size_t work);
+    bool fill(std::vector<Quanta>& table, std::size_t count);
     void find_regrets();
     void number_arcs();
     void find_excluded();

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/studies/timed_call.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+class Study;
+
+/// By how much methods and solvers overrun their time limits.
+[[nodiscard]] std::unique_ptr<Study> make_deadlines_study();
+
+struct DeadlineOptions {
+    std::vector<double> limits_ms{1.0, 5.0, 20.0, 50.0, 400.0};
+    std::size_t repeats = 1;           ///< of each scene under each limit
+    std::optional<std::size_t> limit;  ///< scenes at most, evenly spread; all where absent
+};
+
+/// Quantiles by nearest rank.
+struct OverrunStatistics {
+    double median_ms = 0.0;
+    double p99_ms = 0.0;
+    double p999_ms = 0.0;
+    double max_ms = 0.0;
+};
+/// Zeros where the sample is empty.
+[[nodiscard]] OverrunStatistics overrun_statistics(std::span<const double> overruns_ms);
+
+/// One method under one limit. Statistics are of the calls that were still running when the limit struck.
+struct DeadlineRow {
+    std::string method;
+    double limit_ms = 0.0;
+    std::size_t calls = 0;
+    std::size_t struck = 0;     ///< of these, those still running
+    OverrunStatistics wall;     ///< wall clock from the limit to the answer
+    OverrunStatistics cpu;      ///< the thread's processor time between the two: other programs do not count
+    std::string slowest_scene;  ///< of the largest overrun by processor time; empty where none was struck
+    std::size_t slowest_cones = 0;  ///< that it has
+};
+
+/// Method by method, in the order of the limits. Throws InvalidInput where there is no scene, or an answer is
+/// an error.
+[[nodiscard]] std::vector<DeadlineRow> deadline_rows(std::span<const AnnotatedScene> scenes,
+                                                     std::span<const TimedCall> calls,
+                                                     const DeadlineOptions& options);
+
+[[nodiscard]] std::string deadline_table(std::span<const DeadlineRow> rows);
+
+}  // namespace conelane::experiments

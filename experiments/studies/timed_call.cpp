@@ -1,0 +1,48 @@
+#include "experiments/studies/timed_call.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "conelane/solve_scene.hpp"
+#include "experiments/methods.hpp"
+#include "solvers/registry.hpp"
+
+#include <algorithm>
+#include <memory>
+
+namespace conelane::experiments {
+namespace {
+
+TimedCall call_of(const Method& method) {
+    const std::shared_ptr<LaneDetector> detector = make_detector(method);
+    return {std::string(method.name), [detector](const Scene& scene, double time_limit_ms) {
+                const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = time_limit_ms});
+                if (answer.status == LaneStatus::error) throw InvalidInput(scene.id, answer.message);
+            }};
+}
+
+TimedCall call_of(const RldSolverEntry& entry) {
+    const std::shared_ptr<RldSolver> solver = entry.make(Formulation::tight);
+    return {std::string(entry.name), [solver](const Scene& scene, double time_limit_ms) {
+                const RldReport report = solve_scene(*solver, scene, {}, {time_limit_ms}).report;
+                if (report.status == SolveStatus::error) throw InvalidInput(scene.id, report.message);
+            }};
+}
+
+}  // namespace
+
+std::vector<TimedCall> timed_calls(std::span<const std::string> names) {
+    std::vector<TimedCall> calls;
+    for (const std::string& name : names) {
+        const auto method = std::ranges::find(methods(), name, &Method::name);
+        const RldSolverEntry* const solver = find_rld_solver(name);
+        if (method != methods().end()) {
+            calls.push_back(call_of(*method));
+        } else if (solver != nullptr) {
+            calls.push_back(call_of(*solver));
+        } else {
+            throw InvalidInput("--methods", "there is no method and no solver '" + name + "'");
+        }
+    }
+    return calls;
+}
+
+}  // namespace conelane::experiments

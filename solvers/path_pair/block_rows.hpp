@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Rows of equal width that are added one by one. They stay where they are: where a vector of millions grows,
+/// it copies them all, which takes longer than a search may overrun its limit.
+template <typename T>
+class BlockRows {
+  public:
+    /// No rows; memory is kept.
+    void reset(std::size_t width) {
+        width_ = width = std::max<std::size_t>(width, 1);
+        size_ = 0;
+        // The same blocks for any width: a power of two of rows in each, and one where the rows are wide.
+        shift_ = 0;
+        while ((std::size_t{2} << shift_) * width <= kEntriesPerBlock) ++shift_;
+        const std::size_t entries = std::max(width, kEntriesPerBlock);
+        if (entries > block_entries_) blocks_.clear();
+        if (blocks_.empty()) block_entries_ = entries;
+    }
+    /// Returns the new row, which holds what was there before.
+    T* add() {
+        if (size_ >> shift_ == blocks_.size()) {
+            blocks_.push_back(std::make_unique_for_overwrite<T[]>(block_entries_));
+        }
+        return row(size_++);
+    }
+    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] T* row(std::size_t number) { return at(number); }
+    [[nodiscard]] const T* row(std::size_t number) const { return at(number); }
+
+  private:
+    static constexpr std::size_t kEntriesPerBlock = 1 << 14;
+
+    [[nodiscard]] T* at(std::size_t number) const {
+        return blocks_[number >> shift_].get() + (number & ((std::size_t{1} << shift_) - 1)) * width_;
+    }
+
+    std::size_t width_ = 1;
+    std::size_t size_ = 0;
+    unsigned shift_ = 0;             ///< rows of a block, as a power of two
+    std::size_t block_entries_ = 0;  ///< of the blocks that are there
+    std::vector<std::unique_ptr<T[]>> blocks_;
+};
+
+}  // namespace conelane::path_pair
