@@ -46,7 +46,7 @@ def places(random, count):
 
 def disguised(random, array):
     """The array in another type, shape or layout, or no array at all; most often as it is."""
-    if random.random() < 0.7:
+    if random.random() < 0.9:
         return array
     kind = random.integers(8)
     if kind == 0:
