@@ -130,7 +130,7 @@ inline RldParameters fuzzed_parameters(FuzzedDataProvider& input) {
     for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
         for (const RldParameterField& field : fields) {
             if (input.ConsumeIntegral<std::uint8_t>() < 224) continue;
-            const double highest = std::min(field.highest, 1e6);
+            const double highest = std::min(field.highest, 100.0);
             const double share = input.ConsumeProbability<double>();
             const double value = field.lowest + share * share * share * (highest - field.lowest);
             if (value > field.lowest || field.lowest_allowed) parameters.*field.value = value;

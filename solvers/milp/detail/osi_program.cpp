@@ -18,6 +18,17 @@ double coin_upper(double bound) {
     return bound >= kInfinity ? COIN_DBL_MAX : bound;
 }
 
+/// Clp ends the whole program where a cost is 1e25 or more, which cones as far apart as nowhere on Earth
+/// have.
+void require_costs_of_clp(const std::vector<double>& costs) {
+    constexpr double kLargestCost = 1e20;
+    for (const double cost : costs) {
+        if (!(std::abs(cost) <= kLargestCost)) {
+            throw std::range_error("a cost is beyond 1e20, more than the solver takes");
+        }
+    }
+}
+
 }  // namespace
 
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch) {
@@ -43,6 +54,7 @@ std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& prog
         costs[c] = program.columns[c].objective;
         if (program.columns[c].integer) integers.push_back(static_cast<int>(c));
     }
+    require_costs_of_clp(costs);
     std::vector<double> row_lower(rows), row_upper(rows);
     for (std::size_t r = 0; r < rows; ++r) {
         row_lower[r] = coin_lower(program.rows[r].lower);
