@@ -90,6 +90,15 @@ inline Cone fuzzed_cone(FuzzedDataProvider& input, const Point& position, std::s
     return cone;
 }
 
+/// Readers of tracks refuse what is farther from the origin. There the numbers of double stand 2e-9 m apart.
+constexpr double kFarthestMap_m = 1e7;
+
+inline bool is_on_a_map(const Scene& scene) {
+    const auto is_near = [](const Point& point) { return point.cwiseAbs().maxCoeff() <= kFarthestMap_m; };
+    return is_near(scene.pose.position) &&
+           std::ranges::all_of(scene.cones, [&](const Cone& cone) { return is_near(cone.position); });
+}
+
 /// A scene that `validate` takes, made of the bytes: a drawing of up to `most_cones` cones, turned with the
 /// car, scaled and moved away from the origin.
 inline Scene fuzzed_scene(FuzzedDataProvider& input, std::size_t most_cones) {
