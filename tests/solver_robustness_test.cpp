@@ -146,6 +146,19 @@ TEST_P(SolverRobustness, AllConesAtOnePlace) {
 }
 
 /// Nothing better than the start is found before the limit, so the start is the answer.
+/// The last cone's edges cost 10^29; the printed formulation lists them.
+TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrNotFelt) {
+    Scene scene = four_cones();
+    scene.cones.push_back({4, {1e15, 0.0}});
+    const LaneGraphProblem problem = problem_of(scene);
+    const RldReport report = solver->solve(problem, {});
+    if (report.status == SolveStatus::error) {
+        EXPECT_THAT(report.message, testing::HasSubstr("beyond"));
+        return;
+    }
+    expect_true(report, problem, make_path_pair_solver()->solve(make_problem(scene, {}), {}));
+}
+
 TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
     const RldReport report = solver->solve(problem_of(four_cones()), {0.0}, &kFourConesLane);
     EXPECT_EQ(report.status, SolveStatus::feasible) << report.message;

@@ -51,6 +51,8 @@ TEST(StepScoreFile, ErrorsNameTheirKey) {
     };
     EXPECT_EQ(key_of(json), "accepted");
     EXPECT_EQ(key_of("no JSON"), "scores");
+    const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+    EXPECT_EQ(key_of(R"({"training": )" + deep + "}"), "scores") << "no crash";
     EXPECT_EQ(key_of(with("\"version\": 1", "\"version\": 2")), "version");
     EXPECT_EQ(key_of(with("\"measures\"", "\"other\"")), "measures");
     EXPECT_EQ(key_of(with("\"width_m\"", "\"depth_m\"")), "measures.width_m");

@@ -20,7 +20,12 @@ const Json& member(const Json& object, const std::string& key, const std::string
 }
 
 Json parse_file(std::string_view json) {
-    Json file = Json::parse(json, nullptr, false);
+    constexpr int kDeepest = 100;  // `training` is written anew, which takes the stack's room for each level
+    const auto limit_depth = [](int depth, Json::parse_event_t /*event*/, const Json& /*value*/) {
+        if (depth > kDeepest) throw InvalidInput("scores", "are nested too deeply");
+        return true;
+    };
+    Json file = Json::parse(json, limit_depth, false);
     if (!file.is_object()) throw InvalidInput("scores", "must be a JSON object");
     const Json& version = member(file, "version", "version");
     if (!version.is_number_integer() || version.get<std::int64_t>() != kVersion) {

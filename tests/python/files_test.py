@@ -55,6 +55,12 @@ class Scenes(InFolder):
         with self.assertRaisesRegex(ValueError, "nowhere"):
             conelane.read_scenes(self.folder / "nowhere")
 
+    def test_a_fault_is_said_where_the_file_is_no_text(self):
+        file = self.folder / "bad.csv"
+        file.write_bytes(b"tag,x,y,direction\nblue,\xff,0,0\n")
+        with self.assertRaisesRegex(ValueError, r"bad\.csv:2: x: '\\xff' is not a number"):
+            conelane.load_tracks(f"eufs:{file}")
+
     def test_an_index_beyond_the_cones(self):
         with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is no index of the 7 cones"):
             conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))

@@ -26,7 +26,8 @@ void with_std_errors(Work&& work) {
 /// SIGINT from the program.
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
-/// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
+/// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending. Throws
+/// std::range_error where a cost is beyond 1e20.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);
 
 void append_rows(OsiSolverInterface& solver, std::span<const ProgramRow> rows);

@@ -1,0 +1,93 @@
+// The readers of what methods and solvers answered: lanes, lanes from outside, the log of an unfinished run,
+// solutions, and the solution files of other people's solvers. What is read can be written and read again.
+
+#include "conelane/formulation.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "experiments/comparison/lane_log.hpp"
+#include "experiments/files/lane_file.hpp"
+#include "experiments/files/solution_file.hpp"
+#include "model/lane_graph_model.hpp"
+#include "model/program_files.hpp"
+#include "tests/fuzz/expectations.hpp"
+#include "tests/fuzz/scratch_folder.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::fuzz {
+namespace {
+
+using experiments::LaneRecord;
+using experiments::SolutionRecord;
+
+void read_lanes(std::string_view bytes, const std::filesystem::path& file, const ScratchFolder& folder) {
+    answers([&] {
+        const std::vector<LaneRecord> records = experiments::read_lanes(file);
+        const auto again = folder.path() / "again.lanes.jsonl";
+        experiments::write_lanes(again, records);
+        require(experiments::read_lanes(again).size() == records.size(), "every lane is written");
+    });
+    answers([&] { (void)experiments::read_foreign_lanes(file); });
+    answers([&] { (void)experiments::read_foreign_lane(bytes); });
+    std::filesystem::remove(folder.path() / "log.lanes.jsonl");
+    (void)folder.write("log.lanes.jsonl.part", bytes);
+    answers([&] {
+        experiments::LaneLog log(folder.path() / "log.lanes.jsonl");
+        log.keep(log.stored() / 2);
+        log.append(std::vector<LaneRecord>(1));
+        log.finish();
+    });
+}
+
+void read_solutions(const std::filesystem::path& file, const ScratchFolder& folder) {
+    answers([&] {
+        const std::vector<SolutionRecord> records = experiments::read_solutions(file);
+        const auto again = folder.path() / "again.solutions.jsonl";
+        experiments::write_solutions(again, records);
+        require(experiments::read_solutions(again).size() == records.size(), "every solution is written");
+    });
+}
+
+/// The problem of two straight boundaries of three cones.
+LaneGraphProblem small_problem() {
+    Scene scene;
+    for (const double y : {1.75, -1.75}) {
+        for (const double x : {1.0, 4.2, 7.4}) {
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
+        }
+    }
+    return make_problem(scene, {});
+}
+
+void read_solution_of_a_program(std::string_view bytes) {
+    static const LaneGraphProblem problem = small_problem();
+    static const LaneGraphModel model(problem, Formulation::tight);
+    std::istringstream stream{std::string(bytes)};
+    answers([&] {
+        const SolutionFile solution = read_solution_file(stream, model.program());
+        require(solution.point.empty() || solution.point.size() == model.program().columns.size(),
+                "a point has a value for each column");
+        if (!solution.point.empty()) (void)model.decode(solution.point);
+    });
+}
+
+void read_all(std::string_view bytes) {
+    static const ScratchFolder folder;
+    const auto file = folder.write("input.jsonl", bytes);
+    read_lanes(bytes, file, folder);
+    read_solutions(file, folder);
+    read_solution_of_a_program(bytes);
+}
+
+}  // namespace
+}  // namespace conelane::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    return 0;
+}

@@ -1,0 +1,94 @@
+// Certificates of both kinds: the readers, and the verifiers on whatever was read. A verifier may accept no
+// bound above the optimum.
+
+#include "conelane/bound_certificate.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "experiments/checking/certificate_verifier.hpp"
+#include "experiments/files/certificate_file.hpp"
+#include "experiments/files/search_certificate_file.hpp"
+#include "tests/fuzz/expectations.hpp"
+#include "tests/fuzz/scratch_folder.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace conelane::fuzz {
+namespace {
+
+/// Two straight boundaries of three cones, of which the seeds in corpus/certificates are proofs. The optimum
+/// is both boundaries whole, at the cost -4.
+Scene straight_lane() {
+    Scene scene;
+    scene.id = "straight";
+    for (const double y : {1.75, -1.75}) {
+        for (const double x : {1.0, 4.2, 7.4}) {
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
+        }
+    }
+    return scene;
+}
+
+constexpr double kOptimum = -4.0;
+constexpr double kTolerance = 1e-5;
+
+/// The cones of `record` are 0 to 5, which are their indices too.
+std::optional<BoundCertificate> certificate_of(const experiments::CertificateRecord& record,
+                                               std::size_t cones) {
+    const auto known = [&](ConeId id) { return id >= 0 && static_cast<std::size_t>(id) < cones; };
+    BoundCertificate certificate{
+        std::vector<double>(cones, 0.0), {}, record.heading_multiplier, record.bound};
+    for (const auto& [id, multiplier] : record.cone_multipliers) {
+        if (!known(id)) return std::nullopt;
+        certificate.cone_multiplier[static_cast<std::size_t>(id)] += multiplier;
+    }
+    for (const auto& listed : record.cliques) {
+        auto& clique = certificate.cliques.emplace_back();
+        clique.multiplier = listed.multiplier;
+        for (const auto& [a, b] : listed.edges) {
+            if (!known(a) || !known(b)) return std::nullopt;
+            clique.edges.push_back(make_edge(static_cast<std::size_t>(a), static_cast<std::size_t>(b)));
+        }
+    }
+    return certificate;
+}
+
+void read_all(std::string_view bytes) {
+    static const ScratchFolder folder;
+    static const Scene scene = straight_lane();
+    const auto file = folder.write("input.certificates.jsonl", bytes);
+    (void)experiments::holds_search_certificates(file);
+    answers([&] {
+        for (const auto& record : experiments::read_certificates(file)) {
+            const auto certificate = certificate_of(record, scene.cones.size());
+            if (!certificate) continue;
+            const BoundVerdict verdict = verify_bound(scene, {}, *certificate);
+            require(!verdict.violations.empty() || record.bound <= kOptimum + kTolerance,
+                    "no bound above the optimum is proven");
+        }
+    });
+    answers([&] {
+        for (const auto& record : experiments::read_search_certificates(file)) {
+            ConeId missing{};
+            const auto certificate = experiments::from_search_record(scene, record, missing);
+            if (!certificate) continue;
+            constexpr std::int64_t kMostSteps = 10'000;
+            const auto verdict = experiments::verify_search(scene, {}, *certificate, kMostSteps);
+            if (verdict.kind == experiments::SearchVerdict::Kind::verified) {
+                require(certificate->bound <= kOptimum + kTolerance, "no bound above the optimum is proven");
+            } else {
+                require(!verdict.reason.empty(), "who refuses says why");
+            }
+        }
+    });
+}
+
+}  // namespace
+}  // namespace conelane::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    return 0;
+}

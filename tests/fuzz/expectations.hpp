@@ -1,0 +1,36 @@
+#pragma once
+
+#include "conelane/invalid_input.hpp"
+#include "experiments/files/input_error.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+namespace conelane::fuzz {
+
+/// Ends the program, which the fuzzer takes as a crash and keeps the input.
+inline void require(bool holds, std::string_view what) {
+    if (holds) return;
+    std::cerr << "broken promise: " << what << '\n';
+    std::abort();
+}
+
+/// Calls a reader, which may answer or refuse; what else it throws ends the program. True where it answered.
+template <typename Read>
+bool answers(const Read& read) {
+    std::string message;
+    try {
+        read();
+        return true;
+    } catch (const experiments::InputError& error) {
+        message = error.what();
+    } catch (const InvalidInput& error) {
+        message = error.what();
+    }
+    require(!message.empty(), "who refuses says why");
+    return false;
+}
+
+}  // namespace conelane::fuzz

@@ -1,0 +1,47 @@
+// The readers of weights: of `front`, of the network of `clc`, of step scores. What is read is valid and is
+// written as it was.
+
+#include "experiments/files/front_weights_file.hpp"
+#include "experiments/files/rank_net_file.hpp"
+#include "experiments/files/step_score_file.hpp"
+#include "tests/fuzz/expectations.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace conelane::fuzz {
+namespace {
+
+void read_all(std::string_view bytes) {
+    answers([&] {
+        const FrontWeights weights = experiments::parse_front_weights(bytes);
+        validate(weights);
+        require(experiments::parse_front_weights(experiments::front_weights_json(weights, "{}")) == weights,
+                "weights are read as they were written");
+    });
+    answers([&] {
+        const RankNetWeights weights = experiments::parse_rank_net(bytes);
+        (void)make_rank_net(weights);
+        const std::string json = experiments::rank_net_json(weights, "{}");
+        require(experiments::rank_net_json(experiments::parse_rank_net(json), "{}") == json,
+                "weights are read as they were written");
+    });
+    answers([&] {
+        const StepScores scores = experiments::parse_step_scores(bytes);
+        const std::string json =
+            experiments::step_scores_json(scores, experiments::step_scores_training(bytes));
+        require(experiments::step_scores_json(experiments::parse_step_scores(json),
+                                              experiments::step_scores_training(json)) == json,
+                "scores are read as they were written");
+    });
+}
+
+}  // namespace
+}  // namespace conelane::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    return 0;
+}
