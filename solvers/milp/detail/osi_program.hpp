@@ -26,8 +26,8 @@ void with_std_errors(Work&& work) {
 /// SIGINT from the program.
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
-/// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending. Throws
-/// std::range_error where a cost is beyond 1e20.
+/// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
+/// Throws std::runtime_error where a cost is 1e25 or more, which Clp would end the program for.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);
 
 void append_rows(OsiSolverInterface& solver, std::span<const ProgramRow> rows);
