@@ -480,6 +480,22 @@ TEST(FrontDetector, ADeadlineGivesTheBestLaneSoFar) {
     EXPECT_TRUE(cut_off);
 }
 
+/// Found by fuzzing: as float such a segment has no length, and its direction was no number.
+TEST(FrontDetector, TwoConesAllButAtOnePlaceAreNoSegment) {
+    Scene scene{.id = "nearly one place", .pose = {{0.0, 0.0}, 0.6}, .cones = {}};
+    scene.cones = {{1, {0.0, 0.0}},
+                   {2, {6.291347651660108, 2.476074458886653}},
+                   {3, {7.484855347926502e-63, -1.807003929336495e-62}},
+                   {4, {6.199503627892487, 2.697805546689361}}};
+    for (const double yaw : {0.0, 0.6, 1.2, -2.5}) {
+        scene.pose.yaw_rad = yaw;
+        const LaneAnswer answer =
+            make_front_detector(shipped_front_options())->detect(scene, tests::kNoTimeLimit);
+        ASSERT_NE(answer.status, LaneStatus::error) << answer.message;
+        if (answer.confidence) EXPECT_TRUE(std::isfinite(*answer.confidence)) << yaw;
+    }
+}
+
 TEST(FrontDetector, OptionsOutOfRangeAreNamed) {
     const auto key_of = [](auto change) -> std::string {
         FrontOptions options{FrontWeights::zero(), {}};

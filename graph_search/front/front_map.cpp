@@ -85,7 +85,10 @@ void FrontMap::find_edges(Vertex from) {
     for (Vertex to = first; to < last; ++to) {
         const Point way = positions_[to] - at;
         const double squared_m2 = way.squaredNorm();
-        if (squared_m2 == 0.0 || squared_m2 > kLongestSegment_m * kLongestSegment_m) continue;
+        // Shorter ones have no direction or, as float, no length: the two cones stand at one place.
+        constexpr double kOnePlace_m = 1e-9;
+        if (squared_m2 < kOnePlace_m * kOnePlace_m || squared_m2 > kLongestSegment_m * kLongestSegment_m)
+            continue;
         const double length_m = std::sqrt(squared_m2);
         found_.push_back({to, static_cast<float>(length_m), 0.0F, 0.0F, way / length_m});
     }
