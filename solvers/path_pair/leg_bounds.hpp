@@ -22,7 +22,7 @@ class LegBounds {
     /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
     /// gains from a cycle without end; `cycles` then holds the arcs of one or more, each followed by -1.
     /// `before`, the tree of the walks, may come in as it was left by a call for similar costs: the labels
-    /// start from its walks.
+    /// start from its walks. Precondition: where it has the graph's size, its entries are arcs of it or -1.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
                                std::span<const double> start, std::vector<double>& label,
                                std::vector<int>& before, std::vector<int>& cycles);
