@@ -8,6 +8,7 @@
 #include "solvers/registry.hpp"
 #include "tests/observed_clocks.hpp"
 #include "tests/random_scenes.hpp"
+#include "tests/slowness.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -26,14 +27,9 @@ namespace {
 
 using tests::clock_looks;
 using tests::forget_looks;
+using tests::kSlowness;
 
 constexpr double kLongLimit_ms = 60'000.0;
-
-#if defined(__SANITIZE_ADDRESS__) || !defined(__OPTIMIZE__)
-constexpr double kSlowness = 20.0;
-#else
-constexpr double kSlowness = 1.0;
-#endif
 
 TEST(Clocks, AreReplacedInThisProgram) {
     forget_looks();
