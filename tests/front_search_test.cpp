@@ -492,7 +492,7 @@ TEST(FrontDetector, TwoConesAllButAtOnePlaceAreNoSegment) {
         const LaneAnswer answer =
             make_front_detector(shipped_front_options())->detect(scene, tests::kNoTimeLimit);
         ASSERT_NE(answer.status, LaneStatus::error) << answer.message;
-        if (answer.confidence) EXPECT_TRUE(std::isfinite(*answer.confidence)) << yaw;
+        EXPECT_TRUE(std::isfinite(answer.confidence.value_or(0.0))) << yaw;
     }
 }
 
