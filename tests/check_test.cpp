@@ -1,6 +1,7 @@
 // The checker's rules one by one, on a lane that can be followed by hand.
 
 #include "conelane/check.hpp"
+#include "tests/six_cone_lane.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -18,22 +19,9 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using tests::six_cone_lane;
 
 constexpr double kRounding = 1e-9;
-
-/// Two straight boundaries of three cones, 3.2 m apart along them, which is expected, and 3.5 m across. 0, 1,
-/// 3 and 4 are near the car at the origin, 2 and 5 are far. The right boundary may be moved ahead.
-///     0 ----- 1 ----- 2
-/// car >
-///     3 ----- 4 ----- 5
-Scene straight_lane(double right_ahead_m = 0.0) {
-    Scene scene;
-    for (const double x : {1.0, 4.2, 7.4})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, 1.75}});
-    for (const double x : {1.0, 4.2, 7.4})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x + right_ahead_m, -1.75}});
-    return scene;
-}
 
 void add_cone(Scene& scene, const Point& position) {
     scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
@@ -52,7 +40,7 @@ double objective(const Scene& scene, const RldParameters& parameters, const Lane
 
 /// All of its four edges are as long and as straight as expected and lie along the heading.
 TEST(Check, AcceptsTheStraightLane) {
-    const CheckReport report = check(straight_lane(), {}, kLane);
+    const CheckReport report = check(six_cone_lane(), {}, kLane);
     EXPECT_THAT(report.violations, IsEmpty());
     EXPECT_FALSE(report.is_final);
     EXPECT_EQ(report.along_heading, 4U);
@@ -60,7 +48,7 @@ TEST(Check, AcceptsTheStraightLane) {
 }
 
 TEST(Check, NoConeHasThreeEdges) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     add_cone(scene, {4.2, 4.95});
     const CheckReport report = check(scene, {}, {{{0, 1}, {1, 2}, {1, 6}, {3, 4}, {4, 5}}});
     EXPECT_THAT(report.violations, Contains(HasSubstr("(2) cone 1 has degree 3")));
@@ -68,7 +56,7 @@ TEST(Check, NoConeHasThreeEdges) {
 }
 
 TEST(Check, FourEndpointsOfWhichTwoAreNear) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     add_cone(scene, {20.0, 1.75});
     add_cone(scene, {23.2, 1.75});
     EXPECT_THAT(violations(scene, {}, {{{0, 1}, {1, 2}, {3, 4}, {4, 5}, {6, 7}}}),
@@ -77,21 +65,21 @@ TEST(Check, FourEndpointsOfWhichTwoAreNear) {
 
     RldParameters parameters;
     parameters.d_near = 1.0;
-    EXPECT_THAT(violations(straight_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 0 near")));
     parameters.d_near = 8.0;
-    EXPECT_THAT(violations(straight_lane(), parameters), Contains(HasSubstr("(11) 4 near")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(11) 4 near")));
 }
 
 TEST(Check, FarEndsMayBeExactlyDMaxApart) {
     RldParameters parameters;
     parameters.d_max = 3.5;
-    EXPECT_THAT(violations(straight_lane(), parameters), IsEmpty());
+    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
     parameters.d_max = 3.4;
-    EXPECT_THAT(violations(straight_lane(), parameters), Contains(HasSubstr("(17)")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(17)")));
 }
 
 TEST(Check, NoPathGoesRound) {
-    const CheckReport report = check(straight_lane(), {}, {{{0, 1}, {0, 3}, {1, 4}, {3, 4}}});
+    const CheckReport report = check(six_cone_lane(), {}, {{{0, 1}, {0, 3}, {1, 4}, {3, 4}}});
     EXPECT_THAT(report.violations, Contains(HasSubstr("(5) a cycle through cone 0")));
     EXPECT_TRUE(report.is_final);
 }
@@ -99,20 +87,20 @@ TEST(Check, NoPathGoesRound) {
 /// One path joins the near cones 0 and 3, the other one the far cones 2 and 5.
 TEST(Check, ThePairingSaysWhichEndsAPathMayHave) {
     const LaneGraph across{{{0, 3}, {2, 5}}};
-    EXPECT_THAT(violations(straight_lane(), {}, across), Contains(HasSubstr("joins both near endpoints")));
+    EXPECT_THAT(violations(six_cone_lane(), {}, across), Contains(HasSubstr("joins both near endpoints")));
     RldParameters parameters;
     parameters.pairing = Pairing::paper;
-    EXPECT_THAT(violations(straight_lane(), parameters, across), Each(Not(HasSubstr("joins both"))));
+    EXPECT_THAT(violations(six_cone_lane(), parameters, across), Each(Not(HasSubstr("joins both"))));
 }
 
 /// 1.6 m ahead, the cones of one boundary stand beside the middles of the other one's edges.
 TEST(Check, BoundariesKeepTheirDistanceButWhereTwoConesFaceEachOther) {
     RldParameters parameters;
     parameters.d_min = 3.5;
-    EXPECT_THAT(violations(straight_lane(1.6), parameters), IsEmpty());
+    EXPECT_THAT(violations(six_cone_lane(1.6), parameters), IsEmpty());
     parameters.d_min = 3.6;
-    EXPECT_THAT(violations(straight_lane(1.6), parameters), Contains(HasSubstr("(6)")));
-    EXPECT_THAT(violations(straight_lane(), parameters), IsEmpty());
+    EXPECT_THAT(violations(six_cone_lane(1.6), parameters), Contains(HasSubstr("(6)")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
 }
 
 /// {1, 5} and {2, 4} cross in (5.8, 0); their ends are more than 2 m from each other.
@@ -120,21 +108,21 @@ TEST(Check, EdgesThatCrossAreAtNoDistance) {
     const LaneGraph crossing{{{1, 5}, {2, 4}}};
     RldParameters parameters;
     parameters.d_min = 1.0;
-    EXPECT_THAT(violations(straight_lane(), parameters, crossing), Contains(HasSubstr("(6)")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Contains(HasSubstr("(6)")));
     parameters.d_min = 0.0;
-    EXPECT_THAT(violations(straight_lane(), parameters, crossing), Each(Not(HasSubstr("cross"))));
+    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Each(Not(HasSubstr("cross"))));
     parameters.forbid_crossing = true;
-    EXPECT_THAT(violations(straight_lane(), parameters, crossing), Contains(HasSubstr("crossing:")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Contains(HasSubstr("crossing:")));
 }
 
 TEST(Check, LimitsOfSpacingAndAngle) {
     RldParameters parameters;
     parameters.d_e = 5.2;  // the cost of each edge is (2 / 1.7)^4 = 1.9
-    EXPECT_THAT(violations(straight_lane(), parameters), IsEmpty());
+    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
     parameters.s_crit = 1.0;
-    EXPECT_THAT(violations(straight_lane(), parameters), Contains(HasSubstr("(27) edge {0, 1}")));
+    EXPECT_THAT(violations(six_cone_lane(), parameters), Contains(HasSubstr("(27) edge {0, 1}")));
 
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     add_cone(scene, {4.2, 4.95});  // a square corner costs (pi / 2 / 0.9)^4 = 9.3
     EXPECT_THAT(violations(scene, {}, {{{0, 1}, {1, 6}}}), Contains(HasSubstr("(28) the angle at cone 1")));
 
@@ -144,7 +132,7 @@ TEST(Check, LimitsOfSpacingAndAngle) {
 
 /// An edge counts in (9) where it is near the car and along its heading.
 TEST(Check, TwoEdgesAlongTheHeading) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     add_cone(scene, {20.0, 1.75});
     add_cone(scene, {23.2, 1.75});
     EXPECT_EQ(check(scene, {}, {{{6, 7}}}).along_heading, 0U) << "far from the car";
@@ -153,20 +141,20 @@ TEST(Check, TwoEdgesAlongTheHeading) {
 
     RldParameters parameters;
     parameters.d_h = 2.1;  // 0 and 3 are 2.02 m away
-    EXPECT_THAT(violations(straight_lane(), parameters), IsEmpty());
-    scene = straight_lane();
+    EXPECT_THAT(violations(six_cone_lane(), parameters), IsEmpty());
+    scene = six_cone_lane();
     scene.pose.position = {0.0, 1.0};
     EXPECT_THAT(violations(scene, parameters), Contains(HasSubstr("(9) 1 edges")));
 }
 
 TEST(Check, AnEdgeOverTheCarCostsAsIfItWereHalfAMetreAway) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.pose = {{2.6, 1.75}, std::numbers::pi / 2.0};
     EXPECT_NEAR(objective(scene, {}, {{{0, 1}}}), 1.2 * std::pow(3.2 / 0.5, 4) - 1.0, 1e-6);
 }
 
 TEST(Check, ConfidencesOfBothConesScaleTheBenefit) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones[0].confidence = 0.5;
     scene.cones[1].confidence = 0.4;
     RldParameters parameters;
@@ -179,14 +167,14 @@ TEST(Check, ConfidencesOfBothConesScaleTheBenefit) {
 TEST(Check, NearEndsBesideTheCarEarnABenefit) {
     RldParameters parameters;
     parameters.w_n = 0.5;
-    EXPECT_NEAR(objective(straight_lane(), parameters), -4.0 - 2.0 * 0.5 * (1.0 - std::pow(0.05 / 1.7, 2)),
+    EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0 - 2.0 * 0.5 * (1.0 - std::pow(0.05 / 1.7, 2)),
                 kRounding);
     parameters.d_w = 10.0;  // they are far off: no benefit, and no cost either
-    EXPECT_NEAR(objective(straight_lane(), parameters), -4.0, kRounding);
+    EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0, kRounding);
 }
 
 TEST(Check, UnevenSpacingCosts) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones[2].position.x() += 1.0;
     const double spacing = 0.4 * std::pow(1.0 / 1.7, 4);
     RldParameters parameters;
@@ -197,7 +185,7 @@ TEST(Check, UnevenSpacingCosts) {
 
 TEST(CheckClaim, IsHeldAgainstWhatIsRecomputed) {
     const auto claimed = [](const Claim& claim) {
-        return check(straight_lane(), {}, kLane, claim).violations;
+        return check(six_cone_lane(), {}, kLane, claim).violations;
     };
     EXPECT_THAT(claimed({true, -4.0, -4.0}), IsEmpty());
     EXPECT_THAT(claimed({false, -4.0, {}}), IsEmpty());

@@ -1,6 +1,7 @@
 // The numbers that a scene becomes, on a lane that can be followed by hand.
 
 #include "conelane/lane_graph_problem.hpp"
+#include "tests/six_cone_lane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,22 +16,9 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
+using tests::six_cone_lane;
 
 constexpr double kRounding = 1e-9;
-
-/// Two straight boundaries of three cones, 3.2 m apart along them, which is expected, and 3.5 m across. 0, 1,
-/// 3 and 4 are near the car at the origin, 2 and 5 are far. The right boundary may be moved ahead.
-///     0 ----- 1 ----- 2
-/// car >
-///     3 ----- 4 ----- 5
-Scene straight_lane(double right_ahead_m = 0.0) {
-    Scene scene;
-    for (const double x : {1.0, 4.2, 7.4})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, 1.75}});
-    for (const double x : {1.0, 4.2, 7.4})
-        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x + right_ahead_m, -1.75}});
-    return scene;
-}
 
 const LaneGraph kLane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
 
@@ -56,7 +44,7 @@ bool in_conflict(const LaneGraphProblem& problem, const Edge& a = {0, 1}, const 
 }
 
 TEST(LaneGraphProblem, EdgesCostWhatTheyAreOffTheExpected) {
-    const LaneGraphProblem problem = make_problem(straight_lane(), {});
+    const LaneGraphProblem problem = make_problem(six_cone_lane(), {});
     const ProblemEdge& along = edge(problem, 0, 1);
     EXPECT_NEAR(along.spacing_cost, 0.0, kRounding);
     EXPECT_NEAR(along.heading_cost, 0.0, kRounding);
@@ -72,13 +60,13 @@ TEST(LaneGraphProblem, EdgesCostWhatTheyAreOffTheExpected) {
 }
 
 TEST(LaneGraphProblem, AnEdgeOverTheCarCostsAsIfItWereHalfAMetreAway) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.pose = {{2.6, 1.75}, std::numbers::pi / 2.0};
     EXPECT_NEAR(edge(make_problem(scene, {}), 0, 1).heading_cost, std::pow(3.2 / 0.5, 4), 1e-6);
 }
 
 TEST(LaneGraphProblem, ConfidencesOfBothConesScaleTheBenefit) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones[0].confidence = 0.5;
     scene.cones[1].confidence = 0.4;
     RldParameters parameters;
@@ -92,17 +80,17 @@ TEST(LaneGraphProblem, ConfidencesOfBothConesScaleTheBenefit) {
 TEST(LaneGraphProblem, WhatIsOnALimitIsWithinIt) {
     RldParameters parameters;
     parameters.d_h = parameters.d_near = 4.55;
-    const LaneGraphProblem problem = make_problem(straight_lane(), parameters);
+    const LaneGraphProblem problem = make_problem(six_cone_lane(), parameters);
     EXPECT_TRUE(edge(problem, 1, 2).along_heading);
     EXPECT_THAT(problem.near, ElementsAre(true, true, false, true, true, false));
     parameters.d_h = parameters.d_near = 4.54;
-    const LaneGraphProblem smaller = make_problem(straight_lane(), parameters);
+    const LaneGraphProblem smaller = make_problem(six_cone_lane(), parameters);
     EXPECT_FALSE(edge(smaller, 1, 2).along_heading);
     EXPECT_THAT(smaller.near, ElementsAre(true, false, false, true, false, false));
 }
 
 TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones.push_back({6, scene.cones[0].position});
     RldParameters parameters;
     parameters.d_e = 1.0;  // a length of 0 would be as good as one of 2 m
@@ -114,22 +102,22 @@ TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
 TEST(LaneGraphProblem, EdgesConflictThatAreTooCloseButWhereTwoConesFaceEachOther) {
     RldParameters parameters;
     parameters.d_min = 3.5;
-    EXPECT_FALSE(in_conflict(make_problem(straight_lane(1.6), parameters)));
+    EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));
     parameters.d_min = 3.6;
-    EXPECT_TRUE(in_conflict(make_problem(straight_lane(1.6), parameters)));
-    EXPECT_FALSE(in_conflict(make_problem(straight_lane(), parameters)));
+    EXPECT_TRUE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));
+    EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(), parameters)));
 }
 
 TEST(LaneGraphProblem, CrossingsConflictWhereTheyAreForbidden) {
     RldParameters parameters;
     parameters.d_min = 0.0;
-    EXPECT_FALSE(in_conflict(make_problem(straight_lane(), parameters), {1, 5}, {2, 4}));
+    EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(), parameters), {1, 5}, {2, 4}));
     parameters.forbid_crossing = true;
-    EXPECT_TRUE(in_conflict(make_problem(straight_lane(), parameters), {1, 5}, {2, 4}));
+    EXPECT_TRUE(in_conflict(make_problem(six_cone_lane(), parameters), {1, 5}, {2, 4}));
 }
 
 TEST(LaneGraphProblem, TurnsCostTheirAngleAndTheSharpestAreForbidden) {
-    const LaneGraphProblem problem = make_problem(straight_lane(), {});
+    const LaneGraphProblem problem = make_problem(six_cone_lane(), {});
     EXPECT_NEAR(turn(problem, 0, 1, 2).cost, 0.0, kRounding);
     EXPECT_FALSE(turn(problem, 0, 1, 2).high_cost);
     const ProblemTurn& corner = turn(problem, 0, 1, 4);
@@ -143,7 +131,7 @@ TEST(LaneGraphProblem, TurnsCostTheirAngleAndTheSharpestAreForbidden) {
 TEST(LaneGraphProblem, NearEndsBesideTheCarEarnABenefit) {
     RldParameters parameters;
     parameters.w_n = 0.5;
-    const LaneGraphProblem problem = make_problem(straight_lane(), parameters);
+    const LaneGraphProblem problem = make_problem(six_cone_lane(), parameters);
     const double fit = 1.0 - std::pow(0.05 / 1.7, 2);
     EXPECT_NEAR(edge(problem, 0, 1).cost, -1.0 - 0.5 * (fit + fit), kRounding);
     EXPECT_NEAR(edge(problem, 1, 2).cost, -1.0 - 0.5 * fit, kRounding);
@@ -152,7 +140,7 @@ TEST(LaneGraphProblem, NearEndsBesideTheCarEarnABenefit) {
 }
 
 TEST(LaneGraphProblem, UnevenSpacingCosts) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones[2].position.x() += 1.0;
     RldParameters parameters;
     parameters.w_u = 2.0;
@@ -162,14 +150,14 @@ TEST(LaneGraphProblem, UnevenSpacingCosts) {
 TEST(LaneGraphProblem, OnlyFarConesAreTooFarApart) {
     RldParameters parameters;
     parameters.d_max = 3.5;
-    EXPECT_THAT(make_problem(straight_lane(), parameters).far_apart, IsEmpty());
+    EXPECT_THAT(make_problem(six_cone_lane(), parameters).far_apart, IsEmpty());
     parameters.d_max = 3.4;
-    EXPECT_THAT(make_problem(straight_lane(), parameters).far_apart, ElementsAre(Pair(2, 5)));
+    EXPECT_THAT(make_problem(six_cone_lane(), parameters).far_apart, ElementsAre(Pair(2, 5)));
 }
 
 /// A turn is paid for where both its edges are chosen.
 TEST(LaneGraphProblem, TheObjectiveCountsTurnsThatAreTaken) {
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     scene.cones[2].position = {4.2 + 3.2 * std::cos(0.45), 1.75 + 3.2 * std::sin(0.45)};
     const LaneGraphProblem problem = make_problem(scene, {});
     const double both = edge(problem, 0, 1).cost + edge(problem, 1, 2).cost;
@@ -178,24 +166,24 @@ TEST(LaneGraphProblem, TheObjectiveCountsTurnsThatAreTaken) {
 }
 
 TEST(IsFeasible, ByEachOfItsRules) {
-    EXPECT_TRUE(is_feasible(make_problem(straight_lane(), {}), kLane));
+    EXPECT_TRUE(is_feasible(make_problem(six_cone_lane(), {}), kLane));
 
     RldParameters parameters;
     parameters.d_h = 2.1;
-    Scene scene = straight_lane();
+    Scene scene = six_cone_lane();
     EXPECT_TRUE(is_feasible(make_problem(scene, parameters), kLane));
     scene.pose.position = {0.0, 1.0};
     EXPECT_FALSE(is_feasible(make_problem(scene, parameters), kLane)) << "one edge along the heading";
 
-    const LaneGraphProblem all_pairs = make_problem(straight_lane(), {}, EdgeExtent::all_pairs);
+    const LaneGraphProblem all_pairs = make_problem(six_cone_lane(), {}, EdgeExtent::all_pairs);
     EXPECT_FALSE(is_feasible(all_pairs, {{{0, 2}, {3, 4}, {4, 5}}})) << "an edge that is too long";
 
     parameters = {};
     parameters.d_min = 3.6;
-    EXPECT_FALSE(is_feasible(make_problem(straight_lane(1.6), parameters), kLane)) << "too narrow";
+    EXPECT_FALSE(is_feasible(make_problem(six_cone_lane(1.6), parameters), kLane)) << "too narrow";
 
     parameters = {};
-    scene = straight_lane();
+    scene = six_cone_lane();
     scene.cones[2].position.y() += 1.0;
     EXPECT_TRUE(is_feasible(make_problem(scene, parameters), kLane));
     parameters.t_crit = 1e-6;
@@ -203,7 +191,7 @@ TEST(IsFeasible, ByEachOfItsRules) {
 
     parameters = {};
     parameters.d_max = 3.4;
-    EXPECT_FALSE(is_feasible(make_problem(straight_lane(), parameters), kLane)) << "far ends too far apart";
+    EXPECT_FALSE(is_feasible(make_problem(six_cone_lane(), parameters), kLane)) << "far ends too far apart";
 }
 
 /// One path between the near ends, one between the far ones. Both lie across the heading, which here is no
@@ -213,9 +201,9 @@ TEST(IsFeasible, ThePairingSaysWhichEndsAPathMayHave) {
     parameters.theta_heading = std::numbers::pi / 2.0;
     parameters.d_h = 10.0;
     const LaneGraph across{{{0, 3}, {2, 5}}};
-    EXPECT_FALSE(is_feasible(make_problem(straight_lane(), parameters), across));
+    EXPECT_FALSE(is_feasible(make_problem(six_cone_lane(), parameters), across));
     parameters.pairing = Pairing::paper;
-    EXPECT_TRUE(is_feasible(make_problem(straight_lane(), parameters), across));
+    EXPECT_TRUE(is_feasible(make_problem(six_cone_lane(), parameters), across));
 }
 
 }  // namespace
