@@ -1,6 +1,7 @@
 // The checker's rules one by one, on a lane that can be followed by hand.
 
 #include "conelane/check.hpp"
+
 #include "tests/six_cone_lane.hpp"
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // The numbers that a scene becomes, on a lane that can be followed by hand.
 
 #include "conelane/lane_graph_problem.hpp"
+
 #include "tests/six_cone_lane.hpp"
 
 #include <algorithm>
