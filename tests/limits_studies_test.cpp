@@ -102,11 +102,13 @@ TEST(Memory, DoesNotGrowWithTheCallsOfAMethod) {
     scene_options.every_m = 60.0;
     const SceneSet set = make_scene_set({"generated:kidney"}, scene_options);
     MemoryOptions options;
-    options.calls = 200;
+    options.calls = 2000;
     const auto calls = timed_calls(std::vector<std::string>{"front", "clc", "path-pair"});
     for (const MemoryRow& row : memory_rows(set.scenes, calls, options)) {
         SCOPED_TRACE(row.method);
-        EXPECT_EQ(row.end.heap_bytes, row.middle.heap_bytes);
+        // The smallest block kept by every fourth call would be more than the blocks that the allocator holds
+        // back, which come and go.
+        EXPECT_LT(row.end.heap_bytes, row.middle.heap_bytes + 8 * (row.end.calls - row.middle.calls));
     }
 }
 

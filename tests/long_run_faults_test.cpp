@@ -180,14 +180,17 @@ class KilledSolve : public LongRun, public testing::WithParamInterface<const cha
 // In the middle of a solver: the old solutions stay until the new ones are whole.
 TEST_P(KilledSolve, LeavesTheOldSolutions) {
     ASSERT_EQ(run("scenes --tracks generated:kidney --every 2 --fp 0.3 --out s.scenes.jsonl").exit_code, 0);
-    file_with("old\n", "s.solutions.jsonl");
     const std::string solve = "solve --scenes s.scenes.jsonl --nearest 24 --time-limit 60000 --solver " +
                               std::string(GetParam()) + " --out s.solutions.jsonl";
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(run(solve).exit_code, 0);
+    const auto whole = std::chrono::steady_clock::now() - begin;
     int killed = 0;
     for (const int signal : {SIGKILL, SIGINT}) {
-        for (const int after_ms : {40, 90, 150}) {
+        for (const int part : {2, 4, 6}) {
+            file_with("old\n", "s.solutions.jsonl");
             const Started started = start(solve);
-            std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+            std::this_thread::sleep_for(whole * part / 10);
             if (!end_by(started, signal)) continue;
             ++killed;
             EXPECT_EQ(text_of(path("s.solutions.jsonl")), "old\n");
