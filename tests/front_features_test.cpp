@@ -191,6 +191,25 @@ TEST(FrontFeatures, OfAStartAreThoseOfItsPair) {
     EXPECT_NEAR(of_left("own_predecessor"), std::atan2(1.8, 0.5), kRounding);
 }
 
+/// A false cone far from all others does not widen the view; one that a segment could lead to does.
+TEST(FrontMap, TheViewReachesToTheFarthestConeThatIsNotAlone) {
+    Scene scene = tests::straight_front_scene(3);
+    FrontMap map;
+    map.build(scene);
+    const double reach_m = map.view_radius_m();
+    EXPECT_GT(reach_m, 10.0);
+    EXPECT_LT(reach_m, 15.0);
+    scene.cones.push_back({100, {-400.0, 700.0}});
+    map.build(scene);
+    EXPECT_EQ(map.view_radius_m(), reach_m);
+    scene.cones.push_back({101, {-400.0, 711.0}});
+    map.build(scene);
+    EXPECT_NEAR(map.view_radius_m(), std::hypot(400.0, 711.0), 1e-9);
+    scene.cones = {{1, {30.0, 1.0}}, {2, {0.0, -40.0}}};
+    map.build(scene);
+    EXPECT_NEAR(map.view_radius_m(), 40.0, 1e-9) << "where all are alone, the farthest of them";
+}
+
 /// A score is the network's of what is seen, of a start the sum over both boundaries.
 TEST(FrontCost, ScoresAreOfWhatIsSeen) {
     const FrontWeights weights = tests::random_front_weights(4);

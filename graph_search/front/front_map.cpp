@@ -54,14 +54,32 @@ void FrontMap::build(const Scene& scene) {
         return std::tuple(positions_[a].x(), positions_[a].y(), scene.cones[a].id) <
                std::tuple(positions_[b].x(), positions_[b].y(), scene.cones[b].id);
     });
-    view_radius_m_ = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        positions_[i] = in_car_frame(order_[i]);
-        view_radius_m_ = std::max(view_radius_m_, positions_[i].norm());
-    }
+    for (std::size_t i = 0; i < count; ++i) positions_[i] = in_car_frame(order_[i]);
+    find_view_radius();
     places_.assign(count, {0, kNotAsked});
     used_ = 0;
     left_out_edges_ = false;
+}
+
+void FrontMap::find_view_radius() {
+    view_radius_m_ = 0.0;
+    double farthest_m = 0.0;
+    for (Vertex cone = 0; cone < positions_.size(); ++cone) {
+        const double distance_m = positions_[cone].norm();
+        farthest_m = std::max(farthest_m, distance_m);
+        if (distance_m > view_radius_m_ && !is_alone(cone)) view_radius_m_ = distance_m;
+    }
+    if (view_radius_m_ == 0.0) view_radius_m_ = farthest_m;
+}
+
+bool FrontMap::is_alone(Vertex cone) const {
+    const Point& at = positions_[cone];
+    const auto [first, last] = ahead_between(at.x() - kLongestSegment_m, at.x() + kLongestSegment_m);
+    for (Vertex other = first; other < last; ++other) {
+        if (other != cone && (positions_[other] - at).squaredNorm() <= kLongestSegment_m * kLongestSegment_m)
+            return false;
+    }
+    return true;
 }
 
 std::pair<Vertex, Vertex> FrontMap::ahead_between(double low_m, double high_m) const {

@@ -77,7 +77,9 @@ class FrontMap {
     [[nodiscard]] std::size_t scene_index(Vertex cone) const { return order_[cone]; }
     /// Cones with x in [low, high] are those from the first to the second.
     [[nodiscard]] std::pair<Vertex, Vertex> ahead_between(double low_m, double high_m) const;
-    /// Distance of the farthest cone from the car: about as far as the car sees.
+    /// Distance from the car of the farthest cone that some segment could lead to: about as far as the car
+    /// sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one where all
+    /// are alone.
     [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
 
     /// The ways from a cone of at most kLongestSegment_m, the shortest first. Cones at the same place are not
@@ -103,6 +105,8 @@ class FrontMap {
         return &blocks_[place / kEdgesPerBlock][place % kEdgesPerBlock];
     }
     void find_edges(Vertex from);
+    void find_view_radius();
+    [[nodiscard]] bool is_alone(Vertex cone) const;
     void look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about);
 
     std::vector<Point> positions_;
