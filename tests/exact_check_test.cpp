@@ -6,6 +6,7 @@
 #include "experiments/checking/exact_program.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
+#include "tests/program_fixture.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <algorithm>
@@ -184,6 +185,32 @@ TEST(ExactLaneGraph, AnEdgeThatTheProgramDoesNotHaveIsRefused) {
         return;
     }
     FAIL() << "every pair is an edge";
+}
+
+using CheckExactly = ProgramFixture;
+
+// An objective that is off by less than the checker allows doubles, yet by more than they round.
+TEST_F(CheckExactly, TheCommandSeesWhatTheCheckerLetsPass) {
+    ASSERT_EQ(run("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl").exit_code, 0);
+    ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
+    const std::string check = "check --scenes s.scenes.jsonl --solutions ";
+    const Outcome honest = run(check + "s.solutions.jsonl --exact");
+    EXPECT_EQ(honest.exit_code, 0) << honest.output;
+    EXPECT_THAT(honest.output, testing::HasSubstr("4 lane graphs in rational arithmetic"));
+    EXPECT_THAT(honest.output, testing::HasSubstr("4 passed, 0 failed"));
+
+    std::string forged = text_of(path("s.solutions.jsonl"));
+    const std::string key = "\"objective\":";
+    const std::size_t value = forged.find(key) + key.size();
+    const std::size_t end = forged.find(',', value);
+    const double objective = std::stod(forged.substr(value, end - value));
+    forged.replace(value, end - value, std::to_string(std::round(objective * 1e6) / 1e6));
+    file_with(forged, "forged.solutions.jsonl");
+    EXPECT_EQ(run(check + "forged.solutions.jsonl").exit_code, 0);
+    const Outcome forgery = run(check + "forged.solutions.jsonl --exact");
+    EXPECT_EQ(forgery.exit_code, 1);
+    EXPECT_THAT(forgery.output, testing::HasSubstr("in rational arithmetic the objective is"));
+    EXPECT_THAT(forgery.output, testing::HasSubstr("3 passed, 1 failed"));
 }
 
 }  // namespace
