@@ -1,8 +1,12 @@
 #include "model/geometry.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <vector>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 #include <gtest/gtest.h>
 
 namespace conelane {
@@ -57,6 +61,41 @@ TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveNone) {
     const SegmentDistance overlap = segment_distance({{0, 0}, {4, 0}}, {{1, 0}, {9, 0}});
     EXPECT_DOUBLE_EQ(overlap.distance_m, 0.0);
     EXPECT_FALSE(overlap.between_ends);
+}
+
+// Of two that have no point in common it is the smallest distance of an end from the other segment.
+TEST(SegmentDistance, IsThatOfTheNearestEndsFootPoint) {
+    boost::random::mt19937_64 random(1);
+    boost::random::uniform_int_distribution<int> grid(-6, 6);  // touching, parallel and without length, too
+    boost::random::uniform_real_distribution<double> anywhere(-6.0, 6.0);
+    int apart = 0;
+    int between_ends = 0;
+    for (int k = 0; k < 20'000; ++k) {
+        const auto point = [&] {
+            return k % 2 == 0 ? Point(grid(random), grid(random)) : Point(anywhere(random), anywhere(random));
+        };
+        const Segment a{point(), point()};
+        const Segment b{point(), point()};
+        const SegmentDistance found = segment_distance(a, b);
+        const SegmentDistance swapped = segment_distance({b.to, b.from}, a);
+        EXPECT_NEAR(swapped.distance_m, found.distance_m, 1e-14);
+        EXPECT_EQ(swapped.between_ends, found.between_ends);
+        const double ends_m = std::min(
+            {(a.from - b.from).norm(), (a.from - b.to).norm(), (a.to - b.from).norm(), (a.to - b.to).norm()});
+        EXPECT_EQ(found.between_ends, ends_m <= found.distance_m + kTieTolerance);
+        if (segments_intersect(a, b)) {
+            EXPECT_EQ(found.distance_m, 0.0);
+            continue;
+        }
+        EXPECT_NEAR(found.distance_m,
+                    std::min({foot_point(a.from, b).distance_m, foot_point(a.to, b).distance_m,
+                              foot_point(b.from, a).distance_m, foot_point(b.to, a).distance_m}),
+                    1e-14);
+        ++apart;
+        between_ends += found.between_ends ? 1 : 0;
+    }
+    EXPECT_GT(apart, 5000);
+    EXPECT_GT(between_ends, 1000);
 }
 
 TEST(Crossing, IsProperOnly) {
