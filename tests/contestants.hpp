@@ -2,6 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "solvers/registry.hpp"
+#include "tests/print_status.hpp"
 
 #include <ostream>
 #include <vector>
@@ -13,7 +14,7 @@ struct Contestant {
     const RldSolverEntry* entry;
     Formulation formulation;
     friend void PrintTo(const Contestant& c, std::ostream* out) {
-        *out << c.entry->name << to_string(c.formulation);
+        *out << c.entry->name << ' ' << to_string(c.formulation);
     }
 };
 

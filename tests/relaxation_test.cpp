@@ -2,9 +2,10 @@
 // accepts, never better than the optimum and never worse than their own bound.
 
 #include "conelane/check.hpp"
+#include "conelane/relaxation_solvers.hpp"
 #include "solvers/path_pair_solver.hpp"
-#include "solvers/registry.hpp"
 #include "solvers/relaxation/edge_relaxation.hpp"
+#include "tests/print_status.hpp"
 #include "tests/random_scenes.hpp"
 
 #include <memory>
@@ -15,14 +16,6 @@
 
 namespace conelane {
 namespace {
-
-std::vector<const RldSolverEntry*> heuristics() {
-    std::vector<const RldSolverEntry*> result;
-    for (const RldSolverEntry& entry : rld_solvers()) {
-        if (!entry.exact) result.push_back(&entry);
-    }
-    return result;
-}
 
 TEST(EdgeRelaxation, GradientAndHessianAreThoseOfTheObjective) {
     const EdgeRelaxation relaxation(make_problem(tests::random_scene(3, 10), {}));
@@ -89,12 +82,12 @@ TEST(EdgeRelaxation, HoldsTheOptimumWithItsObjective) {
 }
 
 TEST(Relaxations, AnswerLaneGraphsBetweenBoundAndOptimumAndClaimNoOptimality) {
-    ASSERT_FALSE(heuristics().empty());
-    for (const RldSolverEntry* entry : heuristics()) {
-        const std::unique_ptr<RldSolver> solver = entry->make(Formulation::tight);
+    ASSERT_FALSE(relaxation_solvers().empty());
+    for (const RldSolverEntry& entry : relaxation_solvers()) {
+        const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
         int found = 0;
         for (std::uint64_t seed = 0; seed < 30; ++seed) {
-            SCOPED_TRACE(std::string(entry->name) + ", seed " + std::to_string(seed));
+            SCOPED_TRACE(std::string(entry.name) + ", seed " + std::to_string(seed));
             const Scene scene = tests::random_scene(seed, 12);
             const LaneGraphProblem problem = make_problem(scene, {});
             const RldReport best = make_path_pair_solver()->solve(problem, {});
@@ -109,7 +102,7 @@ TEST(Relaxations, AnswerLaneGraphsBetweenBoundAndOptimumAndClaimNoOptimality) {
             EXPECT_GE(*report.objective, *best.objective - 1e-9);
             EXPECT_LE(*report.bound, *best.objective + 1e-6);
         }
-        EXPECT_GT(found, 5) << entry->name;
+        EXPECT_GT(found, 5) << entry.name;
     }
 }
 
@@ -123,22 +116,40 @@ TEST(Relaxations, FindTheOnlyLane) {
         }
     }
     const LaneGraph lane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
-    for (const RldSolverEntry* entry : heuristics()) {
-        const RldReport report = entry->make(Formulation::tight)->solve(make_problem(scene, {}), {});
-        ASSERT_EQ(report.status, SolveStatus::feasible) << entry->name << ": " << report.message;
-        EXPECT_EQ(report.lane_graph, lane) << entry->name;
-        EXPECT_NEAR(*report.objective, -4.0, 1e-9) << entry->name;
-        EXPECT_NEAR(*report.bound, -4.0, 1e-6) << entry->name;
+    for (const RldSolverEntry& entry : relaxation_solvers()) {
+        const RldReport report = entry.make(Formulation::tight)->solve(make_problem(scene, {}), {});
+        ASSERT_EQ(report.status, SolveStatus::feasible) << entry.name << ": " << report.message;
+        EXPECT_EQ(report.lane_graph, lane) << entry.name;
+        EXPECT_NEAR(*report.objective, -4.0, 1e-9) << entry.name;
+        EXPECT_NEAR(*report.bound, -4.0, 1e-6) << entry.name;
+    }
+}
+
+/// The linear relaxation proves it; other heuristics need not.
+TEST(Relaxations, ProveThatTooFewConesHaveNoLane) {
+    Scene too_few;
+    for (const Point& position : {Point(4, 1.5), Point(7.2, 1.5), Point(4, -1.5)}) {
+        too_few.cones.push_back({static_cast<ConeId>(too_few.cones.size()), position});
+    }
+    Scene one_place;
+    for (ConeId id = 0; id < 8; ++id) one_place.cones.push_back({id, {5, 1}});
+    for (const RldSolverEntry& entry : relaxation_solvers()) {
+        const std::unique_ptr<RldSolver> solver = entry.make(Formulation::tight);
+        for (const Scene& scene : {Scene{}, too_few, one_place}) {
+            const RldReport report = solver->solve(make_problem(scene, {}), {});
+            EXPECT_EQ(report.status, SolveStatus::infeasible)
+                << entry.name << ", " << scene.cones.size() << " cones: " << report.message;
+        }
     }
 }
 
 TEST(Relaxations, StopAtTheTimeLimit) {
-    for (const RldSolverEntry* entry : heuristics()) {
+    for (const RldSolverEntry& entry : relaxation_solvers()) {
         const LaneGraphProblem problem = make_problem(tests::random_scene(1, 16), {});
         SolveLimits limits;
         limits.time_limit_ms = 0.0;
-        EXPECT_EQ(entry->make(Formulation::tight)->solve(problem, limits).status, SolveStatus::stopped)
-            << entry->name;
+        EXPECT_EQ(entry.make(Formulation::tight)->solve(problem, limits).status, SolveStatus::stopped)
+            << entry.name;
     }
 }
 

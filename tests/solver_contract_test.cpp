@@ -23,7 +23,7 @@ namespace {
 
 using tests::Contestant;
 
-/// Those that prove their optimum; the others are in relaxation_test.
+/// Those that prove their optimum; what is asked of all is in solver_robustness_test.
 std::vector<Contestant> exact_contestants() {
     std::vector<Contestant> all = tests::contestants();
     std::erase_if(all, [](const Contestant& contestant) { return !contestant.entry->exact; });
