@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -52,6 +53,21 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
             "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
+}
+
+// Centre lines are 25 m long: of poses that are 40 m apart nobody can say whether they agree.
+TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
+    for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {
+        SCOPED_TRACE(every);
+        const std::string folder = std::string("every_") + every;
+        ASSERT_EQ(run("compare --tracks generated:straight --methods clc --fp 0 --every " +
+                      std::string(every) + " --out " + folder)
+                      .exit_code,
+                  0);
+        const std::vector<nlohmann::json> rows = results_in(path(folder));
+        ASSERT_EQ(rows.size(), 1U);
+        EXPECT_EQ(rows[0].contains("unsteady_share"), is_known) << rows[0];
+    }
 }
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
