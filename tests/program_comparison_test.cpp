@@ -65,8 +65,8 @@ TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
                       .exit_code,
                   0);
         const std::vector<nlohmann::json> rows = results_in(path(folder));
-        ASSERT_EQ(rows.size(), 1U);
-        EXPECT_EQ(rows[0].contains("unsteady_share"), is_known) << rows[0];
+        ASSERT_FALSE(rows.empty());
+        for (const nlohmann::json& row : rows) EXPECT_EQ(row.contains("unsteady_share"), is_known) << row;
     }
 }
 
