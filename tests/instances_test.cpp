@@ -6,6 +6,7 @@
 #include "solvers/path_pair_solver.hpp"
 #include "tests/contestants.hpp"
 #include "tests/program_fixture.hpp"
+#include "tests/slowness.hpp"
 
 #include <array>
 #include <cmath>
@@ -122,7 +123,8 @@ TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
         if (known == stored.end()) continue;
         SCOPED_TRACE(set.name);
         EXPECT_EQ(known->second.mark, "=best=");
-        const RldReport report = solve_scene(*solver, set.scene, options.parameters, {50.0}).report;
+        const RldReport report =
+            solve_scene(*solver, set.scene, options.parameters, {50.0 * tests::kSlowness}).report;
         ASSERT_NE(report.status, SolveStatus::error) << report.message;
         ASSERT_NE(report.status, SolveStatus::infeasible);
         EXPECT_LE(report.bound.value(), known->second.value + kSameObjective);

@@ -123,6 +123,10 @@ std::string note_on_errors(std::span<const ScoredRecord> scored, const std::stri
     return fmt::format("    {} of {} answers are errors, the first to {}\n", errors, answers, first);
 }
 
+double travel_m(const AnnotatedScene& from, const AnnotatedScene& to) {
+    return (to.scene.pose.position - from.scene.pose.position).norm();
+}
+
 }  // namespace
 
 std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
@@ -215,7 +219,8 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
         if (!truths[i]->counts) continue;
         if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
             records[i].nearest == records[i - 1].nearest &&
-            same_lap(*truths[i - 1]->scene, *truths[i]->scene)) {
+            same_lap(*truths[i - 1]->scene, *truths[i]->scene) &&
+            travel_m(*truths[i - 1]->scene, *truths[i]->scene) < kCentreLineLength_m) {
             all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
         all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);

@@ -11,6 +11,8 @@ namespace conelane::experiments {
 
 /// The stretch of a centre line over which lateral errors are taken [m].
 inline constexpr double kCentreLineStretch_m = 20.0;
+/// How long centre lines are [m]: poses that are farther apart have nothing in common.
+inline constexpr double kCentreLineLength_m = kCentreLineStretch_m + 5.0;
 /// Where the heading error is taken [m].
 inline constexpr double kHeadingAt_m = 10.0;
 /// The stretch over which the centre lines of consecutive poses are compared [m].
@@ -29,11 +31,11 @@ using CentreLine = std::vector<CentreLinePoint>;
 /// The centre line of a lane as a car would drive it (see `drivable`), the first `length_m` of it. Empty
 /// where the lane cannot be driven, and where a boundary is empty: what is inferred is not scored.
 [[nodiscard]] CentreLine centre_line_of(const LaneOutline& lane, const Pose& pose,
-                                        double length_m = kCentreLineStretch_m + 5.0);
+                                        double length_m = kCentreLineLength_m);
 
 /// The same from a polyline: resampled, from the foot point of the car on.
 [[nodiscard]] CentreLine centre_line_of(std::span<const Point> polyline, const Pose& pose,
-                                        double length_m = kCentreLineStretch_m + 5.0);
+                                        double length_m = kCentreLineLength_m);
 
 /// How far a lane's centre line is from the true one.
 struct CentreLineError {

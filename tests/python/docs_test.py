@@ -92,7 +92,7 @@ class Pages(unittest.TestCase):
     """The ```python blocks of a page run one after the other, in a folder of their own, as a reader would run them."""
 
     def run_page(self, page):
-        text = (SOURCES / "docs" / page).read_text(encoding="utf-8")
+        text = (SOURCES / page).read_text(encoding="utf-8")
         blocks = [(match.start(), match.group(1)) for match in re.finditer(r"^```python\n(.*?)^```", text, re.M | re.S)]
         names = {"__name__": page}
         before = os.getcwd()
@@ -110,14 +110,19 @@ class Pages(unittest.TestCase):
         import matplotlib
 
         matplotlib.use("Agg")
-        names, blocks = self.run_page("python.md")
+        names, blocks = self.run_page("docs/python.md")
         self.assertGreater(blocks, 5)
         # What the tutorial promises of its own numbers.
         self.assertTrue(all(len(line) for line in names["lines"]))
         self.assertGreater(names["usable_share"], 0.9)
 
+    def test_readme(self):
+        names, blocks = self.run_page("README.md")
+        self.assertEqual(blocks, 1)
+        self.assertEqual(names["lane"].left.tolist(), [1, 3, 5])
+
     def test_messages_page(self):
-        _, blocks = self.run_page("messages.md")
+        _, blocks = self.run_page("docs/messages.md")
         self.assertGreater(blocks, 0)
 
 
