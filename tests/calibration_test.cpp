@@ -56,12 +56,13 @@ TEST(Calibration, TrustHoldsUpToTheDivergence) {
     Calibration calibration;
     calibration.add_trust(18.0, 20.0, std::nullopt);  // never wrong
     calibration.add_trust(18.0, 20.0, 18.0);          // wrong beyond
-    calibration.add_trust(18.0, 20.0, 17.9);          // wrong within
-    EXPECT_DOUBLE_EQ(*calibration.right_where_trusted(), 2.0 / 3.0);
+    calibration.add_trust(18.0, 20.0, 18.1);
+    calibration.add_trust(18.0, 20.0, 17.9);  // wrong within
+    EXPECT_DOUBLE_EQ(*calibration.right_where_trusted(), 0.75);
     EXPECT_DOUBLE_EQ(*calibration.trusted_share(), 0.9);
     // No more than the lane is trusted.
     calibration.add_trust(100.0, 20.0, std::nullopt);
-    EXPECT_DOUBLE_EQ(*calibration.trusted_share(), (3 * 18.0 + 20.0) / 80.0);
+    EXPECT_DOUBLE_EQ(*calibration.trusted_share(), (4 * 18.0 + 20.0) / 100.0);
 }
 
 }  // namespace

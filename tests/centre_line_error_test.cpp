@@ -54,6 +54,17 @@ TEST(CentreLineError, TakesTheHeadingAtTenMetres) {
     EXPECT_NEAR(error.lateral_m[20], 10.0 * std::sin(turn_rad), 0.02);
 }
 
+TEST(CentreLineError, TheTrueHeadingTurnsEvenlyBetweenTwoPoints) {
+    CentreLine truth;
+    CentreLine lane;  // a quarter of a step further on, and turning five times as fast
+    for (int i = 0; i < 30; ++i) {
+        truth.push_back({{0.5 * i, 0.0}, 0.02 * i});
+        lane.push_back({{0.5 * i + 0.125, 0.0}, 0.1 * i});
+    }
+    const CentreLineError error = centre_line_error(lane, truth);
+    EXPECT_NEAR(error.heading_rad.value(), 0.1 * 20 - 0.02 * 20.25, 1e-9) << "point 20 is at 10 m";
+}
+
 TEST(CentreLineError, CountsOnlyWhatBothCover) {
     const CentreLine truth = centre_line_of(straight(0, 0, 8), kCar);
     const CentreLineError error = centre_line_error(centre_line_of(straight(0, 0, 40), kCar), truth);

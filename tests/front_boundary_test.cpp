@@ -104,6 +104,27 @@ TEST(FrontBoundary, BridgesAMissedConeFromTheThirdOn) {
     expect_boundary(scene_of(cones), kRight);
 }
 
+/// The cone at 11.3 m is too near the one before it to go on to, and stands in the way of the bridge.
+TEST(FrontBoundary, BridgesNothingOverACone) {
+    std::vector<Point> cones;
+    for (const double x : {1.0, 5.4, 9.8, 17.8, 22.2, 26.6}) cones.emplace_back(x, -1.8);
+    expect_boundary(scene_of(cones), kRight);
+    cones.emplace_back(11.3, -1.8);
+    EXPECT_EQ(search(scene_of(cones)).value().cones, (std::vector<ConeId>{0, 1, 2}));
+}
+
+/// Along y = 1.8, once round a circle to the left, and down across the beginning between the cones 2 and 3.
+TEST(FrontBoundary, EndsBeforeItCrossesItself) {
+    std::vector<Point> cones;
+    for (const double x : {1.0, 4.0, 7.0, 10.0, 13.0}) cones.emplace_back(x, 1.8);
+    for (int i = 1; i <= 7; ++i)
+        cones.emplace_back(13.0 + 4.7 * std::sin(0.66 * i), 6.5 - 4.7 * std::cos(0.66 * i));
+    const auto last = static_cast<ConeId>(cones.size()) - 1;
+    for (const double y : {3.3, 0.2, -2.8, -5.8, -8.8}) cones.emplace_back(8.4, y);
+    const std::vector<ConeId> boundary = search(scene_of(cones)).value().cones;
+    EXPECT_EQ(boundary.back(), last + 1);
+}
+
 TEST(FrontBoundary, LeavesAsideWhatIsOffIt) {
     std::vector<Point> cones;
     for (int i = 0; i < 7; ++i) cones.emplace_back(1.0 + 4.0 * i, 1.8);

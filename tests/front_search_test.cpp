@@ -138,6 +138,40 @@ TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
     EXPECT_GT(lanes, 1000U) << "scenes without lanes show little";
 }
 
+TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontSearchOptions options = exhaustive();
+    options.beam_width = 2;
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(4), cost, options);
+    SearchBudget unlimited;
+    std::size_t full = 0;
+    while (search.advance(unlimited)) {
+        EXPECT_LE(search.level().size(), 2U);
+        if (search.level().size() == 2) ++full;
+    }
+    EXPECT_GT(full, 3U);
+    EXPECT_TRUE(search.left_out());
+}
+
+/// The margin of the best move is over the second one, that of any other under the best.
+TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(3), cost, exhaustive());
+    SearchBudget unlimited;
+    search.run(unlimited);
+    std::map<std::size_t, int> best_moves;
+    for (std::size_t n = 0; n < search.nodes(); ++n) {
+        const FrontSearch::Node& node = search.node(n);
+        if (node.parent != FrontSearch::kNone && node.margin > 0.0F) ++best_moves[node.parent];
+    }
+    EXPECT_GT(best_moves.size(), 10U);
+    for (const auto& [state, moves] : best_moves) EXPECT_EQ(moves, 1) << state;
+}
+
 // States with the same front are merged although their pasts differ, and a beam drops what lies behind: so it
 // may miss the best lane, but never finds a better one.
 TEST(FrontSearch, TheBeamIsNeverBetterAndMostlyAsGood) {
@@ -368,6 +402,14 @@ Scene hairpin(double radius_m) {
     add(0, -1.7, 2.5);
     add(100, 1.7, 3.0);
     return scene;
+}
+
+/// A lane knows its cones by their numbers, which only repeat from 256 on.
+TEST(FrontDetector, FollowsAStraightOfManyCones) {
+    const Scene scene = straight_front_scene(70);
+    const LaneAnswer answer = detect(scene);
+    EXPECT_EQ(answer.lane.left.size(), 70U);
+    EXPECT_EQ(answer.lane.right.size(), 70U);
 }
 
 TEST(FrontDetector, DrivesAHairpin) {

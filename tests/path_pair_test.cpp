@@ -612,6 +612,10 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
                 EXPECT_THAT(verify_bound(scene, parameters, higher).violations, testing::SizeIs(1));
                 ++bounded;
             }
+            RldParameters other_pairing = parameters;
+            other_pairing.pairing = Pairing::paper;
+            EXPECT_THAT(verify_bound(scene, other_pairing, certificate).violations,
+                        testing::Contains(testing::HasSubstr("pairing")));
             for (const BoundCertificate::Clique& clique : certificate.cliques) {
                 // An edge does not exclude itself.
                 BoundCertificate wrong = certificate;

@@ -132,6 +132,18 @@ TEST(ScoreTable, ShowsWhatIsUnknownAsUnknown) {
     EXPECT_THAT(table, HasSubstr("34.5")) << "without a rate of its own, all published ones";
 }
 
+TEST(ScoreTable, EachLatencyStandsBelowItsName) {
+    std::vector<KeyedScore> scores;
+    for (int i = 1; i <= 100; ++i) {  // one of 100 takes 150 ms instead of 100 ms
+        scores.push_back(keyed("clc", 0.3, 30, Category::ground_truth, 1.0));
+        scores.back().score.latency_ms = i == 100 ? 150.0 : i;
+    }
+    const auto words = words_of_lines(score_table(summarise_by_key(scores)))[1];
+    ASSERT_EQ(words.size(), 26u);
+    EXPECT_THAT(std::vector(words.end() - 5, words.end()),
+                testing::ElementsAre("50.50", "51.00", "95.00", "99.00", "150.00"));
+}
+
 TEST(ScoreTable, TellsErrorsFromScenesWithoutALane) {
     KeyedScore failed = keyed("clc", 0.5, 30, Category::none, 0.0);
     failed.score.error = true;

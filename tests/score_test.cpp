@@ -355,6 +355,7 @@ TEST(Summary, KeepsFailuresInEveryMean) {
     EXPECT_THAT(summary.category_share, testing::ElementsAre(0.25, 0.5, 0.0, 0.0, 0.25, 0.0));
     EXPECT_DOUBLE_EQ(summary.share(Category::too_short), 0.25);
     EXPECT_DOUBLE_EQ(summary.success_share, 0.75);
+    EXPECT_DOUBLE_EQ(summary.usable_share.value(), 2.0 / 3.0) << "of the last scene it is unknown";
     EXPECT_NEAR(summary.mean_iou.value(), (1.0 + 2.0 / 3.0 + 0.0 + 1.0) / 4.0, 1e-12);
     EXPECT_EQ(summary.accuracy_scenes, 3u);
     EXPECT_DOUBLE_EQ(summary.accurate_share.value(), 1.0 / 3.0);
@@ -364,6 +365,25 @@ TEST(Summary, KeepsFailuresInEveryMean) {
     EXPECT_DOUBLE_EQ(summary.best_candidate_near_share.value(), 0.5);
     EXPECT_DOUBLE_EQ(summary.latency.median_ms, 25.0);
     EXPECT_DOUBLE_EQ(summary.latency.share_within_budget, 0.75);
+}
+
+/// Twenty scenes: 5 points of the centre line in each, off by 1 cm more from one to the next, and a heading
+/// that is off by 1 mrad more from scene to scene.
+TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
+    std::vector<SceneScore> scores(20);
+    for (int i = 0; i < 20; ++i) {
+        CentreLineError error;
+        for (int k = 1; k <= 5; ++k) error.lateral_m.push_back(0.01F * static_cast<float>(5 * i + k));
+        error.heading_rad = 0.001 * (i + 1);
+        scores[i].centre_line_error = error;
+        if (i > 0) scores[i].steady = i % 4 != 0;  // not at 4, 8, 12 and 16
+    }
+    const ScoreSummary summary = summarise(scores);
+    EXPECT_NEAR(summary.lateral_median_m.value(), 0.505, 1e-6);
+    EXPECT_NEAR(summary.lateral_p95_m.value(), 0.95, 1e-6);
+    EXPECT_NEAR(summary.heading_median_rad.value(), 0.0105, 1e-9);
+    EXPECT_NEAR(summary.heading_p95_rad.value(), 0.019, 1e-9);
+    EXPECT_NEAR(summary.unsteady_share.value(), 4.0 / 19.0, 1e-12);
 }
 
 TEST(Summary, LeavesOutWhatNoMethodStates) {

@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -36,10 +37,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 ///     0 ----- 1 ----- 2
 /// car >
 ///     3 ----- 4 ----- 5        2 and 5 are far
-Scene straight_lane() {
+Scene straight_lane(double half_width_m = 1.75) {
     Scene scene;
     scene.id = "straight";
-    for (const double y : {1.75, -1.75}) {
+    for (const double y : {half_width_m, -half_width_m}) {
         for (const double x : {1.0, 4.2, 7.4}) {
             scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
         }
@@ -78,8 +79,113 @@ TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
                                              << (SearchCertificate::kFractionBits - 1);
     const SearchVerdict verdict = verify(certificate, straight_lane());
     EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
-    EXPECT_GT(verdict.steps, 0);
+    EXPECT_GE(verdict.steps, 8) << "four fronts lie on the way, with a label at each";
     EXPECT_EQ(verify(certificate, straight_lane(), {}, verdict.steps - 1).kind, Kind::unverified);
+}
+
+/// Multipliers of 1/2^`bits` on some cones and on the heading; no lane graph, and the bound that they prove.
+SearchCertificate priced_proof(std::size_t cones, const std::vector<std::size_t>& priced, int bits,
+                               double bound) {
+    SearchCertificate certificate;
+    certificate.bound = bound - 1e-9;
+    SearchCertificate::Stage stage{std::vector<SearchCertificate::Units>(cones, 0), {}, 0};
+    for (const std::size_t cone : priced)
+        stage.cone[cone] = SearchCertificate::Units{1} << (SearchCertificate::kFractionBits - bits);
+    certificate.parts.push_back({std::nullopt, {}, {stage}});
+    return certificate;
+}
+
+/// All cones are passed once by the cheapest walks, which pay for it what the multiplier gives back.
+TEST(SearchCertificate, AMultiplierOfAConeThatIsPassedOnceChangesNoBound) {
+    for (std::size_t cone = 0; cone < 6; ++cone) {
+        SCOPED_TRACE(cone);
+        const SearchVerdict verdict = verify(priced_proof(6, {cone}, 2, -4.0), straight_lane());
+        EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+        EXPECT_EQ(verdict.steps, 0);
+    }
+}
+
+/// Two edges along the heading are asked for. Where the cheapest walks have just two, a multiplier on them
+/// gives back what it takes.
+TEST(SearchCertificate, AMultiplierOfTheHeadingIsForTwoEdges) {
+    Scene scene = straight_lane();
+    std::erase_if(scene.cones, [](const Cone& cone) { return cone.position.x() > 5.0; });
+    RldParameters parameters;
+    parameters.d_near = 4.0;  // 0 and 3 are near
+    SearchCertificate certificate = priced_proof(4, {}, 0, -2.0);
+    certificate.parts[0].stages[0].heading = SearchCertificate::Units{1}
+                                             << (SearchCertificate::kFractionBits - 1);
+    const SearchVerdict verdict = verify(certificate, scene, parameters);
+    EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+    EXPECT_EQ(verdict.steps, 0);
+}
+
+/// The left boundary goes on for a cone 6, which is 4.4 m from the far end of the right one.
+TEST(SearchCertificate, TheBoundIsOfWalksWhoseEndsMayGoTogether) {
+    Scene scene = straight_lane(1.5);
+    scene.cones.push_back({6, {10.6, 1.5}});
+    RldParameters parameters;
+    parameters.d_max = 3.1;  // 2 and 5 only
+    const SearchVerdict verdict = verify(priced_proof(7, {}, 0, -4.0), scene, parameters);
+    EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+    EXPECT_EQ(verdict.steps, 0);
+    parameters.d_max = 5.0;
+    EXPECT_THAT(verify(priced_proof(7, {}, 0, -4.0), scene, parameters).reason, HasSubstr("costs less"));
+    EXPECT_EQ(verify(priced_proof(7, {}, 0, -5.0), scene, parameters).kind, Kind::verified);
+}
+
+/// Twelve cones on a circle that the car drives along. Each edge gains nearly 1, so a walk gains with each
+/// round: there is no bound. With the multiplier 2 on each cone no round gains.
+TEST(SearchCertificate, AWalkThatGainsWithEachRoundProvesNothing) {
+    Scene scene;
+    for (int i = 0; i < 12; ++i) {
+        const double angle_rad = (0.5 + i) * std::numbers::pi / 6.0;
+        scene.cones.push_back({i, Point(0.0, 6.2) + 6.2 * Point(std::sin(angle_rad), -std::cos(angle_rad))});
+    }
+    const std::vector<std::size_t> all{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    const SearchVerdict free = verify(priced_proof(12, {}, 0, -1000.0), scene);
+    EXPECT_EQ(free.kind, Kind::refused);
+    EXPECT_THAT(free.reason, HasSubstr("cycle"));
+    const SearchVerdict priced = verify(priced_proof(12, all, -1, -1000.0), scene);
+    EXPECT_EQ(priced.kind, Kind::verified) << priced.reason;
+}
+
+/// Both ways ahead lead through the cone 2, and only one leg may.
+///      0       3
+/// car >    2
+///      1       4
+TEST(SearchCertificate, LegsDoNotMeetAtACone) {
+    Scene scene;
+    for (const Point& position :
+         {Point(1.2, 2.3), Point(1.2, -2.3), Point(3.5, 0.0), Point(5.8, 2.3), Point(5.8, -2.3)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    RldParameters parameters;
+    parameters.s_crit = 0.1;   // only the edges of 3.25 m to and from the cone 2
+    parameters.t_crit = 10.0;  // and turns by a right angle
+    ASSERT_EQ(make_exact_scene(scene, parameters).edges.size(), 4U);
+    const SearchVerdict verdict = verify(priced_proof(5, {}, 0, kInfinity), scene, parameters);
+    EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+}
+
+/// One leg joins the near cones 2 and 3, the other one the far cones 0 and 1. The multipliers are 0, so all
+/// is left to the enumeration of the second part.
+///     2 ----- 3
+/// car >                        0 ----- 1
+TEST(SearchCertificate, WithThePairingOfThePaperALegMayJoinFarCones) {
+    Scene scene;
+    for (const Point& position : {Point(11.0, -1.75), Point(14.2, -1.75), Point(1.0, 1.75), Point(4.2, 1.75)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    RldParameters parameters;
+    parameters.d_h = 20.0;  // all edges are along the heading
+    parameters.pairing = Pairing::paper;
+    SearchCertificate certificate = priced_proof(4, {}, 0, -2.0);
+    certificate.parts.push_back(certificate.parts.front());
+    certificate.parts.back().far_start = 0;
+    EXPECT_EQ(verify(certificate, scene, parameters).kind, Kind::verified);
+    certificate.bound = -1.9;
+    EXPECT_THAT(verify(certificate, scene, parameters).reason, HasSubstr("far leg from cone 0"));
+    certificate.parts.pop_back();
+    EXPECT_THAT(verify(certificate, scene, parameters).reason, HasSubstr("missing"));
 }
 
 /// Costs are whole numbers of 2^-60, at most two units below.
@@ -275,6 +381,26 @@ TEST(SearchCertificate, OfPathPairIsVerifiedAndNothingElseIs) {
     EXPECT_GT(optima, 50);
     EXPECT_GT(infeasible, 3);
     EXPECT_GT(worse, 20);
+}
+
+/// The multiplier 1/2 on each cone leaves most of the proof to the enumeration. It finds the best lane graph
+/// below any bound that is too high, and none below one that is not.
+TEST(SearchCertificate, TheEnumerationProvesWhatWeakMultipliersDoNot) {
+    int enumerated = 0;
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = tests::random_scene(seed, 10);
+        const SearchCertificate best = certify_search(make_problem(scene, {}));
+        if (!best.lane_graph) continue;
+        SearchCertificate weak = priced_proof(10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, 1, *best.objective);
+        const SearchVerdict right = verify(weak, scene);
+        if (right.reason.find("cycle") != std::string::npos) continue;
+        EXPECT_EQ(right.kind, Kind::verified) << right.reason;
+        if (right.steps > 0) ++enumerated;
+        weak.bound = *best.objective + 1e-6;
+        EXPECT_THAT(verify(weak, scene).reason, HasSubstr("costs less"));
+    }
+    EXPECT_GT(enumerated, 50);
 }
 
 /// A search that is stopped has proven a bound, and its certificate claims no more.
