@@ -225,12 +225,23 @@ TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
 
 TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
     ASSERT_EQ(run(compare("rld-cbc", "whole")).exit_code, 0);
-    const Started first = start(compare("rld-cbc", "shared"));
     const fs::path part = path("shared/rld-cbc.n014.lanes.jsonl.part");
-    ASSERT_TRUE(wait_until(first, [&] { return fs::exists(part); }));
+    // The first one is held in the middle of its work; where it was done too early, another one.
+    Started first;
+    siginfo_t state{};
+    for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
+        if (attempt > 0) (void)wait_for(first);
+        first = start(compare("rld-cbc", "shared") + " --overwrite");
+        wait_until(first, [&] { return fs::exists(part); });
+        ::kill(-first.process, SIGSTOP);
+        const auto process = static_cast<id_t>(first.process);
+        ASSERT_EQ(::waitid(P_PID, process, &state, WSTOPPED | WEXITED | WNOWAIT), 0);
+    }
+    ASSERT_EQ(state.si_code, CLD_STOPPED) << "it was always done too early";
     const Outcome second = run(compare("clc", "shared") + " --overwrite");
     EXPECT_EQ(second.exit_code, 2);
     EXPECT_EQ(second.errors, "conelane: shared: another conelane is writing there\n");
+    ::kill(-first.process, SIGCONT);
     EXPECT_EQ(wait_for(first), 0) << text_of(first.errors);
     EXPECT_EQ(answers("shared/rld-cbc.n014.lanes.jsonl"), answers("whole/rld-cbc.n014.lanes.jsonl"));
     EXPECT_EQ(results("shared"), results("whole"));
