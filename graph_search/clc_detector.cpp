@@ -54,6 +54,8 @@ class ClcDetector final : public LaneDetector {
         if (found.empty()) {
             answer.status = report.exhausted ? LaneStatus::none : LaneStatus::stopped;
             if (!report.exhausted && !report.stopped_by) answer.stopped_by = StopReason::iterations;
+            // The beam's half of the time may be gone; the enumeration after it was complete.
+            if (report.exhausted) answer.stopped_by.reset();
             return answer;
         }
         const std::size_t chosen = choose(deadline, answer.stopped_by);

@@ -2,6 +2,7 @@
 
 #include "model/deadline.hpp"
 #include "model/geometry.hpp"
+#include "model/near_edges.hpp"
 #include "model/shape_costs.hpp"
 
 #include <algorithm>
@@ -13,6 +14,12 @@ namespace {
 
 /// Of a shorter edge the squares, and so the direction, may be lost in double [m].
 constexpr double kShortestEdge_m = 1e-100;
+
+/// More than distances are off by [m].
+constexpr double kMargin_m = 1e-3;
+
+/// Room is made for at most so many of a kind before they are counted.
+constexpr std::size_t kReservedEntries = 4096;
 
 /// What may end the making of a problem early.
 class Limits {
@@ -70,7 +77,7 @@ double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool alon
     const bool blue = either_is(ConeColor::blue);
     const bool yellow = either_is(ConeColor::yellow);
     double cost = blue && yellow ? 1.0 : 0.0;
-    if (along_heading) {
+    if (along_heading && (blue || yellow)) {
         const Point& from = scene.cones[i].position;
         const Point v = scene.cones[j].position - from;
         const double ahead = v.dot(scene.pose.heading());
@@ -92,12 +99,16 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
     const Point v = to - from;
     const double across = std::abs(cross(v, heading));
     const Point midpoint = 0.5 * (from + to);
-    const double car_distance = std::max((midpoint - scene.pose.position).norm(), kShortestCarDistance_m);
+    const double midpoint_distance = (midpoint - scene.pose.position).norm();
+    const double car_distance = std::max(midpoint_distance, kShortestCarDistance_m);
     const double spacing_cost = fourth_power((length - p.d_e) / p.d_t);  // (18)
     const double heading_cost = fourth_power(across / car_distance);     // (25)
-    const double acute_angle = std::atan2(across, std::abs(v.dot(heading)));
-    const double edge_distance = foot_point(scene.pose.position, {from, to}).distance_m;
-    const bool along_heading = within(edge_distance, p.d_h) && within(acute_angle, p.theta_heading);
+    const auto acute_angle = [&] { return std::atan2(across, std::abs(v.dot(heading))); };
+    // No point of the edge is nearer to the car than its midpoint by more than half its length.
+    const bool is_away = midpoint_distance - 0.5 * length > p.d_h + kMargin_m;
+    const bool along_heading = !is_away &&
+                               within(foot_point(scene.pose.position, {from, to}).distance_m, p.d_h) &&
+                               within(acute_angle(), p.theta_heading);
     const double color_cost = color_cost_of(scene, i, j, along_heading);
     const double benefit =
         p.use_confidence ? p.w_b * scene.cones[i].confidence * scene.cones[j].confidence : p.w_b;
@@ -115,35 +126,24 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
 /// forbid_crossing those that cross too.
 void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
-    struct Disc {
-        Point middle;
-        double radius;
-    };
-    std::vector<Disc> discs;
-    std::vector<Segment> segments;
-    discs.reserve(problem.edges.size());
-    segments.reserve(problem.edges.size());
-    for (const ProblemEdge& edge : problem.edges) {
-        segments.push_back({scene.cones[edge.i].position, scene.cones[edge.j].position});
-        const Segment& segment = segments.back();
-        discs.push_back({0.5 * (segment.from + segment.to), 0.5 * (segment.to - segment.from).norm()});
+    const std::vector<ProblemEdge>& edges = problem.edges;
+    const double too_close_m = problem.parameters.d_min - kTieTolerance;
+    std::vector<MeasuredSegment> segments;
+    segments.reserve(edges.size());
+    for (const ProblemEdge& edge : edges) {
+        segments.emplace_back(scene.cones[edge.i].position, scene.cones[edge.j].position);
     }
-    const double d_min = problem.parameters.d_min;
-    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        if (limits.stop(problem, problem.edges.size() - e)) return;
-        const ProblemEdge& a = problem.edges[e];
+    NearEdges near_edges(scene, edges, too_close_m);
+    problem.conflicts.reserve(std::min(8 * edges.size(), kReservedEntries));
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (limits.stop(problem, edges.size() - e)) return;
+        const MeasuredSegment& a = segments[e];
         const std::size_t conflicts_before = problem.conflicts.size();
-        for (std::size_t other = e + 1; other < problem.edges.size(); ++other) {
-            const ProblemEdge& b = problem.edges[other];
-            const double reach = discs[e].radius + discs[other].radius + d_min;
-            if ((discs[e].middle - discs[other].middle).squaredNorm() > reach * reach) continue;
-            if (a.i == b.i || a.i == b.j || a.j == b.i || a.j == b.j) continue;
-            const SegmentDistance gap = segment_distance(segments[e], segments[other]);
+        for (const std::size_t other : near_edges.after(e)) {
+            const MeasuredSegment& b = segments[other];
             const bool crossing =
-                problem.parameters.forbid_crossing && segments_cross(segments[e], segments[other]);
-            if (crossing || (gap.distance_m < d_min - kTieTolerance && !gap.between_ends)) {
-                problem.conflicts.emplace_back(e, other);
-            }
+                problem.parameters.forbid_crossing && segments_cross({a.from, a.to}, {b.from, b.to});
+            if (crossing || come_closer(a, b, too_close_m)) problem.conflicts.emplace_back(e, other);
         }
         if (limits.stop(problem, 10 * (problem.conflicts.size() - conflicts_before))) return;
     }
@@ -204,11 +204,14 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     }
 }
 
-/// By problem edge. Precondition: the graph's edges are ascending.
-std::vector<bool> chosen_edges(const LaneGraphProblem& problem, const LaneGraph& graph) {
-    std::vector<bool> chosen(problem.edges.size(), false);
+/// By problem edge. Precondition: the graph's edges are ascending, as the problem's are.
+std::vector<char> chosen_edges(const LaneGraphProblem& problem, const LaneGraph& graph) {
+    std::vector<char> chosen(problem.edges.size(), 0);
+    auto next = graph.edges.begin();
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        chosen[e] = std::ranges::binary_search(graph.edges, Edge{problem.edges[e].i, problem.edges[e].j});
+        const Edge edge{problem.edges[e].i, problem.edges[e].j};
+        while (next != graph.edges.end() && *next < edge) ++next;
+        if (next != graph.edges.end() && *next == edge) chosen[e] = 1;
     }
     return chosen;
 }
@@ -218,14 +221,26 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
     const std::size_t n = problem.cone_count;
     const Point heading = scene.pose.heading();
     if (extent == EdgeExtent::all_pairs) problem.distance_m.assign(n, std::vector<double>(n, 0.0));
+    problem.edges.reserve(std::min(4 * n, kReservedEntries));
+    problem.far_apart.reserve(std::min(n * n / 2, kReservedEntries));
+    // Longer ones are too long for (27) and for (17): most pairs are, by far.
+    const double longest =
+        kMargin_m +
+        std::max(parameters.d_max,
+                 parameters.d_e + parameters.d_t * std::sqrt(std::sqrt(parameters.s_crit + kTieTolerance)));
     for (std::size_t i = 0; i < n; ++i) {
         if (limits.stop(problem, 2 * (n - i))) return;
+        const bool is_far = !problem.near[i];
         const std::size_t edges_before = problem.edges.size();
         for (std::size_t j = i + 1; j < n; ++j) {
-            const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
-            if (!problem.near[i] && !problem.near[j] && !within(distance, parameters.d_max)) {
-                problem.far_apart.emplace_back(i, j);
+            const double squared_distance = (scene.cones[j].position - scene.cones[i].position).squaredNorm();
+            const bool both_are_far = is_far && !problem.near[j];
+            if (squared_distance > longest * longest && extent == EdgeExtent::candidates) {
+                if (both_are_far) problem.far_apart.emplace_back(i, j);
+                continue;
             }
+            const double distance = std::sqrt(squared_distance);
+            if (both_are_far && !within(distance, parameters.d_max)) problem.far_apart.emplace_back(i, j);
             if (extent == EdgeExtent::all_pairs) {
                 problem.distance_m[i][j] = problem.distance_m[j][i] = distance;
             } else if (!within(fourth_power((distance - parameters.d_e) / parameters.d_t),
@@ -233,11 +248,24 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
                        distance < kShortestEdge_m) {
                 continue;
             }
-            problem.incident[i].push_back(problem.edges.size());
-            problem.incident[j].push_back(problem.edges.size());
             problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
         }
         if (limits.stop(problem, 50 * (problem.edges.size() - edges_before))) return;
+    }
+}
+
+/// Precondition: all edges are listed.
+void find_incident(LaneGraphProblem& problem) {
+    std::vector<std::size_t> count(problem.cone_count, 0);
+    for (const ProblemEdge& edge : problem.edges) {
+        ++count[edge.i];
+        ++count[edge.j];
+    }
+    problem.incident.resize(problem.cone_count);
+    for (std::size_t i = 0; i < problem.cone_count; ++i) problem.incident[i].reserve(count[i]);
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        problem.incident[problem.edges[e].i].push_back(e);
+        problem.incident[problem.edges[e].j].push_back(e);
     }
 }
 
@@ -272,9 +300,9 @@ LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameter
     for (std::size_t i = 0; i < n; ++i) {
         problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
     }
-    problem.incident.resize(n);
     find_edges(scene, extent, problem, limits);
     if (limits.stop(problem)) return problem;
+    find_incident(problem);
     add_shape_costs(scene, problem, limits);
     if (!limits.stop(problem)) find_turns(scene, problem, limits);
     if (!limits.stop(problem)) find_conflicts(scene, problem, limits);
@@ -303,28 +331,28 @@ bool is_too_large(const LaneGraphProblem& problem) {
 }
 
 double objective(const LaneGraphProblem& problem, const LaneGraph& graph) {
-    const std::vector<bool> chosen = chosen_edges(problem, graph);
+    const std::vector<char> chosen = chosen_edges(problem, graph);
     double sum = 0.0;
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        if (chosen[e]) sum += problem.edges[e].cost;
+        if (chosen[e] != 0) sum += problem.edges[e].cost;
     }
     for (const ProblemTurn& turn : problem.turns) {
-        if (chosen[turn.edge_i] && chosen[turn.edge_k]) sum += turn.cost;
+        if (chosen[turn.edge_i] != 0 && chosen[turn.edge_k] != 0) sum += turn.cost;
     }
     return sum;
 }
 
 bool is_feasible(const LaneGraphProblem& problem, const LaneGraph& graph) {
-    const std::vector<bool> chosen = chosen_edges(problem, graph);
+    const std::vector<char> chosen = chosen_edges(problem, graph);
     std::size_t allowed = 0;
     std::size_t along_heading = 0;
     for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-        if (!chosen[e]) continue;
+        if (chosen[e] == 0) continue;
         if (!problem.edges[e].high_cost) ++allowed;
         if (problem.edges[e].along_heading) ++along_heading;
     }
     if (allowed != graph.edges.size() || along_heading < 2) return false;
-    const auto both_chosen = [&](std::size_t a, std::size_t b) { return chosen[a] && chosen[b]; };
+    const auto both_chosen = [&](std::size_t a, std::size_t b) { return chosen[a] != 0 && chosen[b] != 0; };
     for (const auto& [first, second] : problem.conflicts) {
         if (both_chosen(first, second)) return false;
     }

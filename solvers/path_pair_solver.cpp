@@ -68,13 +68,12 @@ class PathPairSolver : public RldSolver {
 
     SearchCertificate certify_search(const LaneGraphProblem& problem, const RldReport& report,
                                      double time_limit_ms) {
-        // Sums of doubles are off by less.
-        constexpr double kRounding = 1e-9;
         SearchCertificate certificate{{}, report.lane_graph, report.objective, -kUnreachable};
         if (report.status == SolveStatus::infeasible) {
             certificate.bound = kUnreachable;
-        } else if (report.bound) {
-            certificate.bound = *report.bound - kRounding;
+        } else if (report.bound && std::abs(*report.bound) < SearchCertificate::kMostBound) {
+            // Sums of doubles are off by less.
+            certificate.bound = *report.bound - std::max(1e-9, 1e-12 * std::abs(*report.bound));
         }
         if (certificate.bound == -kUnreachable) return certificate;
         const Deadline deadline(time_limit_ms);
@@ -195,16 +194,19 @@ class PathPairSolver : public RldSolver {
     SearchCertificate::Part certify_part(const LaneGraphProblem& problem, double bound,
                                          const Deadline& deadline) {
         constexpr double kUnit = 1.0 / (1 << SearchCertificate::kFractionBits);
-        // Drops nothing here that exact arithmetic does not drop.
-        constexpr double kRounding = 1e-7;
         SearchCertificate::Part part;
         // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
         const double most =
             cost_limit(problem) + 2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
-        incumbent_.reset(graph_, std::min(bound, most) + kRounding);
+        const double cutoff = std::min(bound, most);
+        // Drops nothing here that exact arithmetic does not drop.
+        incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));
         const std::vector<Multipliers> stages =
             search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });
-        const auto units = [](double multiplier) { return std::llround(multiplier / kUnit); };
+        const auto units = [](double multiplier) {
+            constexpr auto kMost = static_cast<double>(SearchCertificate::kMostUnits);
+            return std::llround(std::min(multiplier / kUnit, kMost));
+        };
         std::vector<std::size_t> place(static_cast<std::size_t>(search_.cliques().size()), 0);  // from 1
         for (const Multipliers& multipliers : stages) {
             SearchCertificate::Stage& stage = part.stages.emplace_back();

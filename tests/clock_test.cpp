@@ -5,17 +5,21 @@
 #include "conelane/detectors.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/scenes/scene_set.hpp"
+#include "graph_search/front/front_search.hpp"
 #include "solvers/registry.hpp"
+#include "tests/front_fixture.hpp"
 #include "tests/observed_clocks.hpp"
 #include "tests/random_scenes.hpp"
 #include "tests/slowness.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -124,6 +128,62 @@ TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
             EXPECT_LT(gap_ms, 1.0 * kSlowness) << scene.id << ", " << scene.cones.size() << " cones";
         }
     }
+}
+
+/// A ring of 800 cones about one, and edges from that one alone: a third of a million turns at one cone,
+/// which take most of the time. Of 300 looks at the clock 250 are among them.
+TEST(Clocks, TheMakingOfAProblemLooksAtItsAmongTurns) {
+    Scene scene;
+    scene.cones.push_back({0, {0.0, 0.0}});
+    for (int k = 0; k < 800; ++k) {
+        const double angle_rad = 2.0 * std::numbers::pi * k / 800.0;
+        scene.cones.push_back({k + 1, {3.2 * std::cos(angle_rad), 3.2 * std::sin(angle_rad)}});
+    }
+    RldParameters parameters;
+    parameters.d_t = 1e-3;
+    forget_looks();
+    const LimitedProblem limited =
+        make_problem(scene, parameters, EdgeExtent::candidates, Deadline(kLongLimit_ms));
+    ASSERT_TRUE(limited.problem);
+    ASSERT_EQ(limited.problem->edges.size(), 800U);
+    ASSERT_GT(limited.problem->turns.size(), 100'000U);
+    EXPECT_GT(clock_looks.monotonic, 150);
+}
+
+/// The processor is away for 40 of 60 s, at any look at the clock: more than half of the time, which is all
+/// that the beam search of `clc` may take. What was enumerated to its end after it is no less proven.
+TEST(Clocks, NoneIsProvenThoughHalfOfTheTimeIsGone) {
+    int none = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const Scene scene = tests::random_scene(seed, 10);
+        const std::unique_ptr<LaneDetector> detector = make_detector("clc");
+        if (detector->detect(scene, {.time_limit_ms = kLongLimit_ms}).status != LaneStatus::none) continue;
+        for (std::int64_t look = 2; look < 8; ++look) {
+            detector->reset();
+            forget_looks();
+            clock_looks.away_at = look;
+            clock_looks.away_s = 40;
+            const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = kLongLimit_ms});
+            EXPECT_EQ(answer.status, LaneStatus::none) << seed << ' ' << look;
+            EXPECT_FALSE(answer.stopped_by) << seed << ' ' << look;
+            ++none;
+        }
+    }
+    forget_looks();
+    EXPECT_GT(none, 5);
+}
+
+/// The clock is read after each state that the search expands, not once a level.
+TEST(Clocks, FrontReadsItsAfterEachState) {
+    const FrontWeights weights = tests::random_front_weights(1);
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(tests::random_scene(3, 24), cost, {}, nullptr);
+    SearchBudget budget;
+    forget_looks();
+    search.run(budget);
+    EXPECT_GT(search.expanded(), 100);
+    EXPECT_GE(clock_looks.monotonic, search.expanded());
 }
 
 }  // namespace

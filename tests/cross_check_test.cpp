@@ -345,6 +345,33 @@ TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
         EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".tmp")));
 }
 
+/// A third solver fails on fewer than five cones: that is no reason to shrink the blind one's case to them.
+TEST_F(CrossCheckRun, AnotherDifferenceDoesNotReplaceTheOneThatWasFound) {
+    CrossCheckOptions some = options(40);
+    some.contestants = [](Formulation formulation) {
+        std::vector<Contestant> all = with_a_blind_one(formulation);
+        all.push_back({"weak", [](const Scene& scene, const RldParameters& parameters, double) {
+                           if (scene.cones.size() >= 5) return by_path_pair(scene, parameters);
+                           RldReport report;
+                           report.message = "too few cones";
+                           return report;
+                       }});
+        return all;
+    };
+    (void)cross_check(some, path("cases"));
+    std::size_t about_the_blind = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(path("cases"))) {
+        if (!entry.path().string().ends_with(".case.json")) continue;
+        const bool weak_failed_at_first =
+            read_case(entry.path()).drawn.scene.cones.size() < 5 &&
+            draw_cross_check_case({}, some.seed, read_case(entry.path()).drawn.number).scene.cones.size() < 5;
+        if (weak_failed_at_first) continue;
+        EXPECT_THAT(text_of(entry.path()), HasSubstr("\"wrong within")) << entry.path();
+        ++about_the_blind;
+    }
+    EXPECT_GT(about_the_blind, 0U);
+}
+
 TEST_F(CrossCheckRun, TheProgramSaysWhatItFoundAndWhatIsWrong) {
     const Outcome good = run("cross-check --out cases --cases 6 --solvers path-pair,cbc --threads 2");
     EXPECT_EQ(good.exit_code, 0) << good.errors;

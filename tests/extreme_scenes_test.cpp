@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -108,6 +109,52 @@ TEST(ExtremeScenes, APointThatCbcMakesUpIsNoAnswer) {
     }
 }
 
+/// Found by cross-check. Two boundaries a kilometre apart, cones 2 km apart along them, spacings of 1 km
+/// expected:
+///     0 ----- 1 ----- 2
+///   car >
+///     3 ----- 4 ----- 5
+/// The midpoint of 0 and 3 is the car's place, so the edge between them costs 1.9e13. Beside it a rounding
+/// error of 1e-13 weighs as much as a lane: GLPK took the lane of two edges for the best. Each of the four
+/// costs 0.4 - 1.
+TEST(ExtremeScenes, AHugeCostHidesNoBetterLane) {
+    Scene scene;
+    for (const Point& place : {Point(2000, 500), Point(2000, -500), Point(0, -500), Point(0, 500),
+                               Point(4000, 500), Point(4000, -500)}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    }
+    RldParameters parameters;
+    parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_near = parameters.d_max = 1000.0;
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        if (!entry.exact) continue;
+        const RldReport report =
+            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
+        EXPECT_EQ(report.status, SolveStatus::optimal) << entry.name << ": " << report.message;
+        EXPECT_NEAR(report.objective.value_or(0.0), -2.4, 1e-9) << entry.name;
+    }
+}
+
+/// Two boundaries of a kilometre across the car's way, 10 m apart, are the only lane. It costs
+/// 1.2 * (1000 / 1.25)^4 for the one whose midpoint is 1.25 m from the car, and far less for the other.
+TEST(ExtremeScenes, ADearLaneIsFoundWhereThereIsNoOther) {
+    Scene scene;
+    for (const Point& place : {Point(0.75, 499), Point(0.75, -501), Point(10.75, 499), Point(10.75, -501)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    RldParameters parameters;
+    parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_max = 1000.0;
+    parameters.d_near = 500.0;
+    parameters.theta_heading = std::numbers::pi / 2.0;
+    const double dear = 1.2 * std::pow(1000.0 / 1.25, 4);
+    const double other = 1.2 * std::pow(1000.0 / std::hypot(10.75, 1.0), 4);
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        if (!entry.exact) continue;
+        const RldReport report =
+            solve_scene(*entry.make(Formulation::tight), scene, parameters, {kLimit_ms}).report;
+        EXPECT_EQ(report.status, SolveStatus::optimal) << entry.name << ": " << report.message;
+        EXPECT_NEAR(report.objective.value_or(0.0), dear + other - 2.0, 1e-9 * dear) << entry.name;
+    }
+}
+
 /// Edges of kilometres that the parameters allow, and weights at the end of their range: costs of 1e26. Who
 /// cannot take them says so.
 TEST(ExtremeScenes, CostsThatNoLibraryTakesAreAnErrorNotTheEnd) {
@@ -129,6 +176,9 @@ TEST(ExtremeScenes, CostsThatNoLibraryTakesAreAnErrorNotTheEnd) {
         if (std::string(entry.name).starts_with("cbc") || entry.name == "clp-bb") {
             EXPECT_EQ(report.status, SolveStatus::error) << entry.name;
             EXPECT_THAT(report.message, testing::HasSubstr("too large for Clp"));
+        }
+        if (entry.name == "glpk") {
+            EXPECT_THAT(report.message, testing::HasSubstr("too large for GLPK"));
         }
         EXPECT_FALSE(report.lane_graph) << entry.name;
     }

@@ -46,6 +46,25 @@ TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
     EXPECT_GT(rows[1].iou, 0.8);
 }
 
+// Eight cones have few lanes, so a search that leaves nothing out ends; in a millionth of a second none does.
+TEST(FrontBeam, AProofTakesASearchThatLeavesNothingOut) {
+    SceneOptions options;
+    options.false_positive_rates = {0.0};
+    options.ranges_m = {30.0};
+    options.every_m = 40.0;
+    options.nearest = 8;
+    const SceneSet set = make_scene_set({"generated:kidney@3"}, options);
+    FrontBeamOptions both = widths({1});
+    both.exhaustive_ms = {1e-6, 1e6};
+    const auto rows = front_beam_rows(set, both);
+    ASSERT_THAT(rows, testing::SizeIs(4));
+    EXPECT_LT(rows[0].proven, 1.0);
+    EXPECT_EQ(rows[2].proven, 0.0);
+    EXPECT_EQ(rows[3].proven, 1.0);
+    EXPECT_EQ(rows[3].best_score, 1.0);
+    EXPECT_EQ(rows[3].beam, 0U);
+}
+
 TEST(FrontBeam, AskedForNothingItSaysSo) {
     EXPECT_THROW((void)front_beam_rows({}, widths({15})), InvalidInput);
     EXPECT_THROW((void)front_beam_rows(kidney(0.0), widths({0})), InvalidInput);

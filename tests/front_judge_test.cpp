@@ -131,6 +131,46 @@ TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
     EXPECT_GT(met, 100U);
 }
 
+/// Of a cone: the least share of it and of all before it; and of the lanes that have its segment the best
+/// one, and how far that is ahead of the best one without.
+TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
+    std::size_t least_before = 0;
+    std::size_t not_of_the_best = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Judged judged(tests::random_scene(seed, 24), random_front_weights(seed));
+        if (judged.contenders.empty()) continue;
+        const std::vector<double> probability = softmax(judged.contenders);
+        std::vector<Segments> segments;
+        for (const Cones& lane : judged.lanes) segments.push_back(segments_of(lane));
+        for (std::size_t i = 0; i < judged.lanes.size(); ++i) {
+            float least = 1.0F;
+            for (const std::uint32_t place : judged.judge.path(i)) {
+                const FrontJudge::Step& step = judged.judge.steps()[place];
+                const float share = cone_feature(step, "share");
+                least_before += least < share ? 1 : 0;
+                least = std::min(least, share);
+                EXPECT_FLOAT_EQ(cone_feature(step, "least_share"), least);
+                const auto best = std::ranges::find(probability, cone_feature(step, "probability"),
+                                                    [](double p) { return static_cast<float>(p); });
+                ASSERT_NE(best, probability.end());
+                // Contenders stand in the order of their scores.
+                const auto place_of_best = static_cast<std::size_t>(best - probability.begin());
+                EXPECT_LE(place_of_best, i) << "this lane has it";
+                not_of_the_best += place_of_best > 0 ? 1 : 0;
+                Cones beginning;
+                judged.search.cones(step.node, beginning);
+                const Segments after = segments_of(beginning);
+                const auto has_them = [&](const Segments& lane) {
+                    return std::ranges::includes(lane, after);
+                };
+                for (std::size_t j = 0; j < place_of_best; ++j) EXPECT_FALSE(has_them(segments[j]));
+            }
+        }
+    }
+    EXPECT_GT(least_before, 20U);
+    EXPECT_GT(not_of_the_best, 20U);
+}
+
 TEST(FrontJudge, AllAgreeOnALaneWithoutAnyOther) {
     const Judged judged(straight_front_scene(3), random_front_weights(4));
     ASSERT_FALSE(judged.contenders.empty());

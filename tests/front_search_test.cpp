@@ -155,6 +155,27 @@ TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
     EXPECT_TRUE(search.left_out());
 }
 
+// Far along the lane a third of the beam goes on. Both boundaries together advance 2.5 m a level, so 5 m
+// along the lane are four levels.
+TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontSearchOptions options = exhaustive();
+    options.beam_width = 4;
+    options.far_m = 5.0;
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(5), cost, options);
+    SearchBudget unlimited;
+    std::size_t near = 0;
+    std::size_t far = 0;
+    while (search.advance(unlimited)) {
+        std::size_t& widest = search.level_number() < 4 ? near : far;
+        widest = std::max(widest, search.level().size());
+    }
+    EXPECT_EQ(near, 4U);
+    EXPECT_EQ(far, 2U);
+}
+
 /// The margin of the best move is over the second one, that of any other under the best.
 TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
     const FrontWeights weights = random_front_weights(3);
@@ -554,6 +575,8 @@ TEST(FrontDetector, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(key_of([](auto& o) { o.search.drop = 0.0; }), "drop");
     EXPECT_EQ(key_of([](auto& o) { o.search.finished_drop = -1.0; }), "finished_drop");
     EXPECT_EQ(key_of([](auto& o) { o.search.level_m = 0.0; }), "level_m");
+    EXPECT_EQ(key_of([](auto& o) { o.search.far_m = -1.0; }), "far_m");
+    EXPECT_EQ(key_of([](auto& o) { o.search.far_m = std::nan(""); }), "far_m");
     EXPECT_EQ(key_of([](auto& o) { o.weights.extend.inputs = 3; }), "extend.inputs");
     EXPECT_EQ(key_of([](auto& o) { o.weights.stop.hidden.pop_back(); }), "stop.hidden");
     EXPECT_EQ(key_of([](auto& o) { o.weights.start.linear[2] = std::nanf(""); }), "start.linear");

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 // Replaces the clocks of the whole program, of the C library and of every library that it links: a test
-// program includes this once. The monotonic clock is as it was; the time of day jumps by an hour, forth and
-// back, from one look at it to the next.
+// program includes this once. The monotonic clock is as it was, but ahead by what a test asks for, as if the
+// processor had been away; the time of day jumps by an hour, forth and back, from one look at it to the next.
 
 namespace conelane::tests {
 
@@ -19,6 +19,8 @@ struct ClockLooks {
     std::int64_t time_of_day = 0;
     double longest_gap_ms = 0.0;  ///< processor time of this thread between two looks at the monotonic clock
     double last_look_ms = 0.0;
+    std::int64_t away_at = 0;  ///< the look at the monotonic clock from which it is ahead; 0: none
+    std::int64_t away_s = 0;   ///< by so much
 };
 inline thread_local ClockLooks clock_looks;
 
@@ -52,6 +54,8 @@ extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
         time->tv_sec += clock_looks.time_of_day % 2 == 0 ? 3600 : -3600;
     } else if (clock == CLOCK_MONOTONIC) {
         ++clock_looks.monotonic;
+        if (clock_looks.away_at > 0 && clock_looks.monotonic >= clock_looks.away_at)
+            time->tv_sec += clock_looks.away_s;
         conelane::tests::note_look();
     }
     return 0;

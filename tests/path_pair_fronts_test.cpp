@@ -9,12 +9,16 @@
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/leg_bounds.hpp"
 #include "solvers/path_pair/onward_tables.hpp"
+#include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "tests/random_scenes.hpp"
+#include "tests/straight_lane_problem.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -145,23 +149,121 @@ LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
     return make_problem(tests::random_scene(seed, cones), {});
 }
 
-/// A straight lane, cones 0, 2, 4, 6 on the left, 1, 3, 5, 7 on the right: each boundary can only be run
-/// along cone by cone.
-LaneGraphProblem straight_problem() {
+/// Of a problem of all pairs those edges that a lane graph may have, and of their turns the allowed ones.
+TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
+    const LaneGraphProblem all = make_problem(tests::random_scene(3, 9), {}, EdgeExtent::all_pairs);
+    const LaneGraphProblem allowed = make_problem(tests::random_scene(3, 9), {});
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(all, clock));
+    EXPECT_LT(static_cast<std::size_t>(graph.edge_count()), all.edges.size());
+    EXPECT_EQ(static_cast<std::size_t>(graph.edge_count()), allowed.edges.size());
+    for (int edge = 0; edge < graph.edge_count(); ++edge)
+        EXPECT_FALSE(all.edges[graph.problem_edge(edge)].high_cost);
+}
+
+/// Across and then along is a forbidden turn: no lane graph has both of its edges, so a clique may hold them.
+TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
+    const Fronts s(tests::straight_lane_problem(), 1);
+    const int across = s.graph.arc(0, 1) / 2;
+    const int along = s.graph.arc(1, 3) / 2;
+    EXPECT_TRUE(s.graph.incompatible(across, along));
+    EXPECT_TRUE(s.graph.incompatible(along, across));
+    EXPECT_FALSE(s.graph.incompatible(s.graph.arc(0, 2) / 2, s.graph.arc(2, 4) / 2)) << "straight on";
+}
+
+/// 500 cones without an edge: wherever the clock strikes, the last time among the far cones, there is no
+/// graph.
+TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
     Scene scene;
-    for (int row = 0; row < 4; ++row) {
-        for (const double side : {2.5, -2.5}) {
-            const auto id = static_cast<ConeId>(scene.cones.size());
-            scene.cones.push_back({id, Point(2.0 + 4.0 * row, side)});
-        }
+    for (int cone = 0; cone < 500; ++cone)
+        scene.cones.push_back({static_cast<ConeId>(cone), Point(100.0 + 100.0 * cone, 0.0)});
+    const LaneGraphProblem problem = make_problem(scene, {});
+    ArcGraph graph;
+    int looks = 0;
+    SearchClock patient([&] { return ++looks == 0; });
+    ASSERT_TRUE(graph.build(problem, patient));
+    const int all = looks;
+    ASSERT_GT(all, 3);
+    for (int strike = 1; strike <= all; ++strike) {
+        looks = 0;
+        SearchClock clock([&] { return ++looks == strike; });
+        EXPECT_FALSE(graph.build(problem, clock)) << strike;
+        EXPECT_EQ(looks, strike);
     }
-    return make_problem(scene, {});
+}
+
+/// Three cones about each of which a leg may turn for nothing: going round costs exactly 0, gains nothing and
+/// is no cycle that pays.
+TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
+    Scene scene;
+    const double height = 1.6 * std::sqrt(3.0);
+    for (const Point& place : {Point(1.0, -1.6), Point(1.0, 1.6), Point(1.0 + height, 0.0)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    RldParameters parameters;
+    parameters.t_crit = 1000.0;
+    parameters.w_t = 0.0;
+    const LaneGraphProblem problem = make_problem(scene, parameters);
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(problem, clock));
+    ResidualGraph residual;
+    residual.assign(graph, std::vector<char>(3, 1));
+    ASSERT_EQ(residual.size(), 6);
+    const std::vector<double> nothing(6, 0.0);
+    std::vector<double> label;
+    std::vector<int> before;
+    std::vector<int> cycles;
+    LegBounds bounds;
+    EXPECT_TRUE(bounds.forward(residual, nothing, nothing, label, before, cycles));
+    EXPECT_EQ(label, nothing);
+}
+
+/// A leg might end on 4 -> 6 alone, which is left out: none ends at all.
+TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
+    const Fronts s(tests::straight_lane_problem(), 1);
+    const auto count = static_cast<std::size_t>(s.residual.size());
+    const auto last = static_cast<std::size_t>(s.arc(4, 6));
+    std::vector<double> end(count, kUnreachable);
+    end[last] = 0.0;
+    std::vector<char> usable(count, 1);
+    std::vector<double> label;
+    LegBounds bounds;
+    const std::vector<double> nothing(count, 0.0);
+    bounds.backward(s.residual, nothing, end, usable, label);
+    EXPECT_EQ(label[static_cast<std::size_t>(s.arc(2, 4))], 0.0);
+    usable[last] = 0;
+    bounds.backward(s.residual, nothing, end, usable, label);
+    EXPECT_EQ(label, std::vector<double>(count, kUnreachable));
+}
+
+/// Given 0 -> 1 -> 2, the best second leg is 5 -> 6 -> 7 at -1.998; 0 -> 3 -> 4 at -2 begins at a cone of the
+/// first. Given that one, the best is 3 -> 0 -> 1 -> 2 at -3. Each is found at once, without a search over
+/// legs.
+///     4 ----- 3 ----- 0 ----- 1 ----- 2
+///                   car >
+///                     5 ----- 6 ---- 7
+TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
+    Scene scene;
+    for (const Point& place : {Point(0.0, 1.75), Point(3.2, 1.75), Point(6.4, 1.75), Point(-3.2, 1.75),
+                               Point(-6.4, 1.75), Point(0.0, -1.75), Point(3.2, -1.75), Point(6.0, -1.75)}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    }
+    RldParameters parameters;
+    parameters.d_max = 16.0;
+    Fronts s(make_problem(scene, parameters), 1);
+    s.relaxation.evaluate_backward(s.residual);
+    PairCompletion completion;
+    completion.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 1e-9, 0);
+    ASSERT_TRUE(s.incumbent.found());
+    EXPECT_NEAR(s.incumbent.cutoff(), -5.0 + 0.4 * std::pow(0.4 / 1.7, 4), 1e-9);
 }
 
 // A leg on 4 -> 6 has come over 0, 2 and 4. So {0, 2} is dominated: the other leg cannot use it, though it
 // has no cone in common with {4, 6} and is not too close to it.
 TEST(PathPairDominatedEdges, FollowedByHandOnAStraightLane) {
-    Fronts s(straight_problem(), 1);
+    Fronts s(tests::straight_lane_problem(), 1);
     const int late = s.arc(4, 6);
     const int early = s.arc(0, 2);
     const int opposite = s.arc(1, 3);
@@ -228,6 +330,21 @@ TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
     }
     EXPECT_GT(with_lane, 30);
     EXPECT_GT(higher, 30);
+}
+
+/// Of both legs the one that stands earlier moves, so every pair is one walk.
+TEST(PathPairFrontGraph, TheEarlierLegMoves) {
+    int both_go_on = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        Fronts s(random_problem(seed), seed);
+        ASSERT_TRUE(s.build());
+        for (int f = 0; f < s.fronts.size(); ++f) {
+            if (s.fronts.front(f).ended) continue;
+            EXPECT_LT(s.fronts.front(f).moving, s.fronts.front(f).waiting);
+            ++both_go_on;
+        }
+    }
+    EXPECT_GT(both_go_on, 20);
 }
 
 TEST(PathPairFrontGraph, WhatIsDroppedByALimitReachesIt) {
@@ -328,7 +445,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
 
 /// A beam of one beginning at each arc runs along both boundaries of a straight lane.
 TEST(PathPairFrontBeam, FindsTheStraightLane) {
-    Fronts s(straight_problem(), 1);
+    Fronts s(tests::straight_lane_problem(), 1);
     FrontBeam beam;
     beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
     beam.run(s.residual, s.edges, 1e-9, 1);
@@ -362,6 +479,7 @@ TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
 TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
+    int narrow_ones = 0;
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Fronts s(random_problem(seed), seed);
@@ -375,6 +493,10 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
         const FrontSearch::Outcome narrow = s.run(1, kAny);
         EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
+        narrow_ones += narrow == FrontSearch::Outcome::narrow ? 1 : 0;
+        if (narrow == FrontSearch::Outcome::exhausted) {
+            EXPECT_NEAR(s.incumbent.cutoff(), best.objective.value_or(1e6), 1e-6) << "claimed to be all";
+        }
         ASSERT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::exhausted);
         ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
         if (!best.objective) continue;
@@ -382,6 +504,31 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
         EXPECT_NEAR(s.incumbent.cutoff(), *best.objective, 1e-6);
     }
     EXPECT_GT(with_lane, 50);
+    EXPECT_GT(narrow_ones, 2);
+}
+
+/// Whenever the clock strikes on the way, the search does not call itself whole.
+TEST(PathPairFrontSearch, IsStoppedByEveryLookAtTheClock) {
+    int stopped_on_the_way = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Fronts s(random_problem(seed, 24), seed);
+        ASSERT_TRUE(s.build());
+        if (s.fronts.find_onward(kUnreachable) == kUnreachable) continue;
+        s.tables.find(s.fronts, s.edges, 1e6, true, s.stopped);
+        bool struck = true;
+        for (int strike = 1; struck && strike < 5; ++strike) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike);
+            int looks = 0;
+            s.incumbent.reset(s.graph, 1e6);
+            const std::function<bool()> strikes = [&] { return ++looks >= strike; };
+            const FrontSearch::Outcome outcome =
+                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontSearch::kAnyWidth, kAny}, strikes);
+            struck = looks >= strike;
+            ASSERT_EQ(outcome, struck ? FrontSearch::Outcome::stopped : FrontSearch::Outcome::exhausted);
+            stopped_on_the_way += struck && strike > 1 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(stopped_on_the_way, 5);
 }
 
 TEST(PathPairFrontSearch, StopsWhereToldTo) {

@@ -4,6 +4,7 @@
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
 #include "solvers/milp/cbc_solver.hpp"
 #include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
@@ -394,7 +395,7 @@ TEST(PathPair, AgreesWithCbc) {
 
 TEST(PathPair, EveryStageCanBeSwitchedOff) {
     const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
-    std::vector<PathPairOptions> ablations(6);
+    std::vector<PathPairOptions> ablations(7);
     ablations[0].fix_arcs = false;
     ablations[1].clique_multipliers = false;
     ablations[2].complete_walks = false;
@@ -402,6 +403,7 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
     ablations[5].drop_dominated_edges = false;
+    ablations[6].search_windows = false;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 12);
@@ -656,6 +658,56 @@ TEST(PathPairCertificate, RestsOnEveryShapeCost) {
     }
     EXPECT_GT(finite, 20);
     EXPECT_THAT(refused, testing::Each(testing::Gt(finite * 3 / 4)));
+}
+
+/// Bounds of one step each leave everything to branching, on ends first and then on edges.
+TEST(PathPair, BranchingAloneFindsTheOptimum) {
+    PathPairOptions options;
+    options.search_fronts = options.complete_walks = options.clique_multipliers = options.fix_arcs = false;
+    options.root_steps = options.node_steps = 1;
+    const std::unique_ptr<RldSolver> branching = make_path_pair_solver(options);
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    std::int64_t nodes = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        RldParameters parameters;
+        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 8), parameters);
+        const RldReport expected = exhaustive->solve(problem, {});
+        const RldReport report = branching->solve(problem, {});
+        ASSERT_EQ(report.status, expected.status);
+        nodes += report.nodes;
+        if (!expected.objective) continue;
+        ++with_lane;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-9);
+    }
+    EXPECT_GT(with_lane, 15);
+    EXPECT_GT(nodes, 1000);
+}
+
+/// Where edges cost more than they gain, the rest of a leg costs something too: arcs are dropped by the sum
+/// of both parts of a leg, no more.
+TEST(PathPair, FixesNoArcOfTheOptimumWhereEdgesCostMoreThanTheyGain) {
+    RldParameters parameters;
+    parameters.w_b = 0.05;
+    parameters.w_s = 1.0;
+    const std::unique_ptr<RldSolver> fixing = make_path_pair_solver();
+    PathPairOptions options;
+    options.fix_arcs = false;
+    const std::unique_ptr<RldSolver> keeping = make_path_pair_solver(options);
+    int dear = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 18), parameters);
+        const RldReport expected = keeping->solve(problem, {});
+        const RldReport report = fixing->solve(problem, {});
+        ASSERT_EQ(report.status, expected.status);
+        if (!expected.objective) continue;
+        dear += *expected.objective > 0.0 ? 1 : 0;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-9);
+    }
+    EXPECT_GT(dear, 80);
 }
 
 }  // namespace

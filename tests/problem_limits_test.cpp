@@ -89,6 +89,18 @@ TEST(ProblemLimits, LargeScenesEndAtTheDeadlineOrAtTheBoundOfMemory) {
     }
 }
 
+TEST(ProblemLimits, AreTheNumbersThatStandThere) {
+    LaneGraphProblem problem;
+    problem.edges.resize(kMostProblemEdges);
+    problem.conflicts.resize(kMostProblemEntries);
+    EXPECT_FALSE(is_too_large(problem));
+    problem.edges.emplace_back();
+    EXPECT_TRUE(is_too_large(problem));
+    problem.edges.pop_back();
+    problem.turns.emplace_back();
+    EXPECT_TRUE(is_too_large(problem));
+}
+
 /// 5000 cones within a few metres: the edges alone would be millions.
 TEST(ProblemLimits, MemoryIsTheReasonWhereThereIsTimeEnough) {
     const LimitedProblem limited = make_problem(strewn(5000, 8.0), {}, EdgeExtent::candidates, Deadline());

@@ -152,6 +152,10 @@ TEST(Score, ACentreLineAloneIsUsableWhereItFollowsTheTrueOne) {
     EXPECT_FALSE(good.iou);
     EXPECT_NEAR(good.lane_length_m, 25.0, 0.6);
     EXPECT_FALSE(scored_line({{-1, 0}, {10, 0}}).usable().value()) << "too short";
+    const SceneScore past_the_end = scored_line({{0, 0}, {20, 0}, {40, 0}, {50, 30}});
+    EXPECT_TRUE(past_the_end.usable().value());
+    EXPECT_FALSE(past_the_end.divergence_distance_m) << "of what comes after the true one nothing is known";
+    EXPECT_NEAR(past_the_end.lane_length_m, 36.0, 0.6);
     const SceneScore off = scored_line({{0, 0}, {8, 0}, {12, 1.2}, {30, 0}});
     EXPECT_EQ(off.category, Category::diverging_below_20);
     EXPECT_NEAR(off.divergence_distance_m.value(), 8.0, 0.6);

@@ -403,6 +403,50 @@ TEST(SearchCertificate, TheEnumerationProvesWhatWeakMultipliersDoNot) {
     EXPECT_GT(enumerated, 50);
 }
 
+/// Two boundaries of a kilometre across the car's way, 10 m apart: the only lane. The midpoint of the one is
+/// hypot(ahead_m, 1 m) from the car, so it costs 1.2 * (1000 / that)^4.
+SearchCertificate of_a_dear_lane(double ahead_m, Scene& scene, RldParameters& parameters) {
+    scene.cones.clear();
+    for (const double x : {ahead_m, ahead_m + 10.0}) {
+        for (const double y : {499.0, -501.0})
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
+    }
+    parameters.d_e = parameters.d_t = parameters.d_h = parameters.d_max = 1000.0;
+    parameters.d_near = 500.0;
+    parameters.theta_heading = std::numbers::pi / 2.0;
+    return certify_search(make_problem(scene, parameters));
+}
+
+/// Found by cross-check at a cost of 2e9.
+TEST(SearchCertificate, OfCostsUpToTheLargestBound) {
+    Scene scene;
+    RldParameters parameters;
+    for (const double ahead_m : {0.75, 5.0, 20.0}) {
+        SCOPED_TRACE(ahead_m);
+        const SearchCertificate certificate = of_a_dear_lane(ahead_m, scene, parameters);
+        const double dear = 1.2 * std::pow(1000.0 / std::hypot(ahead_m, 1.0), 4);
+        EXPECT_GT(certificate.objective.value_or(0.0), dear - 2.0);
+        const SearchVerdict verdict = verify(certificate, scene, parameters);
+        EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+        EXPECT_TRUE(verdict.is_optimum);
+        // No lane graph at all: that has to be proven against the cost of every pair of edges.
+        scene.cones.pop_back();
+        const SearchCertificate none = certify_search(make_problem(scene, parameters));
+        EXPECT_EQ(none.bound, kInfinity);
+        const SearchVerdict no_lane = verify(none, scene, parameters);
+        EXPECT_EQ(no_lane.kind, Kind::verified) << no_lane.reason;
+    }
+}
+
+TEST(SearchCertificate, ClaimsNothingOfCostsBeyondTheLargestBound) {
+    Scene scene;
+    RldParameters parameters;
+    const SearchCertificate certificate = of_a_dear_lane(0.0, scene, parameters);
+    EXPECT_GT(certificate.objective.value_or(0.0), 1e12);
+    EXPECT_EQ(certificate.bound, -kInfinity);
+    EXPECT_EQ(verify(certificate, scene, parameters).reason, "nothing is claimed");
+}
+
 /// A search that is stopped has proven a bound, and its certificate claims no more.
 TEST(SearchCertificate, OfAStoppedSearchIsOfItsBound) {
     const SearchCertificate nothing = certify_search(make_problem(straight_lane(), {}), 0.0);

@@ -148,6 +148,22 @@ TEST(ShapeCosts, OffMeansNoneAtAll) {
     EXPECT_FALSE(has_shape_costs(RldParameters{}));
 }
 
+/// Two cones at one place, and an edge of 0.2 m beside them at just the width expected: what has no direction
+/// is faced by nothing.
+TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
+    Scene scene;
+    for (const Point& place : {Point(2.0, 0.0), Point(2.0, 0.0), Point(1.9, 0.5), Point(2.1, 0.5)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    RldParameters parameters;
+    parameters.w_v = 1.0;
+    parameters.d_w = 0.5;
+    parameters.d_e = 0.2;
+    parameters.d_v = parameters.d_l = 2.0;
+    const LaneGraphProblem problem = make_problem(scene, parameters, EdgeExtent::all_pairs);
+    ASSERT_EQ(problem.edges.front().j, 1U);
+    EXPECT_EQ(problem.edges.front().facing_cost, 1.0);
+}
+
 TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
     EXPECT_TRUE(has_shape_costs(with_shape_costs({})));
     RldParameters own;

@@ -86,6 +86,19 @@ TEST_P(SolverContract, FarEndsMoreThanTheLimitApartAreInfeasible) {
               SolveStatus::infeasible);
 }
 
+/// Found by cross-check, far from the origin. A limit is met within 1e-9 m, a row within 1e-7: the rows
+/// decide as the model does. Both far ends are 3 m apart.
+TEST_P(SolverContract, FarEndsThatNearlyTieWithTheLimit) {
+    for (const double beyond_m : {-1e-9, 0.0, 0.5e-9, 1.5e-9, 1e-8, 1e-7, 1e-6}) {
+        SCOPED_TRACE(beyond_m);
+        RldParameters parameters;
+        parameters.d_max = 3.0 - beyond_m;
+        const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}}), parameters);
+        EXPECT_EQ(report.status, beyond_m < 1e-9 ? SolveStatus::optimal : SolveStatus::infeasible)
+            << report.message;
+    }
+}
+
 /// Two cones at one place: no edge joins them, and one of them is left out.
 TEST_P(SolverContract, CoincidentCones) {
     const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}, {7.2, -1.5}}));

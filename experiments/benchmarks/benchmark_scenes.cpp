@@ -25,4 +25,13 @@ std::vector<AnnotatedScene> benchmark_scenes(double false_positive_rate) {
     return all;
 }
 
+std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size) {
+    std::vector<Scene> scenes;
+    for (const AnnotatedScene& annotated : all) {
+        Scene scene = nearest_ahead(annotated.scene, size);
+        if (scene.cones.size() == size) scenes.push_back(std::move(scene));
+    }
+    return scenes;
+}
+
 }  // namespace conelane::experiments

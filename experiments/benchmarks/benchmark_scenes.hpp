@@ -2,6 +2,7 @@
 
 #include "experiments/scenes/annotated_scene.hpp"
 
+#include <cstddef>
 #include <vector>
 
 namespace conelane::experiments {
@@ -9,5 +10,8 @@ namespace conelane::experiments {
 /// The scenes of the file that the environment variable CONELANE_SCENES names. Without it those of the
 /// generated tracks, a pose every 15 m, 30 m of range. Throws InputError where the file is not right.
 [[nodiscard]] std::vector<AnnotatedScene> benchmark_scenes(double false_positive_rate);
+
+/// Those that have so many cones ahead, with the nearest of them.
+[[nodiscard]] std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size);
 
 }  // namespace conelane::experiments

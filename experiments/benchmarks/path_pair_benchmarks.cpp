@@ -2,14 +2,20 @@
 //
 //   ablation/STAGE/N   solves with one stage switched off, on cone sets of N (0: all visible), at most 50 ms
 //                      each; counters: share proven in time, nodes a scene
+//   scene/N            from a scene of the N nearest cones to the answer, the problem's making included,
+//   limit
+//                      50 ms; the scenes take turns; counters: median and p95 over the scenes of the median
+//                      of nine solves each
 //   memory             100 000 solves by one instance; counters: resident memory after 1000 and at the end
 //
 // Scenes are of generated tracks with three false positives among ten points, or those of the file that the
 // environment variable CONELANE_SCENES names.
 
 #include "conelane/lane_graph_problem.hpp"
+#include "conelane/solve_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
+#include "experiments/scoring/statistics.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -28,8 +34,10 @@ namespace conelane::experiments {
 namespace {
 
 constexpr double kTimeLimit_ms = 50.0;
+constexpr std::size_t kMemorySize = 30;
 constexpr std::size_t kMemorySolves = 100000;
 constexpr std::size_t kWarmSolves = 1000;
+constexpr std::int64_t kPasses = 9;
 
 struct Ablation {
     const char* name;
@@ -47,12 +55,13 @@ std::vector<Ablation> ablations() {
     return all;
 }
 
+using Scenes = std::shared_ptr<const std::vector<AnnotatedScene>>;
 using Problems = std::vector<LaneGraphProblem>;
 
-std::shared_ptr<const Problems> problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
-    auto problems = std::make_shared<Problems>();
+Problems problems_of(const std::vector<AnnotatedScene>& scenes, std::size_t size) {
+    Problems problems;
     for (const AnnotatedScene& annotated : scenes) {
-        problems->push_back(
+        problems.push_back(
             make_problem(size == 0 ? annotated.scene : nearest_ahead(annotated.scene, size), {}));
     }
     return problems;
@@ -89,6 +98,24 @@ void run_ablation(benchmark::State& state, const PathPairOptions& options, const
         benchmark::Counter(count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// An iteration is one pass over all scenes.
+void run_scenes(benchmark::State& state, const std::vector<Scene>& scenes) {
+    if (scenes.empty()) return state.SkipWithError("no scene has so many cones");
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    std::vector<std::vector<double>> times_us(scenes.size());
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        for (std::size_t i = 0; i < scenes.size(); ++i) {
+            times_us[i].push_back(1e3 * solve_scene(*solver, scenes[i], {}, {kTimeLimit_ms}).total_ms);
+        }
+    }
+    std::vector<double> medians_us;
+    for (const std::vector<double>& times : times_us) medians_us.push_back(median(times));
+    state.counters["median_us"] = median(medians_us);
+    state.counters["p95_us"] = quantile(medians_us, 0.95);
+    state.counters["scenes"] = static_cast<double>(scenes.size());
+}
+
 void run_memory(benchmark::State& state, const Problems& problems) {
     for (auto iteration : state) {
         static_cast<void>(iteration);
@@ -101,21 +128,28 @@ void run_memory(benchmark::State& state, const Problems& problems) {
     }
 }
 
-void register_all() {
-    const std::vector<AnnotatedScene> scenes = benchmark_scenes(0.3);
+void register_all(const Scenes& all) {
     for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
-        const std::shared_ptr<const Problems> problems = problems_of(scenes, size);
         for (const Ablation& ablation : ablations()) {
             const std::string name = std::string("ablation/") + ablation.name + "/" + std::to_string(size);
-            benchmark::RegisterBenchmark(
-                name.c_str(),
-                [=](benchmark::State& state) { run_ablation(state, ablation.options, *problems); })
+            benchmark::RegisterBenchmark(name.c_str(),
+                                         [=](benchmark::State& state) {
+                                             run_ablation(state, ablation.options, problems_of(*all, size));
+                                         })
                 ->Unit(benchmark::kMillisecond)
                 ->UseRealTime();
         }
     }
-    const std::shared_ptr<const Problems> small = problems_of(scenes, 30);
-    benchmark::RegisterBenchmark("memory", [=](benchmark::State& state) { run_memory(state, *small); })
+    for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 120}) {
+        benchmark::RegisterBenchmark(
+            ("scene/" + std::to_string(size)).c_str(),
+            [=](benchmark::State& state) { run_scenes(state, scenes_of_size(*all, size)); })
+            ->Iterations(kPasses)
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime();
+    }
+    benchmark::RegisterBenchmark(
+        "memory", [=](benchmark::State& state) { run_memory(state, problems_of(*all, kMemorySize)); })
         ->Unit(benchmark::kSecond)
         ->Iterations(1)
         ->UseRealTime();
@@ -128,7 +162,9 @@ int main(int argument_count, char** arguments) {
     benchmark::Initialize(&argument_count, arguments);
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
-        conelane::experiments::register_all();
+        namespace experiments = conelane::experiments;
+        experiments::register_all(std::make_shared<const std::vector<experiments::AnnotatedScene>>(
+            experiments::benchmark_scenes(0.3)));
     } catch (const std::exception& failure) {
         std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';
         return 2;

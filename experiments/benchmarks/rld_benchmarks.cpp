@@ -24,15 +24,6 @@ constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
 /// The paper formulation takes seconds beyond.
 constexpr std::int64_t kLargestPaperSize = 12;
 
-std::vector<Scene> scenes_of_size(const std::vector<AnnotatedScene>& all, std::size_t size) {
-    std::vector<Scene> scenes;
-    for (const AnnotatedScene& annotated : all) {
-        Scene scene = nearest_ahead(annotated.scene, size);
-        if (scene.cones.size() == size) scenes.push_back(std::move(scene));
-    }
-    return scenes;
-}
-
 std::vector<LaneGraphProblem> problems_of(const std::vector<Scene>& scenes, EdgeExtent extent) {
     std::vector<LaneGraphProblem> problems;
     for (const Scene& scene : scenes) problems.push_back(make_problem(scene, {}, extent));

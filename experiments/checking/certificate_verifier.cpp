@@ -40,11 +40,9 @@ class Verification {
     }
 
     SearchVerdict run(std::int64_t most_steps) {
-        check_lane_graph();
-        if (is_open() && std::isnan(certificate_.bound)) refuse("the bound is not a number");
-        if (is_open() && certificate_.bound == -std::numeric_limits<double>::infinity()) {
-            refuse("nothing is claimed");
-        }
+        if (std::isnan(certificate_.bound)) refuse("the bound is not a number");
+        if (certificate_.bound == -std::numeric_limits<double>::infinity()) refuse("nothing is claimed");
+        if (is_open()) check_lane_graph();
         if (is_open()) check_parts();
         verdict_.steps = most_steps - steps_left_;
         return std::move(verdict_);
@@ -65,7 +63,7 @@ class Verification {
         const Exact cost = cost_of(*certificate_.lane_graph);
         const double claimed = *certificate_.objective;
         const double tolerance = kAgreement * std::max(1.0, std::abs(claimed));
-        if (!(std::abs(claimed) < 1e12) || cost < exact_below(claimed - tolerance) ||
+        if (!(std::abs(claimed) < SearchCertificate::kMostBound) || cost < exact_below(claimed - tolerance) ||
             cost > exact_below(claimed + tolerance)) {
             return refuse(fmt::format("the lane graph does not cost {}", claimed));
         }
@@ -104,7 +102,7 @@ class Verification {
     void check_parts() {
         if (std::isinf(certificate_.bound)) {
             limit_ = exact_.cost_limit();
-        } else if (std::abs(certificate_.bound) < 1e12) {
+        } else if (std::abs(certificate_.bound) < SearchCertificate::kMostBound) {
             limit_ = exact_below(certificate_.bound) + 1;
         } else {
             return refuse("the bound is out of range");
@@ -190,7 +188,9 @@ class Verification {
         }
         for (const SearchCertificate::Stage& stage : part.stages) {
             if (stage.cone.size() != scene_.cones.size()) return "there is not one multiplier for each cone";
-            const auto bad = [](SearchCertificate::Units units) { return units < 0 || units > kMostUnits; };
+            const auto bad = [](SearchCertificate::Units units) {
+                return units < 0 || units > SearchCertificate::kMostUnits;
+            };
             if (std::ranges::any_of(stage.cone, bad) || bad(stage.heading) ||
                 std::ranges::any_of(stage.clique, [&](const auto& price) { return bad(price.second); })) {
                 return "a multiplier is negative or out of range";
@@ -222,8 +222,6 @@ class Verification {
         }
         return prices;
     }
-
-    static constexpr SearchCertificate::Units kMostUnits = SearchCertificate::Units{1} << 50;
 
     const Scene& scene_;
     const RldParameters& p_;

@@ -100,10 +100,18 @@ auto certificates(const Options& options, const Certify& certify) {
 
 std::vector<SearchCertificateRecord> search_certificates(const Options& options,
                                                          const RldParameters& parameters) {
-    return certificates(options, [&](const Scene& scene) {
-        return to_search_record(scene,
-                                certify_search(make_problem(scene, parameters), options.time_limit_ms));
+    std::vector<std::string> unproven;
+    auto records = certificates(options, [&](const Scene& scene) {
+        const SearchCertificate certificate =
+            certify_search(make_problem(scene, parameters), options.time_limit_ms);
+        if (std::isinf(certificate.bound) && certificate.bound < 0.0) unproven.push_back(scene.id);
+        return to_search_record(scene, certificate);
     });
+    for (const std::string& scene : unproven) {
+        fmt::print(stderr, "{}: nothing is claimed: no bound below {:g} was proven in time\n", scene,
+                   SearchCertificate::kMostBound);
+    }
+    return records;
 }
 
 std::vector<CertificateRecord> root_certificates(const Options& options, const RldParameters& parameters) {

@@ -140,6 +140,7 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
     fs::create_directories(directory, failure);
     if (failure) throw InputError(directory, 0, "", "cannot be made: " + failure.message());
     FolderLock lock(directory);
+    remove_abandoned_files(directory);
     const std::vector<fs::path> earlier = files_of_a_run(directory);
     if (fs::exists(directory / kRunFile)) {
         // A record that cannot be read is no reason to refuse what is to be replaced anyway.

@@ -117,6 +117,12 @@ class CaseLog {
     std::ofstream stream_;
 };
 
+/// Who a finding is about, and whether it is an error or a claim: "glpk (tight)", "cbc (paper): error".
+std::string subject_of(const std::string& finding) {
+    const std::string who = finding.substr(0, std::min(finding.find(" within "), finding.find(": ")));
+    return finding.find(": error, ") == std::string::npos ? who : who + ": error";
+}
+
 class CrossCheck {
   public:
     CrossCheck(const CrossCheckOptions& options, fs::path directory)
@@ -179,10 +185,13 @@ class CrossCheck {
 
     void write_shrunk(const JudgedCase& judged) const {
         CrossCheckVerdict verdict = judged.verdict;
-        // Under a tight limit a difference may not show again: the case is kept as it was then.
+        // Under a tight limit a difference may not show again: the case is kept as it was then. Another
+        // difference on the way is none: it would hide the one that was found.
+        const std::string subject = subject_of(judged.verdict.findings.front());
         const CrossCheckCase shrunk = shrink(judged.drawn, [&](const CrossCheckCase& smaller) {
             CrossCheckVerdict again = verdict_on(smaller);
-            if (again.findings.empty()) return false;
+            const auto is_the_same = [&](const std::string& found) { return subject_of(found) == subject; };
+            if (std::ranges::none_of(again.findings, is_the_same)) return false;
             verdict = std::move(again);
             return true;
         });

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -16,6 +17,9 @@ namespace conelane::experiments {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Goes before the number of the process and that of the attempt.
+const std::string kTemporary = ".tmp";
 
 /// Open descriptors of the process, whatever they lead to: renaming over what a shell redirected them to
 /// would take it from under the other writers.
@@ -35,7 +39,7 @@ bool is_open_descriptor(const fs::path& target) {
 fs::path create_temporary(const fs::path& place, const fs::path& target) {
     for (int attempt = 0;; ++attempt) {
         fs::path name = place;
-        name += ".tmp" + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+        name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
         const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             ::close(descriptor);
@@ -46,6 +50,21 @@ fs::path create_temporary(const fs::path& place, const fs::path& target) {
 }
 
 }  // namespace
+
+void remove_abandoned_files(const fs::path& folder) {
+    std::vector<fs::path> abandoned;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        const std::size_t end = name.rfind(kTemporary);
+        if (end == std::string::npos || !entry.is_regular_file()) continue;
+        const std::string_view numbers = std::string_view(name).substr(end + kTemporary.size());
+        if (numbers.find('_') != std::string_view::npos &&
+            numbers.find_first_not_of("0123456789_") == std::string_view::npos) {
+            abandoned.push_back(entry.path());
+        }
+    }
+    for (const fs::path& file : abandoned) fs::remove(file);
+}
 
 AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target) {
     std::error_code error;

@@ -35,6 +35,10 @@ class AtomicFile {
     std::ofstream stream_;
 };
 
+/// Removes what a program that was killed left in a folder under temporary names. Precondition: no other
+/// program writes there.
+void remove_abandoned_files(const std::filesystem::path& folder);
+
 /// Throws InputError as writing the target would, and leaves it as it was. Pipes and devices are left alone:
 /// opening one may end what reads it.
 void require_writable(const std::filesystem::path& target);

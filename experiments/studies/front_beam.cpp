@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -28,22 +29,26 @@ namespace {
 
 /// Scores that differ by less are equal: sums in another order.
 constexpr double kSameScore = 1e-4;
+constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 /// One width, scene by scene.
 class Width {
   public:
-    Width(const FrontWeights& weights, const FrontSearchOptions& search)
-        : cost_(weights), judge_(weights), options_(search) {
-        row_.beam = search.beam_width;
+    Width(const FrontWeights& weights, const FrontSearchOptions& search,
+          double limit_ms = std::numeric_limits<double>::infinity())
+        : cost_(weights), judge_(weights), options_(search), limit_ms_(limit_ms) {
+        row_.beam = search.beam_width == kAll ? 0 : search.beam_width;
         row_.drop = search.drop;
     }
 
     /// The highest score of a lane; minus infinity where there is none.
     double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
         const auto begin = std::chrono::steady_clock::now();
-        SearchBudget unlimited;
+        SearchBudget budget;
+        budget.deadline = Deadline(limit_ms_);
         search_.begin(scene.scene, cost_, options_);
-        search_.run(unlimited);
+        search_.run(budget);
+        if (!budget.stopped_by && !search_.left_out()) row_.proven += 1.0;
         search_.sort_finished(FrontJudge::kContenders);
         contenders_.clear();
         for (const FrontSearch::Finished& lane : search_.finished()) {
@@ -73,7 +78,8 @@ class Width {
 
     [[nodiscard]] FrontBeamRow row() const {
         FrontBeamRow row = row_;
-        for (double* share : {&row.best_score, &row.first_usable, &row.usable, &row.any_usable, &row.iou})
+        for (double* share :
+             {&row.proven, &row.best_score, &row.first_usable, &row.usable, &row.any_usable, &row.iou})
             *share /= static_cast<double>(row.scenes);
         row.median_ms = median(times_ms_);
         row.p95_ms = quantile(times_ms_, 0.95);
@@ -98,6 +104,7 @@ class Width {
     FrontCost cost_;
     FrontJudge judge_;
     FrontSearchOptions options_;
+    double limit_ms_;
     FrontSearch search_;
     std::vector<FrontJudge::Contender> contenders_;
     std::array<std::vector<Vertex>, 2> cones_;
@@ -107,8 +114,9 @@ class Width {
 
 nlohmann::ordered_json to_json(const FrontBeamRow& row) {
     return {{"beam", row.beam},
-            {"drop", row.drop},
+            {"drop", std::isfinite(row.drop) ? nlohmann::ordered_json(row.drop) : nlohmann::ordered_json()},
             {"scenes", row.scenes},
+            {"proven", row.proven},
             {"best_score", row.best_score},
             {"first_usable", row.first_usable},
             {"usable", row.usable},
@@ -123,6 +131,7 @@ std::string table_of(std::span<const FrontBeamRow> rows) {
     TextTable table({{"beam"},
                      {"drop"},
                      {"scenes"},
+                     {"proven %"},
                      {"best score %"},
                      {"usable by score %"},
                      {"usable, judged %"},
@@ -132,10 +141,11 @@ std::string table_of(std::span<const FrontBeamRow> rows) {
                      {"p95 ms"},
                      {"worst ms"}});
     for (const FrontBeamRow& row : rows) {
-        table.add({std::to_string(row.beam), fixed(row.drop, 1), std::to_string(row.scenes),
-                   percent(row.best_score, 2), percent(row.first_usable, 2), percent(row.usable, 2),
-                   percent(row.any_usable, 2), percent(row.iou, 2), fixed(row.median_ms, 2),
-                   fixed(row.p95_ms, 2), fixed(row.worst_ms, 2)});
+        table.add({row.beam == 0 ? "all" : std::to_string(row.beam),
+                   std::isfinite(row.drop) ? fixed(row.drop, 1) : "-", std::to_string(row.scenes),
+                   percent(row.proven, 2), percent(row.best_score, 2), percent(row.first_usable, 2),
+                   percent(row.usable, 2), percent(row.any_usable, 2), percent(row.iou, 2),
+                   fixed(row.median_ms, 2), fixed(row.p95_ms, 2), fixed(row.worst_ms, 2)});
     }
     return table.text();
 }
@@ -148,8 +158,10 @@ class FrontBeamStudy : public Study {
                "how often does the beam of front miss the lane of the highest score, and what does the judge "
                "add to the score?",
                "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
-               "is the widest search. Best score: as high as that of any row. Any usable: among the best 20 "
-               "lanes, which the judge chooses from. *.tracks.json beside the scenes has the boundaries."}) {}
+               "is the widest search, but for --exhaustive. Best score: as high as that of any row. Proven: "
+               "nothing was left out, so no lane that the rules allow has a higher score. Any usable: among "
+               "the best 20 lanes, which the judge chooses from. *.tracks.json beside the scenes has the "
+               "boundaries."}) {}
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it")->required();
@@ -161,6 +173,11 @@ class FrontBeamStudy : public Study {
             ->capture_default_str();
         command.add_option("--reference-drop", options_.reference_drop, "of the last row [score]")
             ->capture_default_str();
+        command
+            .add_option("--exhaustive", options_.exhaustive_ms,
+                        "a row for each: the search that leaves out nothing, stopped after so long [ms]")
+            ->delimiter(',')
+            ->check(CLI::PositiveNumber);
     }
 
     StudyResult run() override {
@@ -195,8 +212,16 @@ std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOp
     FrontSearchOptions reference;
     reference.beam_width = options.reference_beam;
     reference.drop = reference.finished_drop = options.reference_drop;
+    reference.far_m = std::numeric_limits<double>::infinity();
     validate(reference);
     widths.emplace_back(options.weights, reference);
+    for (const double limit_ms : options.exhaustive_ms) {
+        FrontSearchOptions all;
+        all.beam_width = kAll;
+        all.drop = all.finished_drop = std::numeric_limits<double>::infinity();
+        all.merge = false;
+        widths.emplace_back(options.weights, all, limit_ms);
+    }
 
     std::vector<const AnnotatedScene*> scenes;
     for (const AnnotatedScene& scene : set.scenes) {

@@ -19,16 +19,19 @@ class Study;
 struct FrontBeamOptions {
     FrontWeights weights;
     std::vector<std::size_t> beams{5, 10, 15, 30, 100};  ///< states a level, with the detector's other limits
-    /// The last row: the widest search, which the others are held against.
+    /// The last row but those of `exhaustive_ms`: the widest search, which the others are held against.
     std::size_t reference_beam = 400;
     double reference_drop = 12.0;
+    /// A row for each: the search that leaves out nothing, neither drops nor merges, stopped after so long.
+    std::vector<double> exhaustive_ms;
 };
 
 /// One width over all scenes with a ground truth. Shares are of these.
 struct FrontBeamRow {
-    std::size_t beam = 0;
-    double drop = 0.0;
+    std::size_t beam = 0;  ///< 0: no limit
+    double drop = 0.0;     ///< infinity: none
     std::size_t scenes = 0;
+    double proven = 0.0;        ///< share whose search left out nothing: no lane has a higher score
     double best_score = 0.0;    ///< share with a lane of the highest score that any row has met
     double first_usable = 0.0;  ///< by score alone
     double usable = 0.0;        ///< as the judge orders the best lanes

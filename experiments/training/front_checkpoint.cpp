@@ -53,6 +53,7 @@ std::string describe_training(const std::vector<Track>& courses, const FrontTrai
           {"drop", search.drop},
           {"finished_drop", search.finished_drop},
           {"level_m", search.level_m},
+          {"far_m", search.far_m},
           {"listed", options.loss.listed},
           {"fall_out", options.loss.fall_out},
           {"minimum_risk", options.loss.minimum_risk},

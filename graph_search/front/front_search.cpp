@@ -48,6 +48,7 @@ void validate(const FrontSearchOptions& options) {
     if (!(options.finished_drop > 0.0)) throw InvalidInput("finished_drop", "must be positive");
     if (!(options.level_m > 0.0 && std::isfinite(options.level_m)))
         throw InvalidInput("level_m", "must be positive");
+    if (!(options.far_m >= 0.0)) throw InvalidInput("far_m", "must not be negative");
 }
 
 void FrontSearch::begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
@@ -102,6 +103,8 @@ void FrontSearch::run(SearchBudget& budget) {
 
 void FrontSearch::keep_best() {
     const std::vector<Candidate>& candidates = levels_[next_level_];
+    const bool is_far = static_cast<double>(next_level_) * options_.level_m >= 2.0 * options_.far_m;
+    const std::size_t width = is_far ? (options_.beam_width - 1) / 3 + 1 : options_.beam_width;
     order_.resize(candidates.size());
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
     std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
@@ -112,7 +115,7 @@ void FrontSearch::keep_best() {
         const bool is_behind =
             candidate.score < best_finished_ - options_.finished_drop ||
             (!level_.empty() && candidate.score < nodes_[level_.front()].score - options_.drop);
-        if (is_behind || level_.size() == options_.beam_width) {
+        if (is_behind || level_.size() == width) {
             left_out_ = true;
             break;
         }

@@ -20,6 +20,8 @@ struct FrontSearchOptions {
     double drop = 4.0;            ///< those so much behind the best of their level are not kept
     double finished_drop = 4.0;   ///< nor those so much behind the best lane that has ended
     double level_m = 2.5;         ///< progress, of both boundaries together, from level to level
+    double far_m = 100.0;         ///< along the lane, from where a third of the beam goes on: a dense view
+                                  ///< holds lanes of 300 m, which nobody drives before the next scene
     bool merge = true;            ///< of the states with the same front only the best is kept
 };
 
@@ -27,9 +29,9 @@ struct FrontSearchOptions {
 void validate(const FrontSearchOptions& options);
 
 /// Beam search over fronts. States compete with those of the same progress, the length of both boundaries
-/// with what lies before their first cones; of each level the best go on. A level holds the states of one
-/// front once, the best of them. Of states of equal score the one found first goes first: cones are in the
-/// order of FrontMap, so the answer depends on nothing but the scene and the options.
+/// with what lies before their first cones; of each level the best go on, fewer beyond `far_m`. A level holds
+/// the states of one front once, the best of them. Of states of equal score the one found first goes first:
+/// cones are in the order of FrontMap, so the answer depends on nothing but the scene and the options.
 ///
 /// A new segment may cross none of the lane's segments and comes nowhere within FrontRules::narrowest_m of
 /// the other boundary; no cone is on a lane twice. Where the beam is as wide as there are states, none is

@@ -2,12 +2,23 @@
 #include "model/constraints/families.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace conelane::constraints {
 namespace {
 
 /// Above every valid d_max; numbers beyond it would only disturb solvers [m].
 constexpr double kLongestDistance_m = 1e6;
+/// Share of d_max, or of 1 m, by which a distance has to exceed it to be felt: solvers meet rows within 1e-7.
+constexpr double kFelt = 1e-5;
+
+/// By pairs of cones, both ways: whether they are too far apart for two far endpoints.
+std::vector<bool> apart(const LaneGraphProblem& problem) {
+    const std::size_t n = problem.cone_count;
+    std::vector<bool> are_apart(n * n, false);
+    for (const auto& [i, j] : problem.far_apart) are_apart[i * n + j] = are_apart[j * n + i] = true;
+    return are_apart;
+}
 
 }  // namespace
 
@@ -23,14 +34,23 @@ void far_marks(const FamilyContext& context) {
 
 void far_distance(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
-    for (std::size_t i = 0; i < problem.cone_count; ++i) {
-        for (std::size_t j = 0; j < problem.cone_count; ++j) {
+    const std::size_t n = problem.cone_count;
+    const double d_max = problem.parameters.d_max;
+    const double felt = d_max + kFelt * std::max(1.0, d_max);
+    const std::vector<bool> are_apart = apart(problem);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
             if (i == j) continue;
             if (rows.stop()) return;
             // Any distance above d_max says the same.
-            const double distance = std::min(problem.distance_m[i][j], kLongestDistance_m);
+            double distance = std::min(problem.distance_m[i][j], kLongestDistance_m);
+            // Of two far cones one that nearly ties must say to a solver what it says here.
+            if (are_apart[i * n + j])
+                distance = std::max(distance, felt);
+            else if (!problem.near[i] && !problem.near[j])
+                distance = std::min(distance, d_max);
             rows.begin({"far_distance", {static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)}},
-                       -kInfinity, problem.parameters.d_max);
+                       -kInfinity, d_max);
             if (!problem.near[i]) add_endpoint_mark(context, i, distance);
             rows.add(columns.not_far[j], -distance);
             rows.end();
@@ -54,8 +74,7 @@ bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
 void far_partners(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t n = problem.cone_count;
-    std::vector<bool> apart(n * n, false);
-    for (const auto& [i, j] : problem.far_apart) apart[i * n + j] = apart[j * n + i] = true;
+    const std::vector<bool> are_apart = apart(problem);
     const bool disjoint = problem.parameters.pairing == Pairing::near_far;
     const ConflictGraph conflicts(problem);
     for (std::size_t i = 0; i < n; ++i) {
@@ -66,7 +85,7 @@ void far_partners(const FamilyContext& context) {
                        -kInfinity, 0.0);
             rows.add(end_column(context, edge, i), 1.0);
             for (std::size_t j = 0; j < n; ++j) {
-                if (j == i || problem.near[j] || apart[i * n + j]) continue;
+                if (j == i || problem.near[j] || are_apart[i * n + j]) continue;
                 for (const std::size_t other : problem.incident[j]) {
                     if (conflicts.joined(edge, other)) continue;
                     if (disjoint && have_cone_in_common(problem.edges[edge], problem.edges[other])) continue;

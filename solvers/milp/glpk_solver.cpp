@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glpk.h>
@@ -37,6 +39,14 @@ void look(glp_tree* tree, void* data) {
     }
 }
 
+/// GLPK goes by tolerances of a relaxation's values and reduced costs. Beside a cost of 1e13 a rounding error
+/// of 1e-13 weighs as much as a lane, and the optimum gets lost. So columns that cost more than this wait at
+/// 0, where no better point can have them, see solve().
+constexpr double kMostCostAtFirst = 1e3;
+constexpr double kCostStep = 1e3;
+/// As of Clp: beyond it no answer is of use.
+constexpr double kMostCostTaken = 1e25;
+
 /// GLPK keeps an environment in each thread that has used it, and frees none.
 struct ThreadEnvironment {
     ThreadEnvironment() = default;
@@ -57,11 +67,18 @@ class GlpkSession : public MilpSession {
         for (std::size_t c = 0; c < program.columns.size(); ++c) {
             const BinaryProgram::Column& column = program.columns[c];
             const int index = static_cast<int>(c) + 1;
-            glp_set_obj_coef(problem_, index, column.objective);
             if (column.integer) glp_set_col_kind(problem_, index, GLP_IV);
-            glp_set_col_bnds(problem_, index, column.lower < column.upper ? GLP_DB : GLP_FX, column.lower,
-                             column.upper);
+            least_of_rest_ += std::min(0.0, column.objective) * column.upper;
+            if (column.objective > kMostCostAtFirst && column.lower == 0.0) {
+                waiting_.push_back({index, column.objective, column.upper});
+                glp_set_col_bnds(problem_, index, GLP_FX, 0.0, 0.0);
+            } else {
+                glp_set_obj_coef(problem_, index, column.objective);
+                glp_set_col_bnds(problem_, index, column.lower < column.upper ? GLP_DB : GLP_FX, column.lower,
+                                 column.upper);
+            }
         }
+        std::ranges::sort(waiting_, {}, &WaitingColumn::cost);
         if (!program.rows.empty()) glp_add_rows(problem_, static_cast<int>(program.rows.size()));
         std::vector<int> columns(1);
         std::vector<double> values(1);
@@ -80,18 +97,29 @@ class GlpkSession : public MilpSession {
     GlpkSession(const GlpkSession&) = delete;
     GlpkSession& operator=(const GlpkSession&) = delete;
 
+    /// A point with a column that waits costs at least `least_of_waiting`: one that is cheaper is the best of
+    /// all. Where there is none, those join that may be part of a better one; with no point at all the
+    /// cheapest thousandfold, so that the costs in play stay within a thousand of the objective.
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
-        MilpReport report;
-        if (!solve_relaxation(deadline, report)) return report;
-        report.bound = glp_get_obj_val(problem_);
-        if (*report.bound >= limits.cutoff) {
-            report.status = SolveStatus::infeasible;
-            report.bound.reset();
-            return report;
+        MilpReport earlier;
+        double earlier_value = limits.cutoff;
+        while (true) {
+            MilpReport report = solve_without_waiting(limits, deadline);
+            const double least_of_waiting = waiting_.empty() ? std::numeric_limits<double>::infinity()
+                                                             : waiting_.front().cost + least_of_rest_;
+            if (report.bound) report.bound = std::min(*report.bound, least_of_waiting);
+            const double value = report.point.empty() ? limits.cutoff : glp_mip_obj_val(problem_);
+            const bool decided =
+                report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
+            if (!decided) return with_earlier(std::move(report), value, earlier, earlier_value);
+            if (least_of_waiting >= value) return report;
+            join(std::isfinite(value) ? value - least_of_rest_ : kCostStep * waiting_.front().cost);
+            if (!report.point.empty()) {
+                earlier = std::move(report);
+                earlier_value = value;
+            }
         }
-        branch(limits, deadline, report);
-        return report;
     }
 
     void add_rows(std::span<const ProgramRow> rows) override {
@@ -107,6 +135,49 @@ class GlpkSession : public MilpSession {
     }
 
   private:
+    struct WaitingColumn {
+        int index;
+        double cost;
+        double upper;
+    };
+
+    /// A solve that was stopped keeps the point from before columns joined where it has no better one.
+    static MilpReport with_earlier(MilpReport report, double value, MilpReport& earlier,
+                                   double earlier_value) {
+        const bool was_stopped =
+            report.status == SolveStatus::stopped || report.status == SolveStatus::feasible;
+        if (was_stopped && !earlier.point.empty() && earlier_value <= value) {
+            report.status = SolveStatus::feasible;
+            report.point = std::move(earlier.point);
+        }
+        return report;
+    }
+
+    /// Columns up to this cost, the cheapest in any case, wait no longer.
+    void join(double most_cost) {
+        const auto stay = std::ranges::upper_bound(waiting_, std::max(most_cost, waiting_.front().cost), {},
+                                                   &WaitingColumn::cost);
+        for (auto column = waiting_.begin(); column != stay; ++column) {
+            if (!(column->cost < kMostCostTaken)) throw std::runtime_error("a cost is too large for GLPK");
+            glp_set_obj_coef(problem_, column->index, column->cost);
+            glp_set_col_bnds(problem_, column->index, GLP_DB, 0.0, column->upper);
+        }
+        waiting_.erase(waiting_.begin(), stay);
+    }
+
+    MilpReport solve_without_waiting(const MilpLimits& limits, const Deadline& deadline) {
+        MilpReport report;
+        if (!solve_relaxation(deadline, report)) return report;
+        report.bound = glp_get_obj_val(problem_);
+        if (*report.bound >= limits.cutoff) {
+            report.status = SolveStatus::infeasible;
+            report.bound.reset();
+            return report;
+        }
+        branch(limits, deadline, report);
+        return report;
+    }
+
     void set_row(int index, const std::vector<int>& columns, const std::vector<double>& values, double lower,
                  double upper) {
         const bool has_lower = lower > -kInfinity;
@@ -188,6 +259,8 @@ class GlpkSession : public MilpSession {
     }
 
     glp_prob* problem_;
+    std::vector<WaitingColumn> waiting_;  ///< fixed at 0 and without a cost, the cheapest first
+    double least_of_rest_ = 0.0;          ///< all negative costs together
 };
 
 class GlpkSolver : public MilpSolver {

@@ -1,18 +1,20 @@
 #include "solvers/path_pair/arc_graph.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace conelane::path_pair {
 
 bool ArcGraph::build(const LaneGraphProblem& problem, SearchClock& clock) {
     cone_count_ = static_cast<int>(problem.cone_count);
     add_edges(problem);
-    if (clock.out_of_time()) return false;
     incompatible_.reset(edge_count(), edge_count());
+    if (clock.out_of_time(problem.edges.size())) return false;
     for (const auto& [first, second] : problem.conflicts) exclude(first, second);
-    if (clock.out_of_time()) return false;
+    if (clock.out_of_time(5 * problem.conflicts.size())) return false;
     add_successions(problem);
-    if (clock.out_of_time()) return false;
+    find_share_bound();
+    if (clock.out_of_time(20 * problem.turns.size())) return false;
     return add_partners(problem, clock);
 }
 
@@ -44,38 +46,41 @@ void ArcGraph::exclude(std::size_t first, std::size_t second) {
 }
 
 void ArcGraph::add_successions(const LaneGraphProblem& problem) {
-    // Through the middle cone of a turn: arc_k leaves it, the reverse of arc_i arrives, and the other way
-    // round.
-    const auto for_each_succession = [&](auto&& visit) {
-        for (const ProblemTurn& turn : problem.turns) {
-            const int edge_i = edge_of_problem_[turn.edge_i];
-            const int edge_k = edge_of_problem_[turn.edge_k];
-            if (turn.high_cost || edge_i < 0 || edge_k < 0) continue;
-            const auto middle = static_cast<int>(turn.middle);
-            const int from_i = tail(2 * edge_i) == middle ? 2 * edge_i : 2 * edge_i + 1;
-            const int from_k = tail(2 * edge_k) == middle ? 2 * edge_k : 2 * edge_k + 1;
-            visit(from_i ^ 1, from_k, turn.cost);
-            visit(from_k ^ 1, from_i, turn.cost);
-        }
+    const auto leaving = [&](int edge, std::size_t cone) {
+        return 2 * edge + (tail(2 * edge) == static_cast<int>(cone) ? 0 : 1);
     };
     start_.assign(static_cast<std::size_t>(arc_count()) + 1, 0);
-    for_each_succession([&](int arc, int, double) { ++start_[static_cast<std::size_t>(arc) + 1]; });
+    turns_.clear();
+    for (const ProblemTurn& turn : problem.turns) {
+        if (turn.high_cost) {
+            exclude(turn.edge_i, turn.edge_k);
+            continue;
+        }
+        const int edge_i = edge_of_problem_[turn.edge_i];
+        const int edge_k = edge_of_problem_[turn.edge_k];
+        if (edge_i < 0 || edge_k < 0) continue;
+        turns_.push_back({leaving(edge_i, turn.middle), leaving(edge_k, turn.middle), turn.cost});
+        ++start_[static_cast<std::size_t>(turns_.back().arc_i ^ 1) + 1];
+        ++start_[static_cast<std::size_t>(turns_.back().arc_k ^ 1) + 1];
+    }
     for (std::size_t a = 1; a < start_.size(); ++a) start_[a] += start_[a - 1];
     successions_.resize(start_.back());
     fill_.assign(start_.begin(), start_.end() - 1);
-    for_each_succession([&](int arc, int next, double cost) {
-        successions_[fill_[static_cast<std::size_t>(arc)]++] = {next, cost};
-    });
-    for (const ProblemTurn& turn : problem.turns) {
-        if (turn.high_cost) exclude(turn.edge_i, turn.edge_k);
+    // The reverse of an arc that leaves the middle cone arrives there, and the other arc leaves it.
+    for (const Turn& turn : turns_) {
+        successions_[fill_[static_cast<std::size_t>(turn.arc_i ^ 1)]++] = {turn.arc_k, turn.cost};
+        successions_[fill_[static_cast<std::size_t>(turn.arc_k ^ 1)]++] = {turn.arc_i, turn.cost};
     }
 }
 
 bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock) {
     near_.assign(problem.cone_count, 0);
+    far_.reset(1, cone_count_);
     apart_.reset(cone_count_, cone_count_);
     for (int cone = 0; cone < cone_count_; ++cone) {
-        near_[static_cast<std::size_t>(cone)] = problem.near[static_cast<std::size_t>(cone)] ? 1 : 0;
+        const bool is_near = problem.near[static_cast<std::size_t>(cone)];
+        near_[static_cast<std::size_t>(cone)] = is_near ? 1 : 0;
+        if (!is_near) far_.set(0, cone);
         apart_.set(cone, cone);
     }
     for (const auto& [i, j] : problem.far_apart) {
@@ -84,14 +89,34 @@ bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock)
     }
     partner_start_.assign(1, 0);
     partners_.clear();
+    const std::span<const std::uint64_t> far = far_.row(0);
     for (int cone = 0; cone < cone_count_; ++cone) {
         if (clock.out_of_time(2 * problem.cone_count)) return false;
-        for (int other = 0; other < cone_count_; ++other) {
-            if (!near(cone) && !near(other) && !apart_.test(cone, other)) partners_.push_back(other);
+        const std::span<const std::uint64_t> apart = apart_.row(cone);
+        for (std::size_t w = 0; w < far.size() && !near(cone); ++w) {
+            for (std::uint64_t bits = far[w] & ~apart[w]; bits != 0; bits &= bits - 1) {
+                partners_.push_back(static_cast<int>(w * 64) + std::countr_zero(bits));
+            }
         }
         partner_start_.push_back(partners_.size());
     }
     return true;
+}
+
+void ArcGraph::find_share_bound() {
+    share_.assign(static_cast<std::size_t>(cone_count_), 0.0);
+    for (int arc = 0; arc < arc_count(); ++arc) {
+        double& share = share_[static_cast<std::size_t>(head(arc))];
+        share = std::min(share, 0.5 * cost(arc / 2));
+    }
+    for (const Turn& turn : turns_) {
+        double& share = share_[static_cast<std::size_t>(tail(turn.arc_i))];
+        const double half_i = 0.5 * cost(turn.arc_i / 2);
+        const double half_k = 0.5 * cost(turn.arc_k / 2);
+        share = std::min(share, half_i + turn.cost + half_k);
+    }
+    share_bound_ = 0.0;
+    for (const double share : share_) share_bound_ += share;
 }
 
 int ArcGraph::arc(int from, int to) const {
@@ -103,21 +128,6 @@ int ArcGraph::arc(int from, int to) const {
 double ArcGraph::turn_cost(int arc, int next) const {
     const std::span<const Succession> all = successions(arc);
     return std::ranges::find(all, next, &Succession::arc)->cost;
-}
-
-double ArcGraph::share_bound() const {
-    std::vector<double> share(static_cast<std::size_t>(cone_count_), 0.0);
-    for (int arc = 0; arc < arc_count(); ++arc) {
-        double& end = share[static_cast<std::size_t>(head(arc))];
-        const double half = 0.5 * cost(arc / 2);
-        end = std::min(end, half);
-        for (const Succession& next : successions(arc)) {
-            end = std::min(end, half + next.cost + 0.5 * cost(next.arc / 2));
-        }
-    }
-    double sum = 0.0;
-    for (const double value : share) sum += value;
-    return sum;
 }
 
 }  // namespace conelane::path_pair

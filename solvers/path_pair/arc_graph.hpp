@@ -59,13 +59,20 @@ class ArcGraph {
     [[nodiscard]] bool are_partners(int cone, int other) const { return !apart_.test(cone, other); }
 
     /// A lower bound of every lane graph's cost: each cone's cheapest share, half of its edges and its turn.
-    [[nodiscard]] double share_bound() const;
+    [[nodiscard]] double share_bound() const { return share_bound_; }
 
   private:
+    /// An allowed turn, by the two arcs that leave its middle cone.
+    struct Turn {
+        int arc_i;
+        int arc_k;
+        double cost;
+    };
     void add_edges(const LaneGraphProblem& problem);
     void exclude(std::size_t first, std::size_t second);
     void add_successions(const LaneGraphProblem& problem);
     bool add_partners(const LaneGraphProblem& problem, SearchClock& clock);
+    void find_share_bound();
 
     int cone_count_ = 0;
     std::vector<int> cone_;  ///< by arc: its tail
@@ -73,14 +80,18 @@ class ArcGraph {
     std::vector<char> along_heading_;
     std::vector<std::size_t> problem_edge_;
     std::vector<int> edge_of_problem_;
+    std::vector<Turn> turns_;
     std::vector<std::size_t> start_;
     std::vector<std::size_t> fill_;
     std::vector<Succession> successions_;
     BitMatrix incompatible_;
     std::vector<char> near_;
+    BitMatrix far_;    ///< one row, by cone
     BitMatrix apart_;  ///< pairs that (17) forbids, near cones and a cone with itself
     std::vector<std::size_t> partner_start_;
     std::vector<int> partners_;
+    std::vector<double> share_;  ///< by cone, the cheapest
+    double share_bound_ = 0.0;
 };
 
 }  // namespace conelane::path_pair

@@ -26,6 +26,8 @@ constexpr std::int64_t kFewFronts = 2000;    ///< of the first try
 constexpr std::int64_t kWorkPerFront = 30;   ///< label updates of the ascent that allow one front
 constexpr std::size_t kMostFronts = 300000;  ///< of the last try, before a node branches
 constexpr std::size_t kMostFrontBytes = 200'000'000;  ///< of their tables, together
+constexpr std::size_t kMostWindowFronts = 3000;
+constexpr std::size_t kWorkPerMadeFront = 500;  ///< of the clock
 constexpr std::size_t kMostLabels = 1000000;
 constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
 constexpr int kWideFronts = 4000;   ///< from here on first a narrow search, for the incumbent, and detours
@@ -37,7 +39,10 @@ constexpr double kTargets[] = {0.3, 0.6, 1.0};  ///< shares of the gap
 constexpr double kLowerTargets[] = {0.3, 0.1};  ///< shares of a target's gap that was too wide
 constexpr double kLeastTargetGap = 1.0;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
-constexpr int kLargeGraph = 250;  ///< arcs
+constexpr int kFirstImprovement = 2;    ///< step of the root's ascent
+constexpr int kLateAscent = 1000;       ///< arcs from which on it is before the first step
+constexpr double kMostOvershoot = 2.0;  ///< of the ascent's steps
+constexpr int kLargeGraph = 250;        ///< arcs
 constexpr int kNearArcs = 100;
 constexpr int kRestSteps = 2;
 constexpr std::size_t kMostOpenNodes = 2000;
@@ -64,6 +69,7 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     if (explore(root_) == Verdict::stopped) open_bound = root_.bound;
     while (open_bound == kUnreachable && !open_.empty()) {
         std::unique_ptr<Node> next = take_next();
+        improve_incumbent(root_.graph, next->bound);
         if (next->bound < cutoff()) {
             ++nodes_;
             if (explore(*next) == Verdict::stopped) open_bound = std::min(next->bound, least_open_bound());
@@ -106,11 +112,13 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
     index_.assign(at(graph_.cone_count()), 0);
-    std::vector<char> starting = system.kinds[0].start;
-    for (std::size_t cone = 0; cone < starting.size(); ++cone) {
-        if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting[cone] = 1;
+    starting_ = system.kinds[0].start;
+    for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
+        if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting_[cone] = 1;
     }
-    root_.graph.assign(graph_, starting);
+    root_.graph.assign(graph_, starting_);
+    whole_system_ = &system;
+    begin_improvement();
     root_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
     root_.multipliers.clique.clear();
     root_.multipliers.heading = 0.0;
@@ -207,6 +215,9 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
     state.is_root = is_root;
     if (is_root) state.first_cutoff = incumbent_.cutoff();
     for (;; ++state.step) {
+        if (is_root && (state.step >= kFirstImprovement || graph_.arc_count() >= kLateAscent)) {
+            improve_incumbent(here.graph, here.bound);
+        }
         if (stopped_()) return Verdict::stopped;
         state.value = evaluate(here.graph);
         if (state.value == -kUnreachable) return Verdict::stopped;
@@ -232,10 +243,11 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
         if (state.last) break;
         move_multipliers(here, state);
         if (options_.fix_arcs && fix(here) && here.graph.arc.empty()) return Verdict::closed;
-        if (options_.clique_multipliers && state.step % kStepsPerRound == kStepsPerRound - 1) {
+        if (options_.clique_multipliers && !in_window_ && state.step % kStepsPerRound == kStepsPerRound - 1) {
             separate(here.graph, multipliers_);
         }
     }
+    if (in_window_) return Verdict::open;
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
     return search_fronts(here.graph, kAny, kAny);
@@ -311,8 +323,7 @@ BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, A
 
 void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
     if (state.since_best < (state.is_root ? kRootPatience : kPatience)) {
-        ascent_.step(multipliers_, usage_, decisions_.visited(), incumbent_.cutoff() - state.value,
-                     state.scale);
+        ascent_.step(multipliers_, usage_, decisions_.visited(), step_gap(state), state.scale);
         return;
     }
     // The steps were too long: shorter ones, from the best multipliers.
@@ -320,6 +331,14 @@ void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
     state.scale *= 0.5;
     take_best_multipliers(here);
     ascent_.restart(multipliers_);
+}
+
+/// Up to the incumbent; at the root up to the last one that the ascent found, which is farther away than one
+/// from windows. With steps up to that one it takes nearly twice as many.
+double BranchAndBound::step_gap(const AscentState& state) const {
+    const double gap = incumbent_.cutoff() - state.value;
+    if (!state.is_root || incumbent_.cutoff() < improvement_.known_cost) return gap;
+    return std::clamp(improvement_.outside_cost - state.value, gap, kMostOvershoot * gap);
 }
 
 /// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
@@ -334,7 +353,9 @@ BranchAndBound::Verdict BranchAndBound::search_fronts_by_target(const ResidualGr
         Verdict verdict = search_below(graph, target, state);
         for (const double part : kLowerTargets) {
             const double step = part * (target - state.best);
-            if (verdict != Verdict::open || incumbent_.cutoff() < target || step < kLeastTargetGap) break;
+            if (verdict != Verdict::open || in_window_ || incumbent_.cutoff() < target ||
+                step < kLeastTargetGap)
+                break;
             if (search_below(graph, state.best + step, state) == Verdict::closed) break;
         }
         if (incumbent_.cutoff() < target || verdict != Verdict::closed) return verdict;
@@ -348,7 +369,7 @@ BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph,
                                                      AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     incumbent_.set_cutoff(target);
-    const Verdict verdict = search_fronts(graph, kMostFronts, kMostLabels);
+    const Verdict verdict = search_fronts(graph, in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels);
     if (incumbent_.cutoff() < target) return verdict;
     incumbent_.set_cutoff(incumbent);
     if (verdict == Verdict::closed) state.best = std::max(state.best, target - tolerance_);
@@ -361,8 +382,10 @@ BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph,
     if (clock_.struck()) return Verdict::stopped;
     dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, clock_);
     if (clock_.struck()) return Verdict::stopped;
-    if (!fronts_.build(graph, dominated_edges_, limit(), most_fronts,
-                       options_.drop_dominated_edges ? &edge_sets_ : nullptr)) {
+    const bool built = fronts_.build(graph, dominated_edges_, limit(), most_fronts,
+                                     options_.drop_dominated_edges ? &edge_sets_ : nullptr);
+    clock_.out_of_time(kWorkPerMadeFront * at(fronts_.size()));
+    if (!built) {
         return stopped_() ? Verdict::stopped : Verdict::open;
     }
     double bound = fronts_.find_onward(limit());

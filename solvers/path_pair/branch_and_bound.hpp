@@ -8,8 +8,10 @@
 #include "solvers/path_pair/front_graph.hpp"
 #include "solvers/path_pair/front_search.hpp"
 #include "solvers/path_pair/incumbent.hpp"
+#include "solvers/path_pair/incumbent_window.hpp"
 #include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair/onward_tables.hpp"
+#include "solvers/path_pair/pair_beam.hpp"
 #include "solvers/path_pair/pair_completion.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/search_clock.hpp"
@@ -77,8 +79,39 @@ class BranchAndBound {
     };
     enum class Verdict { closed, open, stopped };
 
+    /// The search for better incumbents in windows, between steps of the ascent and between nodes.
+    struct Improvement {
+        int phase = 0;
+        bool needs_start = true;  ///< no pair is being improved
+        bool is_new = false;      ///< the pair comes from elsewhere, its windows are not begun
+        bool has_whole = false;
+        std::size_t window_arcs = 0;
+        Incumbent pair;  ///< that is improved
+        Incumbent best;
+        double known_cost = kUnreachable;    ///< of the incumbent, when it was last looked at
+        double outside_cost = kUnreachable;  ///< of the last incumbent that the ascent found by itself
+        std::vector<double> start_costs;
+        std::int64_t work = 0;     ///< of the clock, up to now
+        std::int64_t entered = 0;  ///< the clock's work then
+        // Of the ascent that was interrupted.
+        Multipliers multipliers;
+        Ascent ascent;
+        std::vector<double> edge_use;
+        std::vector<double> end_use;
+    };
+
     void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
     void begin_near();
+    void begin_improvement();
+    /// Searches windows around the incumbent and around pairs of beam searches, for a share of the work that
+    /// is larger where `bound` is far from the incumbent. `alive`: what a better lane graph may use.
+    void improve_incumbent(const ResidualGraph& alive, double bound);
+    [[nodiscard]] bool may_improve(double gap) const;
+    void enter_windows(const ResidualGraph& alive);
+    void leave_windows();
+    [[nodiscard]] bool incumbent_goes_far() const;
+    void begin_phase();
+    bool search_window();
     Verdict explore(Node& node);
     void add_children(const Node& parent);
     Node& add_open_node();
@@ -114,6 +147,8 @@ class BranchAndBound {
     /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
     Verdict try_fronts(const ResidualGraph& graph, AscentState& state);
     void move_multipliers(const Node& here, AscentState& state);
+    /// How far the ascent's steps aim above the bound.
+    [[nodiscard]] double step_gap(const AscentState& state) const;
     /// The bound at the current multipliers, which are raised to whole units first if there is one.
     double evaluate(const ResidualGraph& graph);
     /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
@@ -155,7 +190,15 @@ class BranchAndBound {
     std::vector<double> edge_use_;  ///< averaged over the steps
     std::vector<double> end_use_;   ///< legs that end at a cone, averaged
     Node root_;
-    Node near_;  ///< the part of the root that is searched for an incumbent
+    Node near_;  ///< a part of the root that is searched for an incumbent
+    Improvement improvement_;
+    IncumbentWindow window_;
+    PairBeam pair_beam_;
+    PairRelaxation window_relaxation_;
+    bool in_window_ = false;
+    const LegSystem* whole_system_ = nullptr;
+    ResidualGraph whole_;  ///< the root's as it began
+    std::vector<char> starting_;
     std::vector<std::unique_ptr<Node>> open_;
     std::vector<std::unique_ptr<Node>> spare_nodes_;
     std::size_t nodes_made_ = 0;

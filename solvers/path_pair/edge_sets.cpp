@@ -1,6 +1,5 @@
 #include "solvers/path_pair/edge_sets.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <span>
 
@@ -34,21 +33,27 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
         insert(at_cone_, at(graph.tail(2 * edges_[number])), number);
         insert(at_cone_, at(graph.head(2 * edges_[number])), number);
     }
-    after_.assign(residual.arc.size() * words_, 0);
-    before_.assign(residual.arc.size() * words_, 0);
-    for (int a = 0; a < residual.size(); ++a) {
+    excluded_.assign(edges_.size() * words_, 0);
+    for (std::size_t number = 0; number < edges_.size(); ++number) {
         if (clock.out_of_time(10 * words_)) return;
-        const std::span<const std::uint64_t> row = graph.incompatible_row(residual.edge(a));
+        const std::span<const std::uint64_t> row = graph.incompatible_row(edges_[number]);
         for (std::size_t w = 0; w < row.size(); ++w) {
             for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
                 const int other = number_of_edge_[w * 64 + at(std::countr_zero(bits))];
-                if (other >= 0) insert(after_, at(a), at(other));
+                if (other >= 0) insert(excluded_, number, at(other));
             }
         }
-        std::copy_n(after_.data() + at(a) * words_, words_, before_.data() + at(a) * words_);
+    }
+    after_.resize(residual.arc.size() * words_);
+    before_.resize(residual.arc.size() * words_);
+    for (int a = 0; a < residual.size(); ++a) {
+        if (clock.out_of_time(2 * words_)) return;
+        const std::uint64_t* const excluded = excluded_.data() + number(a) * words_;
+        const std::uint64_t* const at_tail = at_cone_.data() + at(residual.tail[at(a)]) * words_;
+        const std::uint64_t* const at_head = at_cone_.data() + at(residual.head[at(a)]) * words_;
         for (std::size_t w = 0; w < words_; ++w) {
-            after_[at(a) * words_ + w] |= at_cone_[at(residual.tail[at(a)]) * words_ + w];
-            before_[at(a) * words_ + w] |= at_cone_[at(residual.head[at(a)]) * words_ + w];
+            after_[at(a) * words_ + w] = excluded[w] | at_tail[w];
+            before_[at(a) * words_ + w] = excluded[w] | at_head[w];
         }
     }
 }

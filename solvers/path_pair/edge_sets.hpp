@@ -41,6 +41,7 @@ class EdgeSets {
     std::vector<int> number_of_edge_;  ///< -1 where the edge is not in the residual graph
     std::vector<int> edges_;           ///< by number
     std::vector<std::uint64_t> at_cone_;
+    std::vector<std::uint64_t> excluded_;  ///< by number, the edges incompatible with it
     std::vector<std::uint64_t> after_;
     std::vector<std::uint64_t> before_;
 };

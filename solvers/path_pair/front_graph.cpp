@@ -60,10 +60,9 @@ bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
     values.clear();
     values.reserve(count);
     while (values.size() < count) {
-        if (is_stopped_ || (*stopped_)()) {
-            is_stopped_ = true;
-            return false;
-        }
+        // Most graphs are small: then this call takes less time than a look at the clock.
+        is_stopped_ = is_stopped_ || (count > kFewSlots && (*stopped_)());
+        if (is_stopped_) return false;
         values.resize(std::min(count, values.size() + kPerClock), value);
     }
     return true;
@@ -107,7 +106,7 @@ int FrontGraph::number(const Front& wanted) {
     // Fibonacci hashing: the upper half depends on all bits.
     std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
     for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
-        if (key(front(table_[slot])) == key(wanted)) return table_[slot];
+        if (front(table_[slot]) == wanted) return table_[slot];
     }
     table_[slot] = size();
     now_.fronts.push_back(wanted);
@@ -155,8 +154,7 @@ void FrontGraph::begin(double limit) {
     stack_.clear();
 }
 
-FrontGraph::Front FrontGraph::after(const Front& front, int arc) const {
-    const auto other = static_cast<std::uint8_t>(relaxation_->other(front.moving_kind));
+FrontGraph::Front FrontGraph::after(const Front& front, int arc, std::uint8_t other) {
     if (arc < 0) return {front.waiting, front.moving, other, true};
     if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
     return {front.waiting, arc, other, false};
@@ -168,17 +166,17 @@ void FrontGraph::add_steps(int f, double limit) {
     const Front here = front(f);
     const int kind = here.moving_kind;
     const int other = relaxation_->other(kind);
-    const auto through = [&](int of_kind, int a) {
-        return relaxation_->forward(of_kind)[at(a)] + leg_onward_[at(of_kind)][at(a)];
-    };
-    const double waiting =
-        here.ended ? relaxation_->forward(other)[at(here.waiting)] : through(other, here.waiting);
+    const std::span<const double> reduced = relaxation_->reduced();
+    const std::span<const double> onward = leg_onward_[at(kind)];
+    const double forward = relaxation_->forward(kind)[at(here.moving)];
+    const double waiting = relaxation_->forward(other)[at(here.waiting)] +
+                           (here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)]);
+    const int waiting_cone = r.head[at(here.waiting)];
     now_.begin[at(f)] = now_.steps.size();
     for (int p = r.out_start[at(here.moving)]; p < r.out_start[at(here.moving) + 1]; ++p) {
         const int next = r.out_arc[at(p)];
-        const double moving = relaxation_->forward(kind)[at(here.moving)] + r.out_cost[at(p)] +
-                              relaxation_->reduced()[at(next)] + leg_onward_[at(kind)][at(next)];
-        if (!(moving + waiting < limit) || r.head[at(next)] == r.head[at(here.waiting)] ||
+        const double moving = forward + r.out_cost[at(p)] + reduced[at(next)] + onward[at(next)];
+        if (!(moving + waiting < limit) || r.head[at(next)] == waiting_cone ||
             !dominated_of_arcs_->may_follow(kind, here.moving, next) ||
             !dominated_of_arcs_->may_pair(kind, next, other, here.waiting, here.ended)) {
             continue;
@@ -254,25 +252,26 @@ bool FrontGraph::narrow_dominated(int from, int to, int arc) {
 /// Lowers the forward costs of the fronts after this one. False where there are too many.
 bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
     const Front here = front(f);
-    const std::vector<double>& leg_onward = leg_onward_[at(here.moving_kind)];
+    const int other = relaxation_->other(here.moving_kind);
+    const std::span<const double> reduced = relaxation_->reduced();
+    const std::span<const double> leg_onward = leg_onward_[at(here.moving_kind)];
     const double forward = now_.forward[at(f)];
-    const double waiting =
-        here.ended ? 0.0 : leg_onward_[at(relaxation_->other(here.moving_kind))][at(here.waiting)];
+    const double waiting = here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)];
     if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) return true;
     if (now_.end[at(f)] == 0) add_steps(f, limit);
     for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
-        const int arc = now_.steps[p].arc;
+        const auto [known, arc, turn] = now_.steps[p];
         if (edges_ != nullptr && arc >= 0 && EdgeSets::contains(dominated_.row(at(f)), edges_->number(arc))) {
             continue;
         }
-        const double label = forward + cost(now_.steps[p]);
+        const double label = forward + (turn + (arc < 0 ? 0.0 : reduced[at(arc)]));
         const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
         if (!(label + on + waiting < limit)) continue;
-        if (now_.steps[p].to < 0) {
-            now_.steps[p].to = number(after(here, arc));
+        int to = known;
+        if (to < 0) {
+            now_.steps[p].to = to = number(after(here, arc, static_cast<std::uint8_t>(other)));
             if (now_.fronts.size() > most_fronts) return false;
         }
-        const int to = now_.steps[p].to;
         const bool narrowed = narrow_dominated(f, to, arc);
         const bool cheaper = label < now_.forward[at(to)] - kGain;
         if (cheaper) now_.forward[at(to)] = label;

@@ -30,6 +30,7 @@ class FrontGraph {
         int waiting;  ///< ... and of the other one, which waits or has ended
         std::uint8_t moving_kind;
         bool ended;
+        bool operator==(const Front&) const = default;
     };
     struct Step {
         int to;       ///< the next front
@@ -104,7 +105,8 @@ class FrontGraph {
     bool narrow_dominated(int from, int to, int arc);
     bool extend(int f, double limit, std::size_t most_fronts);
     void add_steps(int f, double limit);
-    [[nodiscard]] Front after(const Front& front, int arc) const;
+    /// `other`: the kind of the leg that waits.
+    [[nodiscard]] static Front after(const Front& front, int arc, std::uint8_t other);
     int number(const Front& wanted);
     void grow_table();
     void order();

@@ -46,6 +46,8 @@ bool Incumbent::offer(std::span<const int> first, std::span<const int> second) {
     cutoff_ = cost;
     found_ = true;
     edges_ = candidate_;
+    legs_[0].assign(first.begin(), first.end());
+    legs_[1].assign(second.begin(), second.end());
     return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include "solvers/path_pair/arc_graph.hpp"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ class Incumbent {
     void set_cutoff(double cutoff) { cutoff_ = cutoff; }
     /// Edges of the arc graph.
     [[nodiscard]] std::span<const int> edges() const { return edges_; }
+    /// Arcs of the arc graph, as they were offered.
+    [[nodiscard]] const std::array<std::vector<int>, 2>& legs() const { return legs_; }
 
     /// (29) of a leg.
     [[nodiscard]] double leg_cost(std::span<const int> leg) const;
@@ -32,6 +35,7 @@ class Incumbent {
     double cutoff_ = 0.0;
     bool found_ = false;
     std::vector<int> edges_;
+    std::array<std::vector<int>, 2> legs_;
     std::vector<int> candidate_;
     std::vector<char> visited_;
 };

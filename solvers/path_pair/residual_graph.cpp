@@ -20,19 +20,24 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
     for (std::size_t done = 0; done < arc.size(); ++done) {
         for (const ArcGraph::Succession& next : graph.successions(arc[done])) reach(next.arc);
     }
-    tail.clear();
-    head.clear();
-    out_start.assign(1, 0);
-    out_arc.clear();
-    out_cost.clear();
+    tail.resize(arc.size());
+    head.resize(arc.size());
+    out_start.resize(arc.size() + 1);
+    out_start[0] = 0;
+    for (std::size_t a = 0; a < arc.size(); ++a) {
+        tail[a] = graph.tail(arc[a]);
+        head[a] = graph.head(arc[a]);
+        out_start[a + 1] = out_start[a] + static_cast<int>(graph.successions(arc[a]).size());
+    }
+    out_arc.resize(static_cast<std::size_t>(out_start.back()));
+    out_cost.resize(out_arc.size());
+    std::size_t position = 0;
     for (const int a : arc) {
-        tail.push_back(graph.tail(a));
-        head.push_back(graph.head(a));
         for (const ArcGraph::Succession& next : graph.successions(a)) {
-            out_arc.push_back(index[static_cast<std::size_t>(next.arc)]);
-            out_cost.push_back(next.cost);
+            out_arc[position] = index[static_cast<std::size_t>(next.arc)];
+            out_cost[position] = next.cost;
+            ++position;
         }
-        out_start.push_back(static_cast<int>(out_arc.size()));
     }
     index_predecessors();
 }

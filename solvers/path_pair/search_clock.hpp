@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <utility>
 
@@ -18,6 +19,7 @@ class SearchClock {
     bool out_of_time(std::size_t work) {
         constexpr std::size_t kWorkPerClock = 50'000;
         work_ += work;
+        total_work_ += static_cast<std::int64_t>(work);
         if (work_ < kWorkPerClock) return struck_;
         return out_of_time();
     }
@@ -28,10 +30,13 @@ class SearchClock {
         return struck_;
     }
     [[nodiscard]] bool struck() const { return struck_; }
+    /// All that was counted, on any machine the same.
+    [[nodiscard]] std::int64_t total_work() const { return total_work_; }
 
   private:
     std::function<bool()> stopped_;
     std::size_t work_ = 0;
+    std::int64_t total_work_ = 0;
     bool struck_ = false;
 };
 

@@ -1,10 +1,13 @@
 """Random arrays, options and mutated files thrown at the package: an answer that holds, ValueError or TypeError, no crash
 and no hang. The same seed and number is the same case:
 
-    PYTHONPATH=build/release/python tests/python/fuzz_test.py [--seconds S] [--seed N] [--first CASE] [--verbose]
+    PYTHONPATH=build/release/python python3 tests/python/fuzz_test.py [--seconds S] [--seed N] [--first CASE] [--verbose]
+
+CONELANE_FUZZ_SECONDS says how long where no option does; without both it is 5 s.
 """
 import argparse
 import faulthandler
+import os
 import sys
 import tempfile
 import time
@@ -193,7 +196,7 @@ def read(random, folder):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--seconds", type=float, default=5.0)
+    parser.add_argument("--seconds", type=float, default=os.environ.get("CONELANE_FUZZ_SECONDS", "5"))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, metavar="CASE")
     parser.add_argument("--verbose", action="store_true", help="says each case before it runs")
