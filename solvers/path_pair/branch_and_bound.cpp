@@ -5,7 +5,6 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace conelane::path_pair {
@@ -21,10 +20,12 @@ constexpr int kPatience = 4;          ///< steps without progress
 constexpr double kLeastScale = 0.1;
 constexpr int kRootPatience = 8;
 constexpr double kRootLeastScale = 0.05;
-constexpr double kWorthwhile = 0.8;          ///< of the gap at which the fronts were too many, to try again
-constexpr std::int64_t kFewFronts = 2000;    ///< of the first try
-constexpr std::int64_t kWorkPerFront = 30;   ///< label updates of the ascent that allow one front
-constexpr std::size_t kMostFronts = 300000;  ///< of the last try, before a node branches
+constexpr double kWorthwhile = 0.8;        ///< of the gap at which the fronts were too many, to try again
+constexpr std::int64_t kFewFronts = 1000;  ///< of the first tries
+constexpr std::int64_t kFirstFrontsOfSmallGraph = 2000;
+constexpr int kSmallGraph = 200;                      ///< arcs
+constexpr std::int64_t kWorkPerFront = 30;            ///< label updates of the ascent that allow one front
+constexpr std::size_t kMostFronts = 300000;           ///< of the last try, before a node branches
 constexpr std::size_t kMostFrontBytes = 200'000'000;  ///< of their tables, together
 constexpr std::size_t kMostWindowFronts = 3000;
 constexpr std::size_t kWorkPerMadeFront = 500;  ///< of the clock
@@ -32,6 +33,8 @@ constexpr std::size_t kMostLabels = 1000000;
 constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
 constexpr int kWideFronts = 4000;   ///< from here on first a narrow search, for the incumbent, and detours
 constexpr std::size_t kNarrow = 2;  ///< labels a front
+constexpr std::size_t kFirstBeamWidth = 2;  ///< before the first try
+constexpr int kFirstBeamArcs = 50;
 constexpr int kBeams = 2;
 constexpr int kBeamSteps[kBeams] = {20, 60};  ///< of the root's ascent, or later
 constexpr std::size_t kBeamWidth = 8;
@@ -42,8 +45,6 @@ constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 constexpr int kFirstImprovement = 2;    ///< step of the root's ascent
 constexpr int kLateAscent = 1000;       ///< arcs from which on it is before the first step
 constexpr double kMostOvershoot = 2.0;  ///< of the ascent's steps
-constexpr int kLargeGraph = 250;        ///< arcs
-constexpr int kNearArcs = 100;
 constexpr int kRestSteps = 2;
 constexpr std::size_t kMostOpenNodes = 2000;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
@@ -61,7 +62,6 @@ BranchAndBound::BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, cons
 BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
                                             std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
-    if (options_.search_fronts) begin_near();
     root_.bound = graph_.share_bound();
     root_.most_steps = options_.root_steps;
     ++nodes_;
@@ -127,22 +127,6 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     open_.clear();
     // The same search takes the same nodes again, whose memory has the right size.
     std::ranges::sort(spare_nodes_, std::greater(), [](const auto& node) { return node->number; });
-}
-
-/// A large graph is first searched on the arcs that a leg reaches first: their best pair is an incumbent.
-void BranchAndBound::begin_near() {
-    const ResidualGraph& whole = root_.graph;
-    if (whole.size() < kLargeGraph) return;
-    order_.resize(at(kNearArcs));
-    std::iota(order_.begin(), order_.end(), 0);
-    keep_successor_.assign(whole.out_arc.size(), 1);
-    near_.graph.filter(whole, order_, keep_successor_, index_);
-    near_.multipliers = root_.multipliers;
-    near_.bound = -kUnreachable;
-    near_.most_steps = options_.node_steps;
-    ascend(near_, false);
-    std::ranges::fill(edge_use_, 0.0);
-    std::ranges::fill(end_use_, 0.0);
 }
 
 /// Bounds and searches the node, and branches where that leaves it open.
@@ -211,9 +195,10 @@ double BranchAndBound::least_open_bound() const {
 BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
     begin_ascent(here);
     AscentState state;
-    // The root looks for an incumbent of its own, whatever its near part found.
     state.is_root = is_root;
-    if (is_root) state.first_cutoff = incumbent_.cutoff();
+    if (is_root && here.graph.size() >= kFirstBeamArcs && here.graph.size() < kLateAscent) {
+        state.first_try = 0;
+    }
     for (;; ++state.step) {
         if (is_root && (state.step >= kFirstImprovement || graph_.arc_count() >= kLateAscent)) {
             improve_incumbent(here.graph, here.bound);
@@ -250,7 +235,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
     if (in_window_) return Verdict::open;
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
-    return search_fronts(here.graph, kAny, kAny);
+    return search_fronts(here.graph, {kAny, kAny});
 }
 
 double BranchAndBound::evaluate(const ResidualGraph& graph) {
@@ -292,24 +277,26 @@ void BranchAndBound::note_value(Node& here, AscentState& state) {
 }
 
 void BranchAndBound::complete_walks(const ResidualGraph& graph, AscentState& state) {
-    const auto has_incumbent = [&] { return incumbent_.found() && incumbent_.cutoff() < state.first_cutoff; };
     const double before = incumbent_.cutoff();
     const std::array<std::vector<int>, 2>& walks = relaxation_.walks(graph);
     for (int leg = 0; leg < 2; ++leg) {
         completion_.complete(graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)], tolerance_,
-                             has_incumbent() ? kTries : kFirstTries);
+                             incumbent_.found() ? kTries : kFirstTries);
     }
-    const int wait = !has_incumbent() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + state.step / 2;
+    const int wait = !incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + state.step / 2;
     state.next_completion = state.step + wait;
 }
 
 BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, AscentState& state) {
-    const bool due = state.step == 1 || state.step % 4 == 3;
+    const bool due = state.step == state.first_try || state.step % 4 == 3;
     const bool promising = due && cutoff() - state.value < kWorthwhile * state.failed_gap;
     if (!state.last && !promising) return Verdict::open;
-    const auto work_done = static_cast<std::size_t>(std::max(kFewFronts, state.work / kWorkPerFront));
+    const bool is_small = state.step == 0 && graph.size() < kSmallGraph;
+    const auto most_fronts = static_cast<std::size_t>(
+        std::max(is_small ? kFirstFrontsOfSmallGraph : kFewFronts, state.work / kWorkPerFront));
     const Verdict verdict =
-        state.last ? search_fronts_by_target(graph, state) : search_fronts(graph, work_done, kMostLabels);
+        state.last ? search_fronts_by_target(graph, state)
+                   : search_fronts(graph, {most_fronts, kMostLabels, state.step == 0 ? kFirstBeamWidth : 0});
     if (verdict == Verdict::open) {
         if (state.is_root && !state.last && state.beams < kBeams && state.step >= kBeamSteps[state.beams]) {
             ++state.beams;
@@ -369,20 +356,21 @@ BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph,
                                                      AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     incumbent_.set_cutoff(target);
-    const Verdict verdict = search_fronts(graph, in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels);
+    const Verdict verdict = search_fronts(graph, {in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels});
     if (incumbent_.cutoff() < target) return verdict;
     incumbent_.set_cutoff(incumbent);
     if (verdict == Verdict::closed) state.best = std::max(state.best, target - tolerance_);
     return verdict;
 }
 
-BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph, std::size_t most_fronts) {
+BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph, const FrontLimits& limits) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
     edge_sets_.assign(graph_, graph, clock_);
+    if (limits.beam_width > 0) beam_.run(graph, edge_sets_, tolerance_, limits.beam_width);
     if (clock_.struck()) return Verdict::stopped;
     dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, clock_);
     if (clock_.struck()) return Verdict::stopped;
-    const bool built = fronts_.build(graph, dominated_edges_, limit(), most_fronts,
+    const bool built = fronts_.build(graph, dominated_edges_, limit(), limits.fronts,
                                      options_.drop_dominated_edges ? &edge_sets_ : nullptr);
     clock_.out_of_time(kWorkPerMadeFront * at(fronts_.size()));
     if (!built) {
@@ -407,14 +395,14 @@ void BranchAndBound::find_tables() {
                         stopped_);
 }
 
-BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, std::size_t most_fronts,
-                                                      std::size_t most_labels) {
+BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, const FrontLimits& limits) {
     fronts_are_built_ = false;
-    const Verdict built = build_fronts(graph, most_fronts);
+    const Verdict built = build_fronts(graph, limits);
     if (!fronts_are_built_) return built;
-    if (most_fronts != kAny && at(fronts_.size()) > kMostFrontBytes / OnwardTables::row_bytes(graph)) {
+    if (limits.fronts != kAny && at(fronts_.size()) > kMostFrontBytes / OnwardTables::row_bytes(graph)) {
         return Verdict::open;
     }
+    std::size_t most_labels = limits.labels;
     if (most_labels != kAny) {
         most_labels = std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
     }

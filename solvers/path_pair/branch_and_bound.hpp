@@ -101,7 +101,6 @@ class BranchAndBound {
     };
 
     void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
-    void begin_near();
     void begin_improvement();
     /// Searches windows around the incumbent and around pairs of beam searches, for a share of the work that
     /// is larger where `bound` is far from the incumbent. `alive`: what a better lane graph may use.
@@ -128,12 +127,12 @@ class BranchAndBound {
         bool last = false;             ///< the ascent ends with this step
         double value = -kUnreachable;  ///< the bound at this step's multipliers
         double best = -kUnreachable;
-        double scale = 1.0;                  ///< of the steps
-        int since_best = 0;                  ///< steps without progress
-        int next_completion = 0;             ///< the step that completes walks next
-        double first_cutoff = kUnreachable;  ///< an incumbent counts where it is below
-        std::int64_t work = 0;               ///< label updates since the fronts were last tried, about
-        double failed_gap = kUnreachable;    ///< the gap at which the fronts were too many
+        double scale = 1.0;                ///< of the steps
+        int since_best = 0;                ///< steps without progress
+        int next_completion = 0;           ///< the step that completes walks next
+        int first_try = 1;                 ///< the step that tries the fronts first; 0: after a beam
+        std::int64_t work = 0;             ///< label updates since the fronts were last tried, about
+        double failed_gap = kUnreachable;  ///< the gap at which the fronts were too many
     };
     /// Raises the node's bound. Closed where no better pair is left in it.
     Verdict ascend(Node& here, bool is_root);
@@ -151,14 +150,19 @@ class BranchAndBound {
     [[nodiscard]] double step_gap(const AscentState& state) const;
     /// The bound at the current multipliers, which are raised to whole units first if there is one.
     double evaluate(const ResidualGraph& graph);
+    /// How much a search of fronts may take.
+    struct FrontLimits {
+        std::size_t fronts;
+        std::size_t labels;
+        std::size_t beam_width = 0;  ///< of a beam that looks for an incumbent first; 0: none
+    };
     /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
     /// Precondition: the relaxation was evaluated on the node's graph.
-    Verdict search_fronts(const ResidualGraph& graph, std::size_t most_fronts, std::size_t most_labels);
+    Verdict search_fronts(const ResidualGraph& graph, const FrontLimits& limits);
     Verdict search_fronts_by_target(const ResidualGraph& graph, AscentState& state);
     Verdict search_below(const ResidualGraph& graph, double target, AscentState& state);
     /// Builds the fronts and drops what it can. Closed where nothing is left.
-    Verdict build_fronts(const ResidualGraph& graph, std::size_t most_fronts);
-    Verdict search_labels(std::size_t width, std::size_t most_labels);
+    Verdict build_fronts(const ResidualGraph& graph, const FrontLimits& limits);
     void find_tables();
     bool fix(Node& here);
     [[nodiscard]] Branching choose(const ResidualGraph& graph) const;
@@ -190,7 +194,7 @@ class BranchAndBound {
     std::vector<double> edge_use_;  ///< averaged over the steps
     std::vector<double> end_use_;   ///< legs that end at a cone, averaged
     Node root_;
-    Node near_;  ///< a part of the root that is searched for an incumbent
+    Node window_node_;  ///< a part of the root that is searched for an incumbent
     Improvement improvement_;
     IncumbentWindow window_;
     PairBeam pair_beam_;

@@ -164,17 +164,17 @@ bool BranchAndBound::search_window() {
     relaxation_.bind(graph_, window_.system(), cliques_, decisions_, clock_);
     keep_successor_.assign(whole_.out_arc.size(), 1);
     clock_.out_of_time(whole_.arc.size() + whole_.out_arc.size() / 8);
-    near_.graph.filter(whole_, order_, keep_successor_, index_);
-    near_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
-    near_.multipliers.clique.assign(at(cliques_.size()), 0.0);
-    near_.multipliers.heading = 0.0;
-    near_.bound = -kUnreachable;
-    near_.most_steps = kWindowSteps;
+    window_node_.graph.filter(whole_, order_, keep_successor_, index_);
+    window_node_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
+    window_node_.multipliers.clique.assign(at(cliques_.size()), 0.0);
+    window_node_.multipliers.heading = 0.0;
+    window_node_.bound = -kUnreachable;
+    window_node_.most_steps = kWindowSteps;
     std::ranges::fill(edge_use_, 0.0);
     std::ranges::fill(end_use_, 0.0);
     const double before = incumbent_.cutoff();
-    if (ascend(near_, false) == Verdict::open) {
-        beam_.run(near_.graph, edge_sets_, tolerance_, kWindowBeamWidth);
+    if (ascend(window_node_, false) == Verdict::open) {
+        beam_.run(window_node_.graph, edge_sets_, tolerance_, kWindowBeamWidth);
     }
     window_.report(incumbent_.cutoff() < before);
     return true;
