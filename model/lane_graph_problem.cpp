@@ -18,8 +18,10 @@ constexpr double kShortestEdge_m = 1e-100;
 /// More than distances are off by [m].
 constexpr double kMargin_m = 1e-3;
 
-/// Room is made for at most so many of a kind before they are counted.
-constexpr std::size_t kReservedEntries = 4096;
+/// Room is made for at most so many of a kind before they are counted: a vector that grows copies what it
+/// has, which takes milliseconds in the end, and no clock is looked at meanwhile. Memory that is not written
+/// to costs nothing.
+constexpr std::size_t kReservedEntries = std::size_t{1} << 20U;
 
 /// What may end the making of a problem early.
 class Limits {
@@ -134,7 +136,7 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limit
         segments.emplace_back(scene.cones[edge.i].position, scene.cones[edge.j].position);
     }
     NearEdges near_edges(scene, edges, too_close_m);
-    problem.conflicts.reserve(std::min(8 * edges.size(), kReservedEntries));
+    problem.conflicts.reserve(std::min(edges.size() * edges.size() / 8, kReservedEntries));
     for (std::size_t e = 0; e < edges.size(); ++e) {
         if (limits.stop(problem, edges.size() - e)) return;
         const MeasuredSegment& a = segments[e];
@@ -177,7 +179,6 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
         const ProblemEdge& e = problem.edges[edge];
         return e.i == cone ? e.j : e.i;
     };
-    // A vector that grows copies what it has, and no clock is looked at meanwhile.
     std::size_t turns = 0;
     for (const std::vector<std::size_t>& incident : problem.incident)
         turns += incident.empty() ? 0 : incident.size() * (incident.size() - 1) / 2;

@@ -45,7 +45,7 @@ struct Fronts {
             kind.start.push_back(graph.near(cone) ? 1 : 0);
             kind.end.push_back(graph.near(cone) ? 0 : 1);
         }
-        residual.assign(graph, kind.start);
+        residual.assign(graph, kind.start, clock);
         decisions.reset(graph);
         relaxation.bind(graph, system, cliques, decisions, clock);
         boost::random::mt19937_64 random(seed);
@@ -208,7 +208,7 @@ TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
     SearchClock clock;
     ASSERT_TRUE(graph.build(problem, clock));
     ResidualGraph residual;
-    residual.assign(graph, std::vector<char>(3, 1));
+    residual.assign(graph, std::vector<char>(3, 1), clock);
     ASSERT_EQ(residual.size(), 6);
     const std::vector<double> nothing(6, 0.0);
     std::vector<double> label;

@@ -39,7 +39,7 @@ struct SceneWithMultipliers {
         graph.build(make_problem(scene, {}), clock);
         std::vector<char> near;
         for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
-        residual.assign(graph, near);
+        residual.assign(graph, near, clock);
         multipliers.cone.assign(cones, 0.0);
         boost::random::mt19937_64 random(seed);
         for (double& multiplier : multipliers.cone) {
@@ -266,7 +266,7 @@ TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
     SearchClock clock;
     graph.build(make_problem(scene, parameters), clock);
     ResidualGraph residual;
-    residual.assign(graph, std::vector<char>{1, 0, 0, 0});
+    residual.assign(graph, std::vector<char>{1, 0, 0, 0}, clock);
     Multipliers multipliers;
     multipliers.cone.assign(4, 0.0);
     LegBounds bounds;

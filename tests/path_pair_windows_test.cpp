@@ -39,7 +39,7 @@ struct Graph {
             system.kinds[0].start.push_back(arcs.near(cone) ? 1 : 0);
             system.kinds[0].end.push_back(arcs.near(cone) ? 0 : 1);
         }
-        whole.assign(arcs, system.kinds[0].start);
+        whole.assign(arcs, system.kinds[0].start, clock);
         usable.assign(static_cast<std::size_t>(arcs.arc_count()), 1);
         incumbent.reset(arcs, 0.0);
     }

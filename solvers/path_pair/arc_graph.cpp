@@ -5,17 +5,33 @@
 
 namespace conelane::path_pair {
 
+namespace {
+
+/// Calls `visit(k)` for k below `count`, until the clock strikes; false then. `work`: of one of them.
+template <typename Visit>
+bool for_each(std::size_t count, std::size_t work, SearchClock& clock, const Visit& visit) {
+    constexpr std::size_t kBlock = 512;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k % kBlock == 0 && clock.out_of_time(work * std::min(kBlock, count - k))) return false;
+        visit(k);
+    }
+    return true;
+}
+
+}  // namespace
+
 bool ArcGraph::build(const LaneGraphProblem& problem, SearchClock& clock) {
     cone_count_ = static_cast<int>(problem.cone_count);
     add_edges(problem);
-    incompatible_.reset(edge_count(), edge_count());
-    if (clock.out_of_time(problem.edges.size())) return false;
-    for (const auto& [first, second] : problem.conflicts) exclude(first, second);
-    if (clock.out_of_time(5 * problem.conflicts.size())) return false;
-    add_successions(problem);
-    find_share_bound();
-    if (clock.out_of_time(20 * problem.turns.size())) return false;
-    return add_partners(problem, clock);
+    const auto stop = [&](std::size_t words) { return clock.out_of_time(2 * words); };
+    if (clock.out_of_time(20 * problem.edges.size()) ||
+        !incompatible_.reset(edge_count(), edge_count(), stop)) {
+        return false;
+    }
+    return for_each(
+               problem.conflicts.size(), 10, clock,
+               [&](std::size_t k) { exclude(problem.conflicts[k].first, problem.conflicts[k].second); }) &&
+           add_successions(problem, clock) && find_share_bound(clock) && add_partners(problem, clock);
 }
 
 void ArcGraph::add_edges(const LaneGraphProblem& problem) {
@@ -45,32 +61,43 @@ void ArcGraph::exclude(std::size_t first, std::size_t second) {
     incompatible_.set(b, a);
 }
 
-void ArcGraph::add_successions(const LaneGraphProblem& problem) {
+bool ArcGraph::add_successions(const LaneGraphProblem& problem, SearchClock& clock) {
     const auto leaving = [&](int edge, std::size_t cone) {
         return 2 * edge + (tail(2 * edge) == static_cast<int>(cone) ? 0 : 1);
     };
     start_.assign(static_cast<std::size_t>(arc_count()) + 1, 0);
     turns_.clear();
-    for (const ProblemTurn& turn : problem.turns) {
+    turns_.reserve(problem.turns.size());
+    const auto add_turn = [&](std::size_t k) {
+        const ProblemTurn& turn = problem.turns[k];
         if (turn.high_cost) {
             exclude(turn.edge_i, turn.edge_k);
-            continue;
+            return;
         }
         const int edge_i = edge_of_problem_[turn.edge_i];
         const int edge_k = edge_of_problem_[turn.edge_k];
-        if (edge_i < 0 || edge_k < 0) continue;
+        if (edge_i < 0 || edge_k < 0) return;
         turns_.push_back({leaving(edge_i, turn.middle), leaving(edge_k, turn.middle), turn.cost});
         ++start_[static_cast<std::size_t>(turns_.back().arc_i ^ 1) + 1];
         ++start_[static_cast<std::size_t>(turns_.back().arc_k ^ 1) + 1];
-    }
+    };
+    if (!for_each(problem.turns.size(), 20, clock, add_turn)) return false;
     for (std::size_t a = 1; a < start_.size(); ++a) start_[a] += start_[a - 1];
-    successions_.resize(start_.back());
+    successions_.clear();
+    successions_.reserve(start_.back());
+    constexpr std::size_t kBlock = 4096;
+    while (successions_.size() < start_.back()) {
+        const std::size_t before = successions_.size();
+        successions_.resize(std::min(start_.back(), before + kBlock));
+        if (clock.out_of_time(2 * (successions_.size() - before))) return false;
+    }
     fill_.assign(start_.begin(), start_.end() - 1);
     // The reverse of an arc that leaves the middle cone arrives there, and the other arc leaves it.
-    for (const Turn& turn : turns_) {
+    return for_each(turns_.size(), 20, clock, [&](std::size_t k) {
+        const Turn& turn = turns_[k];
         successions_[fill_[static_cast<std::size_t>(turn.arc_i ^ 1)]++] = {turn.arc_k, turn.cost};
         successions_[fill_[static_cast<std::size_t>(turn.arc_k ^ 1)]++] = {turn.arc_i, turn.cost};
-    }
+    });
 }
 
 bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock) {
@@ -103,20 +130,23 @@ bool ArcGraph::add_partners(const LaneGraphProblem& problem, SearchClock& clock)
     return true;
 }
 
-void ArcGraph::find_share_bound() {
+bool ArcGraph::find_share_bound(SearchClock& clock) {
     share_.assign(static_cast<std::size_t>(cone_count_), 0.0);
     for (int arc = 0; arc < arc_count(); ++arc) {
         double& share = share_[static_cast<std::size_t>(head(arc))];
         share = std::min(share, 0.5 * cost(arc / 2));
     }
-    for (const Turn& turn : turns_) {
+    const auto lower = [&](std::size_t k) {
+        const Turn& turn = turns_[k];
         double& share = share_[static_cast<std::size_t>(tail(turn.arc_i))];
         const double half_i = 0.5 * cost(turn.arc_i / 2);
         const double half_k = 0.5 * cost(turn.arc_k / 2);
         share = std::min(share, half_i + turn.cost + half_k);
-    }
+    };
+    if (!for_each(turns_.size(), 10, clock, lower)) return false;
     share_bound_ = 0.0;
     for (const double share : share_) share_bound_ += share;
+    return true;
 }
 
 int ArcGraph::arc(int from, int to) const {

@@ -70,9 +70,10 @@ class ArcGraph {
     };
     void add_edges(const LaneGraphProblem& problem);
     void exclude(std::size_t first, std::size_t second);
-    void add_successions(const LaneGraphProblem& problem);
+    // False where the clock struck.
+    bool add_successions(const LaneGraphProblem& problem, SearchClock& clock);
     bool add_partners(const LaneGraphProblem& problem, SearchClock& clock);
-    void find_share_bound();
+    bool find_share_bound(SearchClock& clock);
 
     int cone_count_ = 0;
     std::vector<int> cone_;  ///< by arc: its tail

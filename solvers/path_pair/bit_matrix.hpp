@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +15,21 @@ class BitMatrix {
     void reset(int rows, int columns) {
         words_ = (static_cast<std::size_t>(columns) + 63) / 64;
         bits_.assign(static_cast<std::size_t>(rows) * words_, 0);
+    }
+    /// The same, word block by word block: false, and of no use, once `stop(words)` says so.
+    template <typename Stop>
+    bool reset(int rows, int columns, const Stop& stop) {
+        constexpr std::size_t kBlock = 16384;
+        words_ = (static_cast<std::size_t>(columns) + 63) / 64;
+        const std::size_t count = static_cast<std::size_t>(rows) * words_;
+        bits_.clear();
+        bits_.reserve(count);
+        while (bits_.size() < count) {
+            const std::size_t before = bits_.size();
+            bits_.resize(std::min(count, before + kBlock), 0);
+            if (stop(bits_.size() - before)) return false;
+        }
+        return true;
     }
     void set(int row, int column) { word(row, column) |= mask(column); }
     [[nodiscard]] bool test(int row, int column) const {

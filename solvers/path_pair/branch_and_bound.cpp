@@ -116,7 +116,7 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
         if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting_[cone] = 1;
     }
-    root_.graph.assign(graph_, starting_);
+    root_.graph.assign(graph_, starting_, clock_);
     whole_system_ = &system;
     begin_improvement();
     root_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);

@@ -90,19 +90,20 @@ double FrontGraph::start_cost(int f) const {
            relaxation_->start(other)[at(start.waiting)] + relaxation_->reduced()[at(start.waiting)];
 }
 
-void FrontGraph::grow_table() {
-    table_.assign(std::max(kFewSlots, table_.size() * 2), -1);
+bool FrontGraph::grow_table() {
+    if (!fill(table_, std::max(kFewSlots, table_.size() * 2), -1)) return false;
     for (int f = 0; f < size(); ++f) {
-        if (out_of_time()) return;  // those that are missing are numbered twice, and all are dropped
+        if (out_of_time()) return false;
         std::size_t slot = (key(front(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
         while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
         table_[slot] = f;
     }
+    return true;
 }
 
-/// The front's number, a new one where it has none.
+/// The front's number, a new one where it has none. Any number once the time is up: all are dropped then.
 int FrontGraph::number(const Front& wanted) {
-    if (2 * (now_.fronts.size() + 1) > table_.size()) grow_table();
+    if (2 * (now_.fronts.size() + 1) > table_.size() && !grow_table()) return 0;
     // Fibonacci hashing: the upper half depends on all bits.
     std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
     for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
@@ -300,11 +301,12 @@ void FrontGraph::order() {
 
 bool FrontGraph::order_fronts() {
     order_.clear();
-    index_.assign(now_.fronts.size(), -1);
-    next_step_.assign(now_.begin.begin(), now_.begin.end());
+    if (!fill(index_, now_.fronts.size(), -1)) return false;
+    next_step_.resize(now_.fronts.size());
     const auto enter = [&](int f) {
         if (f < 0 || now_.end[at(f)] == 0 || index_[at(f)] >= 0) return;
         index_[at(f)] = 0;
+        next_step_[at(f)] = now_.begin[at(f)];
         stack_.push_back(f);
     };
     for (const int start : starts_) {
@@ -332,7 +334,7 @@ void FrontGraph::keep(std::span<const int> order) {
     std::swap(now_, old_);
     now_.clear();
     now_.reserve(order.size());
-    index_.assign(old_.fronts.size(), -1);
+    if (!fill(index_, old_.fronts.size(), -1)) return forget_fronts();
     for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
     for (const int f : order) {
         if (out_of_time()) return forget_fronts();

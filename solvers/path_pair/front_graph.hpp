@@ -108,7 +108,7 @@ class FrontGraph {
     /// `other`: the kind of the leg that waits.
     [[nodiscard]] static Front after(const Front& front, int arc, std::uint8_t other);
     int number(const Front& wanted);
-    void grow_table();
+    bool grow_table();  ///< false, and no table, where the time is up
     void order();
     bool order_fronts();
     void keep(std::span<const int> order);

@@ -98,8 +98,7 @@ void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound)
 /// From here on `incumbent_` is the pair that is improved, and the best one is kept aside.
 void BranchAndBound::enter_windows(const ResidualGraph& alive) {
     Improvement& state = improvement_;
-    if (!state.has_whole) whole_.assign(graph_, starting_);
-    state.has_whole = true;
+    if (!state.has_whole) state.has_whole = whole_.assign(graph_, starting_, clock_);
     std::vector<char>& usable = edge_alive_;
     usable.assign(at(graph_.arc_count()), 0);
     for (const int arc : alive.arc) usable[at(arc)] = 1;

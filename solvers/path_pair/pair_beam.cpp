@@ -26,8 +26,9 @@ void PairBeam::run(const ArcGraph& graph, const LegSystem& system, const Limits&
     add_first_steps(clock);
     int best = -1;
     double best_cost = incumbent.cutoff();
-    while (!steps_.empty() && !clock.out_of_time(kWorkPerStep * steps_.size())) {
-        take_cheapest_steps();
+    clock.out_of_time(kWorkPerStep * steps_.size());
+    while (!steps_.empty() && !clock.struck()) {
+        take_cheapest_steps(clock);
         steps_.clear();
         level_ = std::exchange(next_, labels_.size());
         std::swap(lost_, lost_next_);
@@ -38,7 +39,9 @@ void PairBeam::run(const ArcGraph& graph, const LegSystem& system, const Limits&
                 best = static_cast<int>(l);
                 best_cost = label.cost;
             }
+            const std::size_t steps = steps_.size();
             add_steps(static_cast<int>(l), lost(l - level_));
+            if (clock.out_of_time(kWorkPerStep * (steps_.size() - steps))) break;
         }
     }
     if (best >= 0) offer(best, incumbent);
@@ -80,13 +83,15 @@ void PairBeam::add_steps(int l, const std::uint64_t* lost) {
     }
 }
 
-void PairBeam::take_cheapest_steps() {
+void PairBeam::take_cheapest_steps(SearchClock& clock) {
+    constexpr std::size_t kLabelsPerClock = 64;
     std::sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
         return std::tie(a.cost, a.last, a.label) < std::tie(b.cost, b.last, b.label);
     });
     at_cone_.assign(at(graph_->cone_count()), 0);
     for (const Step& step : steps_) {
-        if (labels_.size() - next_ >= limits_.width) return;
+        const std::size_t taken = labels_.size() - next_;
+        if (taken >= limits_.width || (taken % kLabelsPerClock == 0 && clock.out_of_time())) return;
         int& at_first = at_cone_[at(graph_->head(step.last[0]))];
         int& at_second = at_cone_[at(graph_->head(step.last[1]))];
         if (at_first + at_second >= limits_.most_at_cone) continue;

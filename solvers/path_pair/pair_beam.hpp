@@ -46,7 +46,7 @@ class PairBeam {
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
     void add_first_steps(SearchClock& clock);
     void add_steps(int label, const std::uint64_t* lost);
-    void take_cheapest_steps();
+    void take_cheapest_steps(SearchClock& clock);
     void add_label(const Step& step);
     [[nodiscard]] bool is_lane(const Label& label) const;
     [[nodiscard]] bool allows(const std::uint64_t* lost, int arc) const;

@@ -4,7 +4,17 @@
 
 namespace conelane::path_pair {
 
-void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting_cone) {
+bool ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock) {
+    if (collect(graph, starting_cone, clock) && index_predecessors(&clock)) return true;
+    for (std::vector<int>* const list : {&arc, &tail, &head, &out_arc, &in_arc}) list->clear();
+    out_cost.clear();
+    in_cost.clear();
+    out_start.assign(1, 0);
+    in_start.assign(1, 0);
+    return false;
+}
+
+bool ResidualGraph::collect(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock) {
     arc.clear();
     std::vector<int>& index = in_arc;  // rewritten below
     index.assign(static_cast<std::size_t>(graph.arc_count()), -1);
@@ -18,7 +28,9 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
     }
     // NOLINTNEXTLINE(modernize-loop-convert): `reach` appends to `arc`
     for (std::size_t done = 0; done < arc.size(); ++done) {
-        for (const ArcGraph::Succession& next : graph.successions(arc[done])) reach(next.arc);
+        const std::span<const ArcGraph::Succession> successions = graph.successions(arc[done]);
+        if (clock.out_of_time(2 * successions.size())) return false;
+        for (const ArcGraph::Succession& next : successions) reach(next.arc);
     }
     tail.resize(arc.size());
     head.resize(arc.size());
@@ -29,17 +41,20 @@ void ResidualGraph::assign(const ArcGraph& graph, std::span<const char> starting
         head[a] = graph.head(arc[a]);
         out_start[a + 1] = out_start[a] + static_cast<int>(graph.successions(arc[a]).size());
     }
-    out_arc.resize(static_cast<std::size_t>(out_start.back()));
-    out_cost.resize(out_arc.size());
-    std::size_t position = 0;
+    const auto count = static_cast<std::size_t>(out_start.back());
+    out_arc.clear();
+    out_arc.reserve(count);
+    out_cost.clear();
+    out_cost.reserve(count);
     for (const int a : arc) {
-        for (const ArcGraph::Succession& next : graph.successions(a)) {
-            out_arc[position] = index[static_cast<std::size_t>(next.arc)];
-            out_cost[position] = next.cost;
-            ++position;
+        const std::span<const ArcGraph::Succession> successions = graph.successions(a);
+        if (clock.out_of_time(5 * successions.size())) return false;
+        for (const ArcGraph::Succession& next : successions) {
+            out_arc.push_back(index[static_cast<std::size_t>(next.arc)]);
+            out_cost.push_back(next.cost);
         }
     }
-    index_predecessors();
+    return true;
 }
 
 void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> order,
@@ -73,7 +88,8 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     index_predecessors();
 }
 
-void ResidualGraph::index_predecessors() {
+/// False where there is a clock and it struck.
+bool ResidualGraph::index_predecessors(SearchClock* clock) {
     in_start.assign(arc.size() + 2, 0);
     for (const int next : out_arc) ++in_start[static_cast<std::size_t>(next) + 2];
     for (std::size_t a = 2; a < in_start.size(); ++a) in_start[a] += in_start[a - 1];
@@ -81,6 +97,8 @@ void ResidualGraph::index_predecessors() {
     in_cost.resize(out_arc.size());
     for (int a = 0; a < size(); ++a) {
         const auto from = static_cast<std::size_t>(a);
+        const auto successions = static_cast<std::size_t>(out_start[from + 1] - out_start[from]);
+        if (clock != nullptr && clock->out_of_time(5 * successions)) return false;
         for (int position = out_start[from]; position < out_start[from + 1]; ++position) {
             const auto p = static_cast<std::size_t>(position);
             const auto slot = static_cast<std::size_t>(in_start[static_cast<std::size_t>(out_arc[p]) + 1]++);
@@ -89,6 +107,7 @@ void ResidualGraph::index_predecessors() {
         }
     }
     in_start.pop_back();
+    return true;
 }
 
 }  // namespace conelane::path_pair

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <cstddef>
 #include <limits>
@@ -27,8 +28,9 @@ struct ResidualGraph {
     [[nodiscard]] int size() const { return static_cast<int>(arc.size()); }
     [[nodiscard]] int edge(int a) const { return arc[static_cast<std::size_t>(a)] / 2; }
 
-    /// All arcs that can be reached from the starting ones, breadth first.
-    void assign(const ArcGraph& graph, std::span<const char> starting_cone);
+    /// All arcs that can be reached from the starting ones, breadth first. False, and no arc, where the clock
+    /// struck.
+    bool assign(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock);
 
     /// Keeps the arcs of `order` (arcs of `source`, in their new order) and the successions among them that
     /// `keep_successor` (by position in source.out_arc) marks. `index` is scratch.
@@ -36,7 +38,8 @@ struct ResidualGraph {
                 std::vector<int>& index);
 
   private:
-    void index_predecessors();
+    bool collect(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock);
+    bool index_predecessors(SearchClock* clock = nullptr);
 };
 
 }  // namespace conelane::path_pair
