@@ -84,14 +84,18 @@ void PairBeam::add_steps(int l, const std::uint64_t* lost) {
 }
 
 void PairBeam::take_cheapest_steps(SearchClock& clock) {
-    constexpr std::size_t kLabelsPerClock = 64;
-    std::sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
-        return std::tie(a.cost, a.last, a.label) < std::tie(b.cost, b.last, b.label);
-    });
+    constexpr std::size_t kStepsPerClock = 256;
+    // A heap, as few of many steps are taken: the cheapest one is in front.
+    const auto dearer = [](const Step& a, const Step& b) {
+        return std::tie(a.cost, a.last, a.label) > std::tie(b.cost, b.last, b.label);
+    };
+    std::make_heap(steps_.begin(), steps_.end(), dearer);
     at_cone_.assign(at(graph_->cone_count()), 0);
-    for (const Step& step : steps_) {
-        const std::size_t taken = labels_.size() - next_;
-        if (taken >= limits_.width || (taken % kLabelsPerClock == 0 && clock.out_of_time())) return;
+    for (auto end = steps_.end(); end != steps_.begin() && labels_.size() - next_ < limits_.width;) {
+        const auto left = static_cast<std::size_t>(end - steps_.begin());
+        if (left % kStepsPerClock == 0 && clock.out_of_time()) return;
+        std::pop_heap(steps_.begin(), end, dearer);
+        const Step& step = *--end;
         int& at_first = at_cone_[at(graph_->head(step.last[0]))];
         int& at_second = at_cone_[at(graph_->head(step.last[1]))];
         if (at_first + at_second >= limits_.most_at_cone) continue;
