@@ -11,46 +11,45 @@ namespace {
 
 constexpr double kLongest_m = 1000.0;
 constexpr double kLargestWeight = 1e6;
+/// What a difference is divided by [m] or [rad]. By less than a millimetre, costs hang on rounding.
+constexpr double kLeastThreshold = 1e-3;
 using P = RldParameters;
 
 constexpr std::array<RldParameterField, 15> kFields{{
-    {"d_e", &P::d_e, "m", 0.0, kLongest_m, true, "expected spacing"},
-    {"d_t", &P::d_t, "m", 0.0, kLongest_m, false, "spacing threshold"},
-    {"theta_e", &P::theta_e, "rad", 0.0, std::numbers::pi, true, "expected interior angle"},
-    {"theta_t", &P::theta_t, "rad", 0.0, std::numbers::pi, false, "angle threshold"},
-    {"w_s", &P::w_s, "1", 0.0, kLargestWeight, true, "weight of the spacing cost"},
-    {"w_t", &P::w_t, "1", 0.0, kLargestWeight, true, "weight of the angle cost"},
-    {"w_p", &P::w_p, "1", 0.0, kLargestWeight, true, "weight of the heading cost"},
-    {"w_b", &P::w_b, "1", 0.0, kLargestWeight, true, "benefit of an edge"},
-    {"d_min", &P::d_min, "m", 0.0, kLongest_m, true, "smallest distance between the boundaries"},
-    {"d_h", &P::d_h, "m", 0.0, kLongest_m, true, "radius of the heading constraint"},
-    {"theta_heading", &P::theta_heading, "rad", 0.0, std::numbers::pi / 2, true,
-     "angle of the heading constraint"},
-    {"d_near", &P::d_near, "m", 0.0, kLongest_m, true, "radius of the near endpoints"},
-    {"d_max", &P::d_max, "m", 0.0, kLongest_m, true, "largest distance of the far endpoints"},
-    {"s_crit", &P::s_crit, "1", 0.0, kLargestWeight, true, "largest spacing cost"},
-    {"t_crit", &P::t_crit, "1", 0.0, kLargestWeight, true, "largest angle cost"},
+    {"d_e", &P::d_e, "m", 0.0, kLongest_m, "expected spacing"},
+    {"d_t", &P::d_t, "m", kLeastThreshold, kLongest_m, "spacing threshold"},
+    {"theta_e", &P::theta_e, "rad", 0.0, std::numbers::pi, "expected interior angle"},
+    {"theta_t", &P::theta_t, "rad", kLeastThreshold, std::numbers::pi, "angle threshold"},
+    {"w_s", &P::w_s, "1", 0.0, kLargestWeight, "weight of the spacing cost"},
+    {"w_t", &P::w_t, "1", 0.0, kLargestWeight, "weight of the angle cost"},
+    {"w_p", &P::w_p, "1", 0.0, kLargestWeight, "weight of the heading cost"},
+    {"w_b", &P::w_b, "1", 0.0, kLargestWeight, "benefit of an edge"},
+    {"d_min", &P::d_min, "m", 0.0, kLongest_m, "smallest distance between the boundaries"},
+    {"d_h", &P::d_h, "m", 0.0, kLongest_m, "radius of the heading constraint"},
+    {"theta_heading", &P::theta_heading, "rad", 0.0, std::numbers::pi / 2, "angle of the heading constraint"},
+    {"d_near", &P::d_near, "m", 0.0, kLongest_m, "radius of the near endpoints"},
+    {"d_max", &P::d_max, "m", 0.0, kLongest_m, "largest distance of the far endpoints"},
+    {"s_crit", &P::s_crit, "1", 0.0, kLargestWeight, "largest spacing cost"},
+    {"t_crit", &P::t_crit, "1", 0.0, kLargestWeight, "largest angle cost"},
 }};
 
 constexpr std::array<RldParameterField, 8> kExtraFields{{
-    {"w_color", &P::w_color, "1", 0.0, kLargestWeight, true, "weight of the colour cost"},
-    {"w_u", &P::w_u, "1", 0.0, kLargestWeight, true, "weight of uneven spacing"},
-    {"w_v", &P::w_v, "1", 0.0, kLargestWeight, true, "weight of the facing cost"},
-    {"w_n", &P::w_n, "1", 0.0, kLargestWeight, true, "benefit of a near endpoint beside the car"},
-    {"d_w", &P::d_w, "m", 0.0, kLongest_m, true, "expected width of the lane"},
-    {"d_v", &P::d_v, "m", 0.0, kLongest_m, false, "facing threshold"},
-    {"theta_v", &P::theta_v, "rad", 0.0, std::numbers::pi, false, "facing angle threshold"},
-    {"d_l", &P::d_l, "m", 0.0, kLongest_m, false, "facing length threshold"},
+    {"w_color", &P::w_color, "1", 0.0, kLargestWeight, "weight of the colour cost"},
+    {"w_u", &P::w_u, "1", 0.0, kLargestWeight, "weight of uneven spacing"},
+    {"w_v", &P::w_v, "1", 0.0, kLargestWeight, "weight of the facing cost"},
+    {"w_n", &P::w_n, "1", 0.0, kLargestWeight, "benefit of a near endpoint beside the car"},
+    {"d_w", &P::d_w, "m", 0.0, kLongest_m, "expected width of the lane"},
+    {"d_v", &P::d_v, "m", kLeastThreshold, kLongest_m, "facing threshold"},
+    {"theta_v", &P::theta_v, "rad", kLeastThreshold, std::numbers::pi, "facing angle threshold"},
+    {"d_l", &P::d_l, "m", kLeastThreshold, kLongest_m, "facing length threshold"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {
     const double value = parameters.*field.value;
-    const bool above = field.lowest_allowed ? value >= field.lowest : value > field.lowest;
-    if (!std::isfinite(value) || !above || value > field.highest) {
-        throw InvalidInput(std::string(field.key),
-                           "must be in " + std::string(field.lowest_allowed ? "[" : "(") +
-                               std::to_string(field.lowest) + ", " + std::to_string(field.highest) + "] " +
-                               std::string(field.unit == "1" ? "" : field.unit));
+    if (!(value >= field.lowest && value <= field.highest)) {
+        throw InvalidInput(std::string(field.key), "must be in [" + std::to_string(field.lowest) + ", " +
+                                                       std::to_string(field.highest) + "] " +
+                                                       std::string(field.unit == "1" ? "" : field.unit));
     }
 }
 

@@ -233,8 +233,10 @@ TEST_F(ParameterFileTest, ExtrasAreOptional) {
     text.replace(text.find("\"use_confidence\": 1"), 19, "\"use_confidence\": 2");
     EXPECT_EQ(error_of([&] { static_cast<void>(read_rld_parameters(file_with(text, "p"))); }),
               "p: use_confidence: must be 0 or 1");
-    parameters.d_v = 0.0;
+    parameters.d_v = 0.0009;
     EXPECT_THROW(validate(parameters), InvalidInput);
+    parameters.d_v = 0.001;
+    EXPECT_NO_THROW(validate(parameters));
 }
 
 TEST_F(ParameterFileTest, NamesBadParameters) {
@@ -251,7 +253,7 @@ TEST_F(ParameterFileTest, NamesBadParameters) {
     EXPECT_EQ(error_with("\"near_far\"", "\"far\""), "p: pairing: must be one of near_far, paper");
     EXPECT_EQ(error_with("1.7", "\"1.7\""), "p: d_t: must be a number");
     EXPECT_EQ(error_with("1.7", "NaN"), "p:3: d_t: must be a finite number");
-    EXPECT_EQ(error_with("1.7", "-1"), "p: d_t: must be in (0.000000, 1000.000000] m");
+    EXPECT_EQ(error_with("1.7", "-1"), "p: d_t: must be in [0.001000, 1000.000000] m");
     EXPECT_EQ(error_with("}", ""), "p:19: pairing: the JSON ends too early");
 }
 

@@ -153,11 +153,6 @@ double measure(const CrossCheckCase& drawn, double RldParameters::*limit, Draw& 
     return problem.turns.empty() ? 0.0 : problem.turns[draw.index(problem.turns.size())].angle_cost;
 }
 
-double within(double value, const RldParameterField& field) {
-    const double lowest = field.lowest_allowed ? field.lowest : 1e-6;
-    return std::clamp(value, lowest, field.highest);
-}
-
 void make_at_limits(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     // A limit is met within 1e-9: these are clearly inside or outside.
     constexpr std::array kBeside{0.0, 0.0, 1e-12, -1e-12, 1e-7, -1e-7};
@@ -169,7 +164,7 @@ void make_at_limits(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
         double RldParameters::*const limit = kLimits[draw.index(kLimits.size())];
         const double met = measure(drawn, limit, draw) + draw.one_of(kBeside);
         const auto field = std::ranges::find(rld_parameter_fields(), limit, &RldParameterField::value);
-        drawn.parameters.*limit = within(met, *field);
+        drawn.parameters.*limit = std::clamp(met, field->lowest, field->highest);
     }
 }
 
@@ -207,7 +202,7 @@ void make_scaled(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
         for (const RldParameterField& field : fields) {
             double& value = drawn.parameters.*field.value;
-            if (field.unit == "m") value = within(value * factor, field);
+            if (field.unit == "m") value = std::clamp(value * factor, field.lowest, field.highest);
         }
     }
 }
@@ -220,7 +215,8 @@ void draw_parameters(RldParameters& parameters, Draw& draw) {
             for (const RldParameterField& field : fields) {
                 if (!draw.chance(0.15)) continue;
                 const double factor = draw.chance(0.8) ? draw.real(0.6, 1.6) : draw.one_of(kFactors);
-                parameters.*field.value = within(parameters.*field.value * factor, field);
+                parameters.*field.value =
+                    std::clamp(parameters.*field.value * factor, field.lowest, field.highest);
             }
         }
     }

@@ -141,8 +141,7 @@ inline RldParameters fuzzed_parameters(FuzzedDataProvider& input) {
             if (input.ConsumeIntegral<std::uint8_t>() < 224) continue;
             const double highest = std::min(field.highest, 100.0);
             const double share = input.ConsumeProbability<double>();
-            const double value = field.lowest + share * share * share * (highest - field.lowest);
-            if (value > field.lowest || field.lowest_allowed) parameters.*field.value = value;
+            parameters.*field.value = field.lowest + share * share * share * (highest - field.lowest);
         }
     }
     return parameters;
