@@ -53,8 +53,8 @@ struct RldParameterField {
     std::string_view key;
     double RldParameters::*value;
     std::string_view unit;  ///< "m", "rad" or "1"
-    double lowest;   ///< valid
-    double highest;  ///< valid
+    double lowest;          ///< valid
+    double highest;         ///< valid
     std::string_view meaning;
 };
 /// All numeric parameters of the paper in the order of the file format.
