@@ -195,9 +195,13 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
 void run(const Options& options, const RldParameters& parameters) {
     if (options.verify.empty()) {
         if (options.whole) {
-            write_search_certificates(options.out, search_certificates(options, parameters));
+            const auto records = search_certificates(options, parameters);
+            write_search_certificates(options.out, records);
+            fmt::print("{} certificates in {}\n", records.size(), options.out);
         } else {
-            write_certificates(options.out, root_certificates(options, parameters));
+            const auto records = root_certificates(options, parameters);
+            write_certificates(options.out, records);
+            fmt::print("{} certificates in {}\n", records.size(), options.out);
         }
     } else if (options.whole || holds_search_certificates(options.verify)) {
         verify_searches(options, parameters);

@@ -97,6 +97,7 @@ void export_program(const ExportOptions& options) {
 struct ImportOptions {
     ProgramSource source;
     std::string solution;
+    std::string solver = "import";
     std::string out;
 };
 
@@ -113,12 +114,13 @@ SolutionFile read_solution(const std::string& path, const BinaryProgram& program
 /// What the file says of the scene. A point that is no lane graph is an error; where it is the program's
 /// optimum its objective still is a bound.
 SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& program,
-                         const std::string& formulation) {
+                         const ImportOptions& options) {
     using Status = SolutionFile::Status;
     SolutionRecord record;
     record.scene = program.scene.id;
-    record.solver = "import";
-    record.formulation = formulation;
+    record.solver = options.solver;
+    record.formulation = options.source.formulation;
+    record.nearest = options.source.nearest;
     if (solution.status == Status::optimal) record.bound = solution.objective;
     if (solution.point.empty()) {
         record.status = solution.status == Status::infeasible ? "infeasible" : "error";
@@ -146,8 +148,7 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 void import_solution(const ImportOptions& options) {
     const SceneProgram program(options.source);
     const SolutionFile solution = read_solution(options.solution, program.model.program());
-    SolutionRecord record = to_record(solution, program, options.source.formulation);
-    record.nearest = options.source.nearest;
+    const SolutionRecord record = to_record(solution, program, options);
     write_solutions(options.out, std::array{record});
     fmt::print("{}{}\n", record.status, record.message.empty() ? "" : ": " + record.message);
 }
@@ -175,6 +176,8 @@ void add_exchange_commands(CLI::App& program) {
     importing
         .add_option("--sol", imports->solution, "of `cbc FILE solve solution SOL` or `glpsol --write SOL`")
         ->required();
+    importing.add_option("--solver", imports->solver, "whose solution it is, a name for the records")
+        ->capture_default_str();
     add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
     importing.callback([imports] { import_solution(*imports); });
 }

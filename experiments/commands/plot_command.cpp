@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 namespace conelane::experiments {
 namespace {
@@ -88,6 +89,7 @@ void plot(const Options& options) {
     } catch (const PackageRefused&) {
         throw CLI::RuntimeError(2);  // it has said why
     }
+    fmt::print("{}: scene {}, {} lanes\n", options.out, options.id, picture.lanes.size());
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ void make_report(const Options& options) {
     } catch (const PackageRefused&) {
         throw CLI::RuntimeError(2);  // it has said why
     }
+    fmt::print("the page is {}\n", options.page);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "experiments/scenes/scene_file.hpp"
 #include "solvers/registry.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace conelane::experiments {
 namespace {
@@ -28,6 +30,23 @@ struct Options {
     SolveLimits limits;
     bool warm_start = false;
 };
+
+/// How many scenes have which status, in the order in which these are met.
+std::string status_counts(const std::vector<SolutionRecord>& records) {
+    std::vector<std::pair<std::string, std::size_t>> counts;
+    for (const SolutionRecord& record : records) {
+        const auto known = std::ranges::find(counts, record.status, &decltype(counts)::value_type::first);
+        if (known == counts.end()) {
+            counts.emplace_back(record.status, 1);
+        } else {
+            ++known->second;
+        }
+    }
+    std::vector<std::string> parts;
+    parts.reserve(counts.size());
+    for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
 
 void solve_all(const Options& options) {
     const RldSolverEntry* entry = find_rld_solver(options.solver);
@@ -72,6 +91,7 @@ void solve_all(const Options& options) {
         progress.advance();
     }
     write_solutions(options.out, records);
+    fmt::print("{} scenes: {}, in {}\n", records.size(), status_counts(records), options.out);
 }
 
 }  // namespace
