@@ -62,9 +62,15 @@ Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const 
     return *std::ranges::min_element(candidates, {}, &Nearest::distance);
 }
 
-/// Whether each segment's ends lie strictly on both sides of the other's line.
+/// Whether each segment's ends lie on both sides of the other's line, off it by more than a tie.
 bool cross(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
-    return wedge(b - a, c - a) * wedge(b - a, d - a) < 0 && wedge(d - c, a - c) * wedge(d - c, b - c) < 0;
+    const auto off = [](const Vector& point, const Vector& from, const Vector& along) {
+        return wedge(along, point - from) / length(along);
+    };
+    const auto apart = [](Real one, Real other) {
+        return std::min(one, other) < -kTie && std::max(one, other) > kTie;
+    };
+    return apart(off(c, a, b - a), off(d, a, b - a)) && apart(off(a, c, d - c), off(b, c, d - c));
 }
 
 Real fourth(Real value) {

@@ -58,12 +58,13 @@ bool segments_intersect(const Segment& a, const Segment& b) {
 }
 
 bool segments_cross(const Segment& a, const Segment& b) {
-    const double from_side = orientation(a.from, a.to, b.from);
-    const double to_side = orientation(a.from, a.to, b.to);
-    const double a_from_side = orientation(b.from, b.to, a.from);
-    const double a_to_side = orientation(b.from, b.to, a.to);
-    return ((from_side > 0.0 && to_side < 0.0) || (from_side < 0.0 && to_side > 0.0)) &&
-           ((a_from_side > 0.0 && a_to_side < 0.0) || (a_from_side < 0.0 && a_to_side > 0.0));
+    const auto ends_apart = [](const Segment& line, const Segment& ends) {
+        const double from_side = orientation(line.from, line.to, ends.from);
+        const double to_side = orientation(line.from, line.to, ends.to);
+        const double tie = kTieTolerance * (line.to - line.from).norm();
+        return std::min(from_side, to_side) < -tie && std::max(from_side, to_side) > tie;
+    };
+    return ends_apart(a, b) && ends_apart(b, a);
 }
 
 double interior_angle(const Point& a, const Point& middle, const Point& b) {

@@ -43,7 +43,7 @@ struct SegmentDistance {
 /// Exact in the signs of the orientation determinants, no tolerance.
 [[nodiscard]] bool segments_intersect(const Segment& a, const Segment& b);
 
-/// Whether two segments cross at a single point that is interior to both; touching does not count.
+/// Whether the ends of each lie on both sides of the other's line, farther than kTieTolerance from it.
 [[nodiscard]] bool segments_cross(const Segment& a, const Segment& b);
 
 /// Angle at `middle` between the rays to `a` and `b`, in [0, pi] rad; straight on is pi. 0 where a ray has no

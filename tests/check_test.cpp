@@ -116,6 +116,19 @@ TEST(Check, EdgesThatCrossAreAtNoDistance) {
     EXPECT_THAT(violations(six_cone_lane(), parameters, crossing), Contains(HasSubstr("crossing:")));
 }
 
+/// Edges {0, 1} and {2, 3}, the latter's end past the former by less than a tie of 1e-9 m, then by more.
+TEST(Check, EdgesThatTouchWithinATieDoNotCross) {
+    Scene scene;
+    for (const Point& place : {Point{0, 0}, Point{4, 0}, Point{2, -5e-10}, Point{2, 3}}) add_cone(scene, place);
+    RldParameters parameters;
+    parameters.d_min = 0.0;
+    parameters.forbid_crossing = true;
+    const LaneGraph touching{{{0, 1}, {2, 3}}};
+    EXPECT_THAT(violations(scene, parameters, touching), Each(Not(HasSubstr("cross"))));
+    scene.cones[2].position.y() = -2e-9;
+    EXPECT_THAT(violations(scene, parameters, touching), Contains(HasSubstr("crossing:")));
+}
+
 TEST(Check, LimitsOfSpacingAndAngle) {
     RldParameters parameters;
     parameters.d_e = 5.2;  // the cost of each edge is (2 / 1.7)^4 = 1.9

@@ -101,6 +101,8 @@ TEST(SegmentDistance, IsThatOfTheNearestEndsFootPoint) {
 TEST(Crossing, IsProperOnly) {
     EXPECT_TRUE(segments_cross({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}}));
     EXPECT_FALSE(segments_cross({{0, 0}, {4, 0}}, {{2, 0}, {2, 3}}));
+    EXPECT_FALSE(segments_cross({{0, 0}, {4, 0}}, {{2, -5e-10}, {2, 3}})) << "touching within a tie";
+    EXPECT_TRUE(segments_cross({{0, 0}, {4, 0}}, {{2, -2e-9}, {2, 3}}));
     EXPECT_TRUE(segments_intersect({{0, 0}, {4, 0}}, {{2, 0}, {2, 3}}));
     EXPECT_TRUE(segments_intersect({{0, 0}, {4, 0}}, {{1, 0}, {9, 0}}));
     EXPECT_FALSE(segments_intersect({{0, 0}, {4, 0}}, {{5, 0}, {9, 0}}));

@@ -43,7 +43,13 @@ def cross(u, v):
 
 
 def crossing(a, b, c, d):
-    return cross(b - a, c - a) * cross(b - a, d - a) < 0 and cross(d - c, a - c) * cross(d - c, b - c) < 0
+    """The ends of each farther than a tie from the other's line, on both sides of it."""
+    def apart(line, ends):
+        along = line[1] - line[0]
+        tie = TIE * float(np.linalg.norm(along))
+        sides = [cross(along, end - line[0]) for end in ends]
+        return min(sides) < -tie and max(sides) > tie
+    return apart((a, b), (c, d)) and apart((c, d), (a, b))
 
 
 def gap(a, b, c, d):
