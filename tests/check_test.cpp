@@ -119,7 +119,8 @@ TEST(Check, EdgesThatCrossAreAtNoDistance) {
 /// Edges {0, 1} and {2, 3}, the latter's end past the former by less than a tie of 1e-9 m, then by more.
 TEST(Check, EdgesThatTouchWithinATieDoNotCross) {
     Scene scene;
-    for (const Point& place : {Point{0, 0}, Point{4, 0}, Point{2, -5e-10}, Point{2, 3}}) add_cone(scene, place);
+    for (const Point& place : {Point{0, 0}, Point{4, 0}, Point{2, -5e-10}, Point{2, 3}})
+        add_cone(scene, place);
     RldParameters parameters;
     parameters.d_min = 0.0;
     parameters.forbid_crossing = true;
