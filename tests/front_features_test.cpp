@@ -73,8 +73,10 @@ TEST(FrontFeatures, OfAStateAreSeenFromTheBoundaryThatMoves) {
     lane.start(0, 3);
     lane.go_on(kLeft, 1);
     lane.go_on(kLeft, 2);
-    const StateFeatures left = state_features(lane.map, lane.state, kLeft);
-    const StateFeatures right = state_features(lane.map, lane.state, kRight);
+    const StateFeatures left =
+        state_features(lane.map, lane.state, kLeft, measure(lane.map, lane.state, kLeft));
+    const StateFeatures right =
+        state_features(lane.map, lane.state, kRight, measure(lane.map, lane.state, kRight));
     const auto of_left = [&](std::string_view name) { return named(state_feature_table(), left, name); };
     const auto of_right = [&](std::string_view name) { return named(state_feature_table(), right, name); };
 
@@ -103,10 +105,13 @@ TEST(FrontFeatures, OfAStateAreSeenFromTheBoundaryThatMoves) {
 TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
     Growth lane(bend());
     lane.start(0, 3);
-    EXPECT_NEAR(named(state_feature_table(), state_features(lane.map, lane.state, kLeft), "mean_segment"),
+    EXPECT_NEAR(named(state_feature_table(),
+                      state_features(lane.map, lane.state, kLeft, measure(lane.map, lane.state, kLeft)),
+                      "mean_segment"),
                 3.5F / 4.0F, kRounding);
     lane.go_on(kLeft, 1);
-    const StateFeatures right = state_features(lane.map, lane.state, kRight);
+    const StateFeatures right =
+        state_features(lane.map, lane.state, kRight, measure(lane.map, lane.state, kRight));
     EXPECT_NEAR(named(state_feature_table(), right, "mean_segment"), (3.5F + 3.0F) / 2.0F / 4.0F, kRounding);
     // Beside the beginning of the last segment it is as wide as between the cones there.
     EXPECT_NEAR(named(state_feature_table(), right, "width"), 4.0F / 4.0F, kRounding);
@@ -120,7 +125,8 @@ TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
 TEST(FrontFeatures, OfAMoveTellInsideFromOutside) {
     Growth lane({{2.0, 1.8}, {6.0, 1.8}, {2.0, -1.8}, {6.3, -1.8}, {4.0, 0.8}, {4.0, 3.3}});
     lane.start(0, 2);
-    const ExtendFeatures seen = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 1));
+    const ExtendFeatures seen = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 1),
+                                                measure(lane.map, lane.state, kLeft));
     const auto of = [&](std::string_view name) { return named(extend_feature_table(), seen, name); };
     EXPECT_NEAR(of("length"), 1.0F, kRounding);
     EXPECT_NEAR(of("beside_inward"), 0.5F, kRounding);    // 1 of 2 m away
@@ -137,7 +143,8 @@ TEST(FrontFeatures, OfAMoveTellInsideFromOutside) {
 TEST(FrontFeatures, AMoveOverAMissedConeBridges) {
     Growth lane({{2.0, 1.8}, {9.0, 1.8}, {2.0, -1.8}});
     lane.start(0, 2);
-    const ExtendFeatures seen = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 1));
+    const ExtendFeatures seen = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 1),
+                                                measure(lane.map, lane.state, kLeft));
     EXPECT_EQ(named(extend_feature_table(), seen, "bridges"), 1.0F);
 }
 
@@ -247,7 +254,7 @@ TEST(FrontCost, ScoresAreOfWhatIsSeen) {
     const std::span<const float> scores = cost.score_moves(map, state, kLeft, moves);
     ASSERT_EQ(scores.size(), moves.extensions.size() + 1);
     const auto with_state = [&](std::span<const float> more) {
-        const StateFeatures seen = state_features(map, state, kLeft);
+        const StateFeatures seen = state_features(map, state, kLeft, measure(map, state, kLeft));
         std::vector<float> inputs(seen.begin(), seen.end());
         inputs.insert(inputs.end(), more.begin(), more.end());
         return inputs;
@@ -255,7 +262,8 @@ TEST(FrontCost, ScoresAreOfWhatIsSeen) {
     std::vector<float> all;
     const FrontNetwork extend_network(weights.extend);
     for (std::size_t i = 0; i < moves.extensions.size(); ++i) {
-        const ExtendFeatures seen = extend_features(map, state, kLeft, moves.extensions[i]);
+        const ExtendFeatures seen =
+            extend_features(map, state, kLeft, moves.extensions[i], measure(map, state, kLeft));
         EXPECT_NEAR(scores[i], extend_network.score(with_state(seen)), kRounding);
         all.insert(all.end(), seen.begin(), seen.end());
     }

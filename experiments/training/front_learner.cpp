@@ -261,8 +261,10 @@ void FrontLearner::add_move(const FrontState& state, Side side, const FrontMove&
                         derivatives.stop);
         return;
     }
-    std::ranges::copy(state_features(front_.map(), state, side), inputs.begin());
-    std::ranges::copy(extend_features(front_.map(), state, side, move), inputs.begin() + kStateFeatures);
+    const StateMeasures measures = measure(front_.map(), state, side);
+    std::ranges::copy(state_features(front_.map(), state, side, measures), inputs.begin());
+    std::ranges::copy(extend_features(front_.map(), state, side, move, measures),
+                      inputs.begin() + kStateFeatures);
     add_derivatives(weights.extend, inputs, static_cast<float>(factor), derivatives.extend);
 }
 

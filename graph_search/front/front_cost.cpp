@@ -39,10 +39,11 @@ std::span<const float> FrontCost::score_starts(FrontMap& map, const FrontStarts&
 
 std::span<const float> FrontCost::score_moves(FrontMap& map, const FrontState& state, Side side,
                                               const FrontMoves& moves) {
-    state_ = state_features(map, state, side);
+    const StateMeasures measures = measure(map, state, side);
+    state_ = state_features(map, state, side, measures);
     extensions_.clear();
     for (const FrontMove& move : moves.extensions) {
-        const ExtendFeatures seen = extend_features(map, state, side, move);
+        const ExtendFeatures seen = extend_features(map, state, side, move, measures);
         extensions_.insert(extensions_.end(), seen.begin(), seen.end());
     }
     const std::size_t count = moves.extensions.size();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -115,6 +116,7 @@ constexpr double kPlaceReach_m = 2.5;
 constexpr double kFarOff_m = 6.0;
 constexpr double kUsualWidth = 0.9;
 constexpr double kStrip_m = 1.5;
+constexpr double kRounding_m = 1e-3;  // lengths of edges are float
 constexpr float kMostCounted = 3.0F;
 
 float scaled(double value, double unit, double most = 4.0) {
@@ -147,30 +149,25 @@ double mean_segment_m(const FrontState& state) {
     return sum_m / count;
 }
 
-float density(FrontMap& map, Vertex cone) {
-    std::size_t near = 0;
-    for (const FrontEdge& edge : map.edges(cone)) {
-        if (edge.length_m > static_cast<float>(kShortSegment_m)) break;
-        ++near;
-    }
-    return static_cast<float>(std::log1p(static_cast<double>(near)) - 1.5);
-}
+/// Most cones lie clearly beside the angle of a triangle at an end, which their direction tells.
+constexpr double kClearly = 1e-9;
 
-/// Cones of `from`'s neighbours strictly inside the triangle of `from`, b and c, up to kMostCounted.
+/// Cones of `from`'s neighbours strictly inside the triangle of `from`, b and the other end c, up to
+/// kMostCounted.
 float inside_triangle(FrontMap& map, Vertex from, const Point& b, const Point& c, Vertex b_cone,
-                      Vertex c_cone) {
+                      Vertex c_cone, const StateMeasures& measures) {
     const Point& a = map.position(from);
     const double area = cross(b - a, c - a);
     const double sign = area < 0.0 ? -1.0 : 1.0;
     const auto farthest = static_cast<float>(std::max((b - a).norm(), (c - a).norm()));
-    // Most cones lie clearly beside the angle at `from`, which their direction tells.
-    constexpr double kClearly = 1e-9;
     const Point along_b = sign * (b - a);
-    const Point along_c = sign * (c - a);
+    const Side b_side = area < 0.0 ? kLeft : kRight;  // of the line to c
+    const std::span<const FrontEdge> edges = map.edges(from);
     float count = 0.0F;
-    for (const FrontEdge& edge : map.edges(from)) {
+    for (const std::uint8_t way : std::span(measures.ways[b_side]).first(measures.way_counts[b_side])) {
+        const FrontEdge& edge = edges[way];
         if (edge.length_m > farthest) break;
-        if (cross(along_b, edge.direction) < -kClearly || cross(along_c, edge.direction) > kClearly) continue;
+        if (cross(along_b, edge.direction) < -kClearly) continue;
         if (edge.to == b_cone || edge.to == c_cone) continue;
         const Point& p = map.position(edge.to);
         if (sign * cross(b - a, p - a) > 0.0 && sign * cross(c - b, p - b) > 0.0 &&
@@ -195,10 +192,17 @@ std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const Fr
                                     const Point& place) {
     double nearest_m2 = kFarOff_m * kFarOff_m;
     float near = 0.0F;
+    // A cone farther from the end than the place is by more than that is not the nearest one, nor near.
+    const double reach_m = (place - map.position(end.cones[0])).norm() + kRounding_m;
+    double farthest_m = reach_m + kFarOff_m;
     for (const FrontEdge& edge : map.edges(end.cones[0])) {
+        if (static_cast<double>(edge.length_m) > farthest_m) break;
         if (edge.to == end.cones[1] || edge.to == other.cones[0] || edge.to == other.cones[1]) continue;
         const double off_m2 = (map.position(edge.to) - place).squaredNorm();
-        nearest_m2 = std::min(nearest_m2, off_m2);
+        if (off_m2 < nearest_m2) {
+            nearest_m2 = off_m2;
+            farthest_m = reach_m + std::max(std::sqrt(nearest_m2), kPlaceReach_m);
+        }
         if (off_m2 < kPlaceReach_m * kPlaceReach_m) near = std::min(near + 1.0F, kMostCounted);
     }
     return {std::sqrt(nearest_m2), near};
@@ -219,7 +223,32 @@ std::span<const FrontFeature, kStartFeatures> start_feature_table() {
     return kStartTable;
 }
 
-StateFeatures state_features(FrontMap& map, const FrontState& state, Side side) {
+StateMeasures measure(FrontMap& map, const FrontState& state, Side side) {
+    const FrontEnd& other = state.ends[opposite(side)];
+    const Vertex end = state.ends[side].cones[0];
+    StateMeasures measures;
+    measures.width_m = facing_distance_m(map, other, map.position(end));
+    measures.mean_width_m = state.mean_width_m();
+    measures.mean_segment_m = mean_segment_m(state);
+    measures.log_mean_segment = static_cast<float>(std::log(measures.mean_segment_m));
+    static_assert(FrontMap::kMostEdges <= std::numeric_limits<std::uint8_t>::max());
+    const Point across = map.position(other.cones[0]) - map.position(end);
+    const std::span<const FrontEdge> edges = map.edges(end);
+    std::size_t left = 0;
+    std::size_t right = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const double off = cross(across, edges[i].direction);
+        measures.ways[kLeft][left] = static_cast<std::uint8_t>(i);
+        measures.ways[kRight][right] = static_cast<std::uint8_t>(i);
+        left += off >= -kClearly ? 1 : 0;
+        right += off <= kClearly ? 1 : 0;
+    }
+    measures.way_counts = {left, right};
+    return measures;
+}
+
+StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
+                             const StateMeasures& measures) {
     const FrontEnd& own = state.ends[side];
     const FrontEnd& other = state.ends[opposite(side)];
     const Point& at = map.position(own.cones[0]);
@@ -242,17 +271,18 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side) 
             static_cast<float>(skew_rad),
             static_cast<float>(std::abs(skew_rad)),
             scaled((facing - at).norm(), kLength_m),
-            scaled(facing_distance_m(map, other, at), kLength_m),
-            scaled(state.mean_width_m(), kLength_m) - static_cast<float>(kUsualWidth),
+            scaled(measures.width_m, kLength_m),
+            scaled(measures.mean_width_m, kLength_m) - static_cast<float>(kUsualWidth),
             scaled(lag_m, kLength_m, 2.0),
-            scaled(mean_segment_m(state), kLength_m),
-            density(map, own.cones[0]),
+            scaled(measures.mean_segment_m, kLength_m),
+            map.density(own.cones[0]),
             scaled(distance_m, std::max(map.view_radius_m(), 1.0)),
             scaled(map.view_radius_m() - distance_m, kView_m, kFarBeyond),
             static_cast<float>(std::min<std::size_t>(own.count, 8)) / 8.0F};
 }
 
-ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move) {
+ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
+                               const StateMeasures& measures) {
     const FrontEnd& own = state.ends[side];
     const FrontEnd& other = state.ends[opposite(side)];
     const Vertex from = own.cones[0];
@@ -267,22 +297,32 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     const double turn_other_rad = other.count > 2 ? wrapped_angle(turn_rad - in * other.turn_rad) : 0.0;
     const double skew_rad = in * turn(edge.bearing_rad, other.bearing_rad);
     const double width_m = facing_distance_m(map, other, at);
-    const double mean_width_m = state.mean_width_m();
+    const double mean_width_m = measures.mean_width_m;
     const float log_own = own.count > 1 ? edge.log_length - own.log_segment : 0.0F;
     const float log_other = other.count > 1 ? edge.log_length - other.log_segment : 0.0F;
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
     double partner_m2 = (facing - across).squaredNorm();
+    // A cone farther from this one than the place across is by more than the nearest one's distance is
+    // farther.
+    const auto farthest_m = [&] {
+        return static_cast<float>(mean_width_m +
+                                  std::min(kPartnerReach_m, std::sqrt(partner_m2) + kRounding_m));
+    };
+    float break_m = farthest_m();
     for (const FrontEdge& near : map.edges(move.to)) {
-        if (near.length_m > static_cast<float>(mean_width_m + kPartnerReach_m)) break;
-        if (near.to != from)
-            partner_m2 = std::min(partner_m2, (map.position(near.to) - across).squaredNorm());
+        if (near.length_m > break_m) break;
+        if (near.to == from) continue;
+        const double off_m2 = (map.position(near.to) - across).squaredNorm();
+        if (off_m2 >= partner_m2) continue;
+        partner_m2 = off_m2;
+        break_m = farthest_m();
     }
     return {scaled(length_m, kLength_m),
             log_own,
             std::abs(log_own),
             log_other,
-            edge.log_length - static_cast<float>(std::log(mean_segment_m(state))),
+            edge.log_length - measures.log_mean_segment,
             static_cast<float>(turn_rad),
             static_cast<float>(std::abs(turn_rad)),
             static_cast<float>(change_rad),
@@ -293,10 +333,10 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
             static_cast<float>(std::abs(skew_rad)),
             scaled(width_m, kLength_m) - static_cast<float>(kUsualWidth),
             scaled(std::abs(width_m - mean_width_m), 1.0),
-            scaled(width_m - facing_distance_m(map, other, map.position(from)), kLength_m),
+            scaled(width_m - measures.width_m, kLength_m),
             scaled((facing - at).norm(), kLength_m),
             scaled((at - facing).dot(other.direction), kLength_m, kFarBeyond),
-            inside_triangle(map, from, at, facing, move.to, other.cones[0]),
+            inside_triangle(map, from, at, facing, move.to, other.cones[0], measures),
             about.nearest_beside[side == kRight ? kLeft : kRight],
             about.nearest_beside[side],
             std::min(about.beside, kMostCounted),
@@ -347,7 +387,7 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
     const Point& at = map.position(cone);
-    StartCone start{cone, 0.0F, 2.0F, 2.0F, density(map, cone)};
+    StartCone start{cone, 0.0F, 2.0F, 2.0F, map.density(cone)};
     for (const FrontEdge& edge : map.edges(cone)) {
         const Point way = map.position(edge.to) - at;
         if (way.x() < 0.0 && std::abs(way.y()) < kStrip_m && map.position(edge.to).x() > -0.6) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -51,10 +52,24 @@ using ExtendFeatures = std::array<float, kExtendFeatures>;
 using StopFeatures = std::array<float, kStopFeatures>;
 using StartFeatures = std::array<float, kStartFeatures>;
 
-[[nodiscard]] StateFeatures state_features(FrontMap& map, const FrontState& state, Side side);
+/// What the moves of one side have in common, looked up once for all of them.
+struct StateMeasures {
+    double width_m;         ///< from the side's end to the other boundary
+    double mean_width_m;    ///< of the lane so far
+    double mean_segment_m;  ///< of both boundaries, some usual ones where there are few
+    float log_mean_segment;
+    /// The ways from the side's end to the left and to the right of the line to the other end, those along it
+    /// in both: places in FrontMap::edges, ascending.
+    std::array<std::array<std::uint8_t, FrontMap::kMostEdges>, 2> ways;
+    std::array<std::size_t, 2> way_counts;
+};
+[[nodiscard]] StateMeasures measure(FrontMap& map, const FrontState& state, Side side);
+
+[[nodiscard]] StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
+                                           const StateMeasures& measures);
 /// Precondition: the move extends.
 [[nodiscard]] ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side,
-                                             const FrontMove& move);
+                                             const FrontMove& move, const StateMeasures& measures);
 /// `extensions`: those of all moves that extend, one behind the other.
 [[nodiscard]] StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
                                          std::span<const float> extensions);

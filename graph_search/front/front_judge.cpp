@@ -266,8 +266,9 @@ void FrontJudge::see_cones(FrontSearch& search) {
                        static_cast<float>(probability_[best])};
         if (!is_first) {
             const FrontState& before = search.node(node.parent).state;
-            const StateFeatures state = state_features(search.map(), before, node.side);
-            const ExtendFeatures move = extend_features(search.map(), before, node.side, node.move);
+            const StateMeasures measures = measure(search.map(), before, node.side);
+            const StateFeatures state = state_features(search.map(), before, node.side, measures);
+            const ExtendFeatures move = extend_features(search.map(), before, node.side, node.move, measures);
             auto to = step.inputs.begin() + kConeFeatures;
             to = std::ranges::copy(state, to).out;
             std::ranges::copy(move, to);

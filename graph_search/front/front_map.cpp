@@ -89,13 +89,6 @@ std::pair<Vertex, Vertex> FrontMap::ahead_between(double low_m, double high_m) c
     return {static_cast<Vertex>(first - positions_.begin()), static_cast<Vertex>(last - positions_.begin())};
 }
 
-std::span<const FrontEdge> FrontMap::edges(Vertex from) {
-    if (places_[from].count == kNotAsked) find_edges(from);
-    const Place& place = places_[from];
-    if (place.count == 0) return {};
-    return {edge_at(place.first), place.count};
-}
-
 void FrontMap::find_edges(Vertex from) {
     const Point& at = positions_[from];
     const auto [first, last] = ahead_between(at.x() - kLongestSegment_m, at.x() + kLongestSegment_m);
@@ -127,7 +120,12 @@ void FrontMap::find_edges(Vertex from) {
         neighbourhoods_.resize((blocks_.size() + 1) * kEdgesPerBlock);
         blocks_.emplace_back(kEdgesPerBlock);
     }
-    places_[from] = {used_, static_cast<std::uint32_t>(found_.size())};
+    const auto is_short = [](const FrontEdge& edge) {
+        return edge.length_m <= static_cast<float>(kShortSegment_m);
+    };
+    const auto near = static_cast<double>(std::ranges::count_if(found_, is_short));
+    places_[from] = {used_, static_cast<std::uint32_t>(found_.size()),
+                     static_cast<float>(std::log1p(near) - 1.5)};
     for (FrontEdge& edge : found_) {
         edge.log_length = static_cast<float>(std::log(static_cast<double>(edge.length_m)));
         edge.bearing_rad = static_cast<float>(front_angle(edge.direction.y(), edge.direction.x()));

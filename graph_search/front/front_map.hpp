@@ -40,6 +40,20 @@ inline constexpr double kShortSegment_m = 5.8;
            std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
 }
 
+/// Whether two segments come closer than `gap_m`; those that cross do.
+[[nodiscard]] inline bool come_within(const Segment& a, const Segment& b, double gap_m) {
+    if (far_apart(a, b, gap_m)) return false;
+    const auto is_near = [gap_m](const Point& end, const Segment& segment) {
+        const Point along = segment.to - segment.from;
+        const double squared_m2 = along.squaredNorm();
+        const double share =
+            squared_m2 > 0.0 ? std::clamp((end - segment.from).dot(along) / squared_m2, 0.0, 1.0) : 0.0;
+        return (end - (segment.from + share * along)).squaredNorm() < gap_m * gap_m;
+    };
+    return is_near(a.from, b) || is_near(a.to, b) || is_near(b.from, a) || is_near(b.to, a) ||
+           segments_intersect(a, b);
+}
+
 /// The way from a cone to another one.
 struct FrontEdge {
     Vertex to;
@@ -84,7 +98,18 @@ class FrontMap {
 
     /// The ways from a cone of at most kLongestSegment_m, the shortest first. Cones at the same place are not
     /// joined. Stays valid until the next `build`.
-    [[nodiscard]] std::span<const FrontEdge> edges(Vertex from);
+    [[nodiscard]] std::span<const FrontEdge> edges(Vertex from) {
+        if (places_[from].count == kNotAsked) find_edges(from);
+        const Place& place = places_[from];
+        if (place.count == 0) return {};
+        return {edge_at(place.first), place.count};
+    }
+    /// Logarithm of the number of ways of at most kShortSegment_m and the cone itself, less 1.5 to be about
+    /// 0.
+    [[nodiscard]] float density(Vertex cone) {
+        if (places_[cone].count == kNotAsked) find_edges(cone);
+        return places_[cone].density;
+    }
     /// Whether a cone has more ways than `edges` gives, of all cones asked for.
     [[nodiscard]] bool left_out_edges() const { return left_out_edges_; }
     /// `edge`: place in edges(from).
@@ -97,6 +122,7 @@ class FrontMap {
     struct Place {
         std::size_t first;
         std::uint32_t count;
+        float density = 0.0F;
     };
     static constexpr std::uint32_t kNotAsked = ~std::uint32_t{0};
     static constexpr std::size_t kEdgesPerBlock = 4096;

@@ -10,10 +10,7 @@ namespace {
 /// Whether the other boundary's last cones leave room for a segment.
 bool leaves_room(const FrontMap& map, const FrontEnd& other, const Segment& segment,
                  const FrontRules& rules) {
-    const auto near = [&](const Segment& facing) {
-        return !far_apart(segment, facing, rules.narrowest_m) &&
-               segment_distance(segment, facing).distance_m < rules.narrowest_m;
-    };
+    const auto near = [&](const Segment& facing) { return come_within(segment, facing, rules.narrowest_m); };
     const Point& last = map.position(other.cones[0]);
     if (other.count < 2) return !near({last, last});
     const Point& before = map.position(other.cones[1]);
@@ -43,8 +40,9 @@ void FrontMoves::list(FrontMap& map, const FrontState& state, Side side, const F
     left_out = false;
     stops = own.count > 1;
     // Compared by cosine, so that no angle is needed.
-    const double least = std::cos(own.count > 1 ? rules.largest_turn_rad : rules.largest_first_turn_rad);
-    const double least_long = std::cos(rules.largest_long_turn_rad);
+    const double least =
+        own.count > 1 ? turn_.of(rules.largest_turn_rad) : first_turn_.of(rules.largest_first_turn_rad);
+    const double least_long = long_turn_.of(rules.largest_long_turn_rad);
     const std::span<const FrontEdge> edges = map.edges(from);
     const auto is_allowed = [&](const FrontEdge& edge) {
         if (edge.to == other.cones[0] || edge.to == other.cones[1] || edge.to == own.cones[1]) return false;

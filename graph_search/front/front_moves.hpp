@@ -2,6 +2,7 @@
 
 #include "graph_search/front/front_state.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <vector>
@@ -40,11 +41,29 @@ struct FrontMoves {
     void list(FrontMap& map, const FrontState& state, Side side, const FrontRules& rules);
 
   private:
+    /// Of the angle asked for last.
+    class Cosine {
+      public:
+        [[nodiscard]] double of(double angle_rad) {
+            if (angle_rad != angle_rad_) {
+                angle_rad_ = angle_rad;
+                cosine_ = std::cos(angle_rad);
+            }
+            return cosine_;
+        }
+
+      private:
+        double angle_rad_ = 0.0;
+        double cosine_ = 1.0;
+    };
     struct LongSegment {
         double off_m;
         std::size_t edge;
     };
     std::vector<LongSegment> long_segments_;
+    Cosine first_turn_;
+    Cosine turn_;
+    Cosine long_turn_;
 };
 
 /// The pairs that a lane may start with.

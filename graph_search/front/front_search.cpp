@@ -105,13 +105,16 @@ void FrontSearch::keep_best() {
     const std::vector<Candidate>& candidates = levels_[next_level_];
     const bool is_far = static_cast<double>(next_level_) * options_.level_m >= 2.0 * options_.far_m;
     const std::size_t width = is_far ? (options_.beam_width - 1) / 3 + 1 : options_.beam_width;
-    order_.resize(candidates.size());
-    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
-    std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
-        return std::tuple(-candidates[a].score, a) < std::tuple(-candidates[b].score, b);
-    });
-    for (const std::uint32_t i : order_) {
-        const Candidate& candidate = candidates[i];
+    // A heap: few of them are looked at.
+    const auto is_worse = [](const Rank& a, const Rank& b) {
+        return std::tuple(-a.score, a.candidate) > std::tuple(-b.score, b.candidate);
+    };
+    ranks_.clear();
+    for (std::size_t i = 0; i < candidates.size(); ++i) ranks_.push_back({candidates[i].score, i});
+    std::ranges::make_heap(ranks_, is_worse);
+    for (; !ranks_.empty(); ranks_.pop_back()) {
+        const Candidate& candidate = candidates[ranks_.front().candidate];
+        std::ranges::pop_heap(ranks_, is_worse);
         const bool is_behind =
             candidate.score < best_finished_ - options_.finished_drop ||
             (!level_.empty() && candidate.score < nodes_[level_.front()].score - options_.drop);
@@ -141,11 +144,11 @@ void FrontSearch::expand(std::size_t number) {
     const std::span<const float> scores = cost_->score_moves(map_, nodes_[number].state, side, moves_);
     const Margins margins(scores);
     const Node& from = nodes_[number];
+    const std::span<const FrontEdge> edges = map_.edges(from.state.ends[side].cones[0]);
     const std::size_t level = level_number();
     for (std::size_t i = 0; i < moves_.extensions.size(); ++i) {
         const FrontMove& move = moves_.extensions[i];
-        const double ahead_m =
-            static_cast<double>(map_.edges(from.state.ends[side].cones[0])[move.edge].length_m);
+        const double ahead_m = static_cast<double>(edges[move.edge].length_m);
         const double progress_m =
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
         const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
@@ -232,8 +235,7 @@ bool FrontSearch::is_free(std::size_t number, Side side, Vertex to) const {
         if (node.side == side) {
             if (cones[0] != last && !far_apart(added, segment, 0.0) && segments_intersect(added, segment))
                 return false;
-        } else if (!far_apart(added, segment, options_.rules.narrowest_m) &&
-                   segment_distance(added, segment).distance_m < options_.rules.narrowest_m) {
+        } else if (come_within(added, segment, options_.rules.narrowest_m)) {
             return false;
         }
     }

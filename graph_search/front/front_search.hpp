@@ -113,6 +113,12 @@ class FrontSearch {
     std::size_t add(const Candidate& candidate);
 
   private:
+    /// A candidate's place on the level that is being thinned out.
+    struct Rank {
+        double score;
+        std::size_t candidate;
+    };
+
     [[nodiscard]] std::size_t level_of(const FrontState& state) const;
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex cone) const;
     /// Whether the whole lane leaves room for a segment to that cone.
@@ -133,7 +139,7 @@ class FrontSearch {
     FrontMoves moves_;
     std::vector<Node> nodes_;
     std::vector<std::vector<Candidate>> levels_;
-    std::vector<std::uint32_t> order_;
+    std::vector<Rank> ranks_;
     std::vector<std::size_t> level_;
     std::vector<Finished> finished_;
     double best_finished_ = 0.0;  ///< score; minus infinity where none has

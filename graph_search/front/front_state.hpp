@@ -2,6 +2,7 @@
 
 #include "graph_search/front/front_map.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -54,6 +55,13 @@ struct FrontMove {
 [[nodiscard]] FrontState moved(FrontMap& map, const FrontState& state, Side side, const FrontMove& move);
 
 /// Distance of a cone from the other boundary, which is taken to go on straight.
-[[nodiscard]] double facing_distance_m(const FrontMap& map, const FrontEnd& other, const Point& cone);
+[[nodiscard]] inline double facing_distance_m(const FrontMap& map, const FrontEnd& other, const Point& cone) {
+    const Point from_end = cone - map.position(other.cones[0]);
+    if (other.count < 2) return from_end.norm();
+    const double along_m = from_end.dot(other.direction);
+    // The last segment and beyond; what lies behind it is measured from where it begins.
+    const double before_m = std::min(0.0, along_m + static_cast<double>(other.segment_m));
+    return Point(cross(other.direction, from_end), before_m).norm();
+}
 
 }  // namespace conelane
