@@ -8,10 +8,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 #include <gtest/gtest.h>
 
 namespace conelane {
@@ -196,6 +200,116 @@ TEST(FrontFeatures, OfAStartAreThoseOfItsPair) {
     // To cone 3 a segment leads along the heading; from cone 2 to the left one it is well off.
     EXPECT_NEAR(start_cone(lane.map, lane.vertex(3)).predecessor, 0.0F, kRounding);
     EXPECT_NEAR(of_left("own_predecessor"), std::atan2(1.8, 0.5), kRounding);
+}
+
+/// A random lane through 100 cones, ten moves or so long.
+class Wandering {
+  public:
+    explicit Wandering(std::uint64_t seed) : random_(seed) {
+        Scene scene;
+        for (ConeId id = 0; id < 100; ++id) scene.cones.push_back({id, {anywhere(0, 24), anywhere(-9, 9)}});
+        map.build(scene);
+        state = start_state(map, any_cone(), any_cone());
+    }
+    /// A random way from that side's end; the lane takes it afterwards by `take`.
+    FrontMove any_move(Side side) {
+        const auto ways = static_cast<double>(map.edges(state.ends[side].cones[0]).size());
+        const auto edge = static_cast<std::size_t>(anywhere(0, ways));
+        return {map.edges(state.ends[side].cones[0])[edge].to, edge};
+    }
+    void take(Side side, const FrontMove& move) { state = moved(map, state, side, move); }
+
+    FrontMap map;
+    FrontState state;
+
+  private:
+    double anywhere(double least, double most) {
+        return boost::random::uniform_real_distribution<double>(least, most)(random_);
+    }
+    Vertex any_cone() { return static_cast<Vertex>(anywhere(0, static_cast<double>(map.size()))); }
+
+    boost::random::mt19937_64 random_;
+};
+
+/// Cones strictly inside a triangle, up to 3.
+float inside(const FrontMap& map, const Point& a, const Point& b, const Point& c) {
+    float count = 0.0F;
+    for (Vertex cone = 0; cone < map.size(); ++cone) {
+        const Point& p = map.position(cone);
+        const double sides[]{cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)};
+        const auto [least, most] = std::ranges::minmax(sides);
+        if (p != a && p != b && p != c && (least > 0.0 || most < 0.0)) count += 1.0F;
+    }
+    return std::min(count, 3.0F);
+}
+
+/// What looks for cones finds those that a look at every cone within a segment's reach finds.
+TEST(FrontFeatures, InACrowdAreThoseThatEveryConeGives) {
+    int counted = 0;
+    int near_partners = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+        Wandering lane(seed);
+        for (int step = 0; step < 10; ++step) {
+            const Side side = step % 2 == 0 ? kLeft : kRight;
+            const Vertex from = lane.state.ends[side].cones[0];
+            const FrontEnd other = lane.state.ends[opposite(side)];
+            const FrontMove move = lane.any_move(side);
+            if (move.to == other.cones[0] || from == other.cones[0]) break;
+            const ExtendFeatures seen =
+                extend_features(lane.map, lane.state, side, move, measure(lane.map, lane.state, side));
+            const Point& at = lane.map.position(move.to);
+            const Point& facing = lane.map.position(other.cones[0]);
+            const float expected_inside = inside(lane.map, lane.map.position(from), at, facing);
+            ASSERT_EQ(named(extend_feature_table(), seen, "inside"), expected_inside) << seed << ", " << step;
+            counted += expected_inside > 0.0F ? 1 : 0;
+
+            const Point& along = lane.map.edges(from)[move.edge].direction;
+            const double inward = side == kRight ? 1.0 : -1.0;
+            const Point across = at + inward * lane.state.mean_width_m() * Point(-along.y(), along.x());
+            double nearest_m = std::min(3.0, (facing - across).norm());
+            for (const FrontEdge& edge : lane.map.edges(move.to)) {
+                if (edge.to == from) continue;
+                nearest_m = std::min(nearest_m, (lane.map.position(edge.to) - across).norm());
+            }
+            ASSERT_NEAR(named(extend_feature_table(), seen, "partner"), nearest_m / 3.0, kRounding);
+            near_partners += nearest_m < 3.0 ? 1 : 0;
+            lane.take(side, move);
+
+            const FrontEnd& end = lane.state.ends[side];
+            const StopFeatures stop = stop_features(lane.map, lane.state, side, {});
+            const Point place = lane.map.position(end.cones[0]) + double{end.segment_m} * end.direction;
+            double off_m = 6.0;
+            for (const FrontEdge& edge : lane.map.edges(end.cones[0])) {
+                if (edge.to == end.cones[1] || edge.to == other.cones[0] || edge.to == other.cones[1])
+                    continue;
+                off_m = std::min(off_m, (lane.map.position(edge.to) - place).norm());
+            }
+            ASSERT_NEAR(named(stop_feature_table(), stop, "straight_off"), off_m / 4.0, kRounding);
+        }
+    }
+    EXPECT_GT(counted, 300);
+    EXPECT_GT(near_partners, 300);
+}
+
+TEST(ComeWithin, SaysWhatTheDistanceSays) {
+    boost::random::mt19937_64 random(5);
+    boost::random::uniform_int_distribution<int> whole(-6, 6);
+    int within = 0;
+    for (int k = 0; k < 50'000; ++k) {
+        const auto point = [&] {
+            const double x = whole(random);
+            return Point(x, whole(random));
+        };
+        const Segment a{point(), point()};
+        const Segment b{point(), point()};
+        const double gap_m = 0.25 + k % 5;
+        const bool expected = segment_distance(a, b).distance_m < gap_m;
+        ASSERT_EQ(come_within(a, b, gap_m), expected) << k;
+        ASSERT_EQ(come_within(b, a, gap_m), expected) << k;
+        within += expected ? 1 : 0;
+    }
+    EXPECT_GT(within, 10'000);
+    EXPECT_LT(within, 45'000);
 }
 
 /// A false cone far from all others does not widen the view; one that a segment could lead to does.
