@@ -231,14 +231,15 @@ class Wandering {
     boost::random::mt19937_64 random_;
 };
 
-/// Cones strictly inside a triangle, up to 3.
+/// Cones strictly inside a triangle within a segment's reach of a, up to 3.
 float inside(const FrontMap& map, const Point& a, const Point& b, const Point& c) {
     float count = 0.0F;
     for (Vertex cone = 0; cone < map.size(); ++cone) {
         const Point& p = map.position(cone);
         const double sides[]{cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)};
         const auto [least, most] = std::ranges::minmax(sides);
-        if (p != a && p != b && p != c && (least > 0.0 || most < 0.0)) count += 1.0F;
+        if (p == a || p == b || p == c || (p - a).norm() > kLongestSegment_m) continue;
+        if (least > 0.0 || most < 0.0) count += 1.0F;
     }
     return std::min(count, 3.0F);
 }
