@@ -33,6 +33,27 @@ TEST_F(Program, SolutionsPassTheCheckerAndForgeriesDoNot) {
     EXPECT_THAT(bad.output, HasSubstr(" passed, 1 failed"));
 }
 
+TEST_F(Program, SolveCountsTheAnswersByStatus) {
+    file_with(R"({"id":"a","pose":{"x":0,"y":0,"yaw":0},"cones":[{"id":1,"x":1,"y":1}]})"
+              "\n"
+              R"({"id":"b","pose":{"x":0,"y":0,"yaw":0},"cones":[{"id":1,"x":1,"y":1}]})",
+              "e.scenes.jsonl");
+    EXPECT_EQ(run("solve --solver path-pair --scenes e.scenes.jsonl --out e.solutions.jsonl").output,
+              "2 scenes: 2 infeasible, in e.solutions.jsonl\n");
+}
+
+TEST_F(Program, AnImportedSolutionNamesItsSolver) {
+    make_scenes("--fp 0.2");
+    const std::string scenes = text_of(path("s.scenes.jsonl"));
+    const std::string id = nlohmann::json::parse(scenes.substr(0, scenes.find('\n')))["id"];
+    file_with("Infeasible - objective value 0.00000000\n", "x.sol");
+    const std::string import = "import-solution --scenes s.scenes.jsonl --sol x.sol --nearest 12 --id " + id;
+    ASSERT_EQ(run(import + " --solver highs --out x.solutions.jsonl").output, "infeasible\n");
+    EXPECT_THAT(text_of(path("x.solutions.jsonl")), HasSubstr(R"("solver":"highs")"));
+    ASSERT_EQ(run(import + " --out y.solutions.jsonl").exit_code, 0);
+    EXPECT_THAT(text_of(path("y.solutions.jsonl")), HasSubstr(R"("solver":"import")"));
+}
+
 /// One line for each claim, whoever makes it; the scene has ten cones in two rows, or too few.
 class Claims : public Program {
   protected:
