@@ -148,7 +148,7 @@ void FrontSearch::expand(std::size_t number) {
     const std::size_t level = level_number();
     for (std::size_t i = 0; i < moves_.extensions.size(); ++i) {
         const FrontMove& move = moves_.extensions[i];
-        const double ahead_m = static_cast<double>(edges[move.edge].length_m);
+        const auto ahead_m = static_cast<double>(edges[move.edge].length_m);
         const double progress_m =
             from.state.ends[kLeft].length_m + from.state.ends[kRight].length_m + ahead_m;
         const double score = from.score + static_cast<double>(scores[i]) + bonus(side, move.to);
