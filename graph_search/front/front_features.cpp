@@ -149,7 +149,7 @@ double mean_segment_m(const FrontState& state) {
     return sum_m / count;
 }
 
-/// Most cones lie clearly beside the angle of a triangle at an end, which their direction tells.
+/// What a cross product of a direction has to exceed so that a cone clearly lies beside a line.
 constexpr double kClearly = 1e-9;
 
 /// Cones of `from`'s neighbours strictly inside the triangle of `from`, b and the other end c, up to
@@ -192,7 +192,8 @@ std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const Fr
                                     const Point& place) {
     double nearest_m2 = kFarOff_m * kFarOff_m;
     float near = 0.0F;
-    // A cone farther from the end than the place is by more than that is not the nearest one, nor near.
+    // Neighbours come by their distance from the end: beyond farthest_m none is near the place or nearest to
+    // it.
     const double reach_m = (place - map.position(end.cones[0])).norm() + kRounding_m;
     double farthest_m = reach_m + kFarOff_m;
     for (const FrontEdge& edge : map.edges(end.cones[0])) {
@@ -303,8 +304,7 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
     double partner_m2 = (facing - across).squaredNorm();
-    // A cone farther from this one than the place across is by more than the nearest one's distance is
-    // farther.
+    // Neighbours come by their distance from the cone: beyond this one none is nearer to the place across.
     const auto farthest_m = [&] {
         return static_cast<float>(mean_width_m +
                                   std::min(kPartnerReach_m, std::sqrt(partner_m2) + kRounding_m));
