@@ -41,7 +41,7 @@ struct FrontMoves {
     void list(FrontMap& map, const FrontState& state, Side side, const FrontRules& rules);
 
   private:
-    /// Of the angle asked for last.
+    /// Computes a cosine anew only where the angle is another one than before.
     class Cosine {
       public:
         [[nodiscard]] double of(double angle_rad) {
