@@ -334,6 +334,28 @@ TEST(FrontMap, KnowsWhatLiesAboutAWay) {
     EXPECT_NEAR(about.continuation, 0.0, 1e-5) << "4 m straight on";
 }
 
+TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
+    Scene scene;
+    scene.cones = {{0, {0.0, 0.0}}, {1, {14.0, 0.0}}, {2, {15.0, 0.0}}, {3, {15.6, 0.0}}};
+    const auto farthest_m = [&] {
+        FrontMap map;
+        map.build(scene);
+        const Vertex car_side = 0;  // the cone at the origin is the first one
+        return map.edges(car_side).empty() ? 0.0F : map.edges(car_side).back().length_m;
+    };
+    EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
+    // Ten near ones, and two beyond: twelve ways in all.
+    for (ConeId id = 4; id < 14; ++id) scene.cones.push_back({id, {static_cast<double>(id - 3), 1.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
+    scene.cones.push_back({14, {5.0, -1.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 14.0F);
+    // The twelve nearest are within 11.5 m now, and a thirteenth that is counts too.
+    scene.cones.push_back({15, {6.0, -1.0}});
+    EXPECT_LT(farthest_m(), 11.5F);
+    scene.cones.push_back({16, {11.4, 0.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 11.4F);
+}
+
 TEST(FrontNetwork, IsWhatItsFormulaSays) {
     const FrontWeights weights = random_front_weights(3);
     const FrontNetworkWeights& w = weights.stop;

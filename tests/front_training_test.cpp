@@ -6,6 +6,7 @@
 #include "experiments/files/front_weights_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/scoring/score.hpp"
+#include "experiments/tracks/centre_line.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 #include "experiments/training/front_gradient.hpp"
 #include "experiments/training/front_training_run.hpp"
@@ -292,6 +293,27 @@ TEST(FrontTraining, LearnsToFindLanesOnACourseItHasNotSeen) {
     EXPECT_GT(after.scenes, 10U);
     EXPECT_LT(before.iou, 0.5);
     EXPECT_GT(after.iou, 0.8);
+}
+
+TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
+    SceneOptions scenes;
+    scenes.false_positive_rates = {0.0};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 12.0;
+    SceneSet run = make_scene_set({"generated:slalom@5"}, scenes);
+    ASSERT_GT(run.scenes.size(), 5U);
+    TrackBoundaries& course = run.tracks.begin()->second;
+    for (const Pose& pose : centre_line_poses(course, 1.0)) course.driven.push_back(pose.position);
+    course.left.clear();
+    course.right.clear();
+    for (AnnotatedScene& scene : run.scenes) scene.ground_truth.reset();
+    run.scenes.front().scene.cones.clear();  // nothing shows that a lane goes on
+
+    const FrontFigures figures = front_figures(run, shipped_front_weights(), {}, 1);
+    EXPECT_EQ(figures.scenes, run.scenes.size() - 1);
+    EXPECT_GT(figures.usable, 0.8);
+    EXPECT_EQ(figures.iou, 0.0);
+    EXPECT_EQ(figures.exact, 0.0);
 }
 
 TEST(FrontTraining, OptionsOutOfRangeAreNamed) {

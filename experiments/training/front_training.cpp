@@ -299,13 +299,17 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
     struct Row {
         bool usable = false;
         bool exact = false;
-        double iou = 0.0;
+        std::optional<double> iou;
         std::optional<double> confidence;
         std::optional<double> trusted_m;
         double length_m = 0.0;
         std::optional<double> divergence_m;
     };
-    std::vector<Row> rows(set.scenes.size());
+    std::vector<const AnnotatedScene*> scenes;
+    for (const AnnotatedScene& scene : set.scenes) {
+        if (counts(scene, &set.tracks.at(scene.track))) scenes.push_back(&scene);
+    }
+    std::vector<Row> rows(scenes.size());
     constexpr std::size_t kAtOnce = 64;
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(threads), oneapi::tbb::info::default_concurrency()));
@@ -316,13 +320,13 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
                 for (std::size_t i = part * kAtOnce; i < std::min(rows.size(), (part + 1) * kAtOnce); ++i) {
                     DetectionLimits limits;
                     limits.time_limit_ms = std::numeric_limits<double>::infinity();
-                    const AnnotatedScene& scene = set.scenes[i];
+                    const AnnotatedScene& scene = *scenes[i];
                     const LaneAnswer answer = detector->detect(scene.scene, limits);
                     const SceneScore scored =
                         score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
                     rows[i] = {scored.usable().value_or(false),
                                scored.category == Category::ground_truth,
-                               scored.iou.value_or(0.0),
+                               scored.iou,
                                scored.confidence,
                                scored.trusted_m,
                                scored.lane_length_m,
@@ -333,17 +337,20 @@ FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights, con
     FrontFigures figures;
     figures.scenes = rows.size();
     if (rows.empty()) return figures;
+    std::size_t annotated = 0;
     for (const Row& row : rows) {
         figures.usable += row.usable ? 1.0 : 0.0;
         figures.exact += row.exact ? 1.0 : 0.0;
-        figures.iou += row.iou;
+        figures.iou += row.iou.value_or(0.0);
+        annotated += row.iou ? 1 : 0;
         if (row.confidence) figures.calibration.add(*row.confidence, row.usable);
         if (row.trusted_m) figures.calibration.add_trust(*row.trusted_m, row.length_m, row.divergence_m);
     }
     const auto count = static_cast<double>(rows.size());
+    const auto truths = static_cast<double>(std::max<std::size_t>(annotated, 1));
     figures.usable /= count;
-    figures.exact /= count;
-    figures.iou /= count;
+    figures.exact /= truths;
+    figures.iou /= truths;
     return figures;
 }
 

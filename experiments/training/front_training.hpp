@@ -41,10 +41,11 @@ void validate(const FrontTrainingOptions& options);
 
 /// How good the lanes of a detector with these weights are.
 struct FrontFigures {
-    std::size_t scenes = 0;
-    double usable = 0.0;  ///< share
-    double iou = 0.0;     ///< mean
-    double exact = 0.0;   ///< share of ground truths
+    std::size_t scenes = 0;  ///< that count
+    double usable = 0.0;     ///< share
+    // Of the scenes with annotated boundaries; 0 where there are none.
+    double iou = 0.0;    ///< mean
+    double exact = 0.0;  ///< share of ground truths
     Calibration calibration;
 };
 [[nodiscard]] FrontFigures front_figures(const SceneSet& set, const FrontWeights& weights,

@@ -81,7 +81,7 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
             front_angle(cross(chain.direction, edge.direction), chain.direction.dot(edge.direction));
         const double turn_size_rad = std::abs(turn_rad);
         if (length_m > kShortSegment_m) {
-            if (chain.count < rules_.fewest_cones) break;
+            if (chain.count < rules_.fewest_cones || length_m > kLongestSegment_m) break;
             if (turn_size_rad > rules_.largest_bridging_turn_rad || map.neighbourhood(chain.last, i).blocked)
                 continue;
         }

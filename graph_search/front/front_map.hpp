@@ -16,9 +16,10 @@ namespace conelane {
 /// No cone.
 inline constexpr Vertex kNoCone = ~Vertex{0};
 
-/// Longest segment of a boundary [m], and the longest one that needs no reason (the rules ask for a cone
-/// every 5 m; a longer one bridges cones that were not seen).
+/// Longest segment of a boundary [m]: where cones are many, and where they are few; and the longest one that
+/// needs no reason (the rules ask for a cone every 5 m; a longer one bridges cones that were not seen).
 inline constexpr double kLongestSegment_m = 11.5;
+inline constexpr double kLongestAmongFew_m = 15.5;
 inline constexpr double kShortSegment_m = 5.8;
 
 /// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 where both are 0. An approximation
@@ -77,11 +78,12 @@ struct EdgeNeighbourhood {
 
 /// The cones of a scene as the search sees them: in the frame of the car (x ahead, y to the left), ordered by
 /// x, then y, then id, so that neither the order of the cones in the scene nor, unless two lie at one place,
-/// their ids make a difference. The ways between them are found when first asked for, and only as many as
-/// kMostEdges from a cone, the shortest ones. Reuses the memory of the map before.
+/// their ids make a difference. The ways between them are found when first asked for. Reuses the memory of
+/// the map before.
 class FrontMap {
   public:
-    static constexpr std::size_t kMostEdges = 160;
+    static constexpr std::size_t kFewEdges = 12;    ///< fewer from a cone look farther
+    static constexpr std::size_t kMostEdges = 160;  ///< from a cone, the shortest ones
 
     void build(const Scene& scene);
 
@@ -91,13 +93,14 @@ class FrontMap {
     [[nodiscard]] std::size_t scene_index(Vertex cone) const { return order_[cone]; }
     /// Cones with x in [low, high] are those from the first to the second.
     [[nodiscard]] std::pair<Vertex, Vertex> ahead_between(double low_m, double high_m) const;
-    /// Distance from the car of the farthest cone that some segment could lead to: about as far as the car
-    /// sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one where all
-    /// are alone.
+    /// Distance from the car of the farthest cone that has another one within kLongestSegment_m: about as far
+    /// as the car sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one
+    /// where all are alone.
     [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
 
-    /// The ways from a cone of at most kLongestSegment_m, the shortest first. Cones at the same place are not
-    /// joined. Stays valid until the next `build`.
+    /// The ways from a cone of at most kLongestSegment_m, the shortest first; where they are fewer than
+    /// kFewEdges, as many of at most kLongestAmongFew_m. Cones at the same place are not joined. Stays valid
+    /// until the next `build`.
     [[nodiscard]] std::span<const FrontEdge> edges(Vertex from) {
         if (places_[from].count == kNotAsked) find_edges(from);
         const Place& place = places_[from];
