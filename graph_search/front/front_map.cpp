@@ -91,27 +91,32 @@ std::pair<Vertex, Vertex> FrontMap::ahead_between(double low_m, double high_m) c
 
 void FrontMap::find_edges(Vertex from) {
     const Point& at = positions_[from];
-    const auto [first, last] = ahead_between(at.x() - kLongestAmongFew_m, at.x() + kLongestAmongFew_m);
+    const auto find = [&](double beyond_m, double up_to_m) {
+        const auto [first, last] = ahead_between(at.x() - up_to_m, at.x() + up_to_m);
+        for (Vertex to = first; to < last; ++to) {
+            const Point way = positions_[to] - at;
+            const double squared_m2 = way.squaredNorm();
+            if (squared_m2 <= beyond_m * beyond_m || squared_m2 > up_to_m * up_to_m) continue;
+            const double length_m = std::sqrt(squared_m2);
+            found_.push_back({to, static_cast<float>(length_m), 0.0F, 0.0F, way / length_m});
+        }
+    };
     found_.clear();
-    std::size_t wanted = 0;
-    for (Vertex to = first; to < last; ++to) {
-        const Point way = positions_[to] - at;
-        const double squared_m2 = way.squaredNorm();
-        // Shorter ones have no direction or, as float, no length: the two cones stand at one place.
-        constexpr double kOnePlace_m = 1e-9;
-        if (squared_m2 < kOnePlace_m * kOnePlace_m || squared_m2 > kLongestAmongFew_m * kLongestAmongFew_m)
-            continue;
-        if (squared_m2 <= kLongestSegment_m * kLongestSegment_m) ++wanted;
-        const double length_m = std::sqrt(squared_m2);
-        found_.push_back({to, static_cast<float>(length_m), 0.0F, 0.0F, way / length_m});
+    // Shorter ones have no direction or, as float, no length: the two cones stand at one place.
+    constexpr double kOnePlace_m = 1e-9;
+    find(kOnePlace_m, kLongestSegment_m);
+    std::size_t most = kMostEdges;
+    if (found_.size() < kFewEdges) {
+        most = kFewEdges;
+        find(kLongestSegment_m, kLongestAmongFew_m);
+    } else if (found_.size() > kMostEdges) {
+        left_out_edges_ = true;
     }
     const auto shorter = [](const FrontEdge& a, const FrontEdge& b) {
         return std::tie(a.length_m, a.to) < std::tie(b.length_m, b.to);
     };
-    if (wanted > kMostEdges) left_out_edges_ = true;
-    wanted = std::clamp(wanted, kFewEdges, kMostEdges);
-    if (found_.size() > wanted) {
-        const auto end = found_.begin() + static_cast<std::ptrdiff_t>(wanted);
+    if (found_.size() > most) {
+        const auto end = found_.begin() + static_cast<std::ptrdiff_t>(most);
         std::nth_element(found_.begin(), end, found_.end(), shorter);
         found_.erase(end, found_.end());
     }
