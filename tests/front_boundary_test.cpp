@@ -175,10 +175,11 @@ TEST(FrontBoundary, IsSeldomMadeOfNoise) {
     boost::random::uniform_real_distribution<double> ahead_m(0.0, 30.0);
     boost::random::uniform_real_distribution<double> left_m(-30.0, 30.0);
     const auto detector = make_detector("front");
+    constexpr int kScenes = 300;
     for (const int cones : {8, 16, 24}) {
         int without_lane = 0;
         int boundaries = 0;
-        for (int i = 0; i < 300; ++i) {
+        for (int i = 0; i < kScenes; ++i) {
             std::vector<Point> points;
             while (points.size() < static_cast<std::size_t>(cones)) {
                 const double x = ahead_m(random);
@@ -191,7 +192,7 @@ TEST(FrontBoundary, IsSeldomMadeOfNoise) {
             if (answer.status == LaneStatus::found) ++boundaries;
         }
         EXPECT_GT(without_lane, 100) << cones;
-        EXPECT_LE(boundaries, without_lane / 20) << cones;
+        EXPECT_LE(boundaries, kScenes / 40) << cones;
     }
 }
 
