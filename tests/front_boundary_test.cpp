@@ -104,6 +104,18 @@ TEST(FrontBoundary, BridgesAMissedConeFromTheThirdOn) {
     expect_boundary(scene_of(cones), kRight);
 }
 
+/// A lane may step farther where cones are few: its other boundary shows where it goes.
+TEST(FrontBoundary, EndsBeforeALongGap) {
+    const auto found = [](double gap_m) {
+        std::vector<Point> cones;
+        for (const double x : {1.0, 5.0, 9.0, 9.0 + gap_m, 13.0 + gap_m, 17.0 + gap_m})
+            cones.emplace_back(x, -1.8);
+        return search(scene_of(cones)).value().cones;
+    };
+    EXPECT_EQ(found(11.4), (std::vector<ConeId>{0, 1, 2, 3, 4, 5}));
+    EXPECT_EQ(found(11.6), (std::vector<ConeId>{0, 1, 2}));
+}
+
 /// The cone at 11.3 m is too near the one before it to go on to, and stands in the way of the bridge.
 TEST(FrontBoundary, BridgesNothingOverACone) {
     std::vector<Point> cones;
