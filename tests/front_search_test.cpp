@@ -340,8 +340,7 @@ TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
     const auto farthest_m = [&] {
         FrontMap map;
         map.build(scene);
-        const Vertex car_side = 0;  // the cone at the origin is the first one
-        return map.edges(car_side).empty() ? 0.0F : map.edges(car_side).back().length_m;
+        return map.edges(0).back().length_m;  // of the cone at the origin, which is the first one
     };
     EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
     // Ten near ones, and two beyond: twelve ways in all.
@@ -349,7 +348,7 @@ TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
     EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
     scene.cones.push_back({14, {5.0, -1.0}});
     EXPECT_FLOAT_EQ(farthest_m(), 14.0F);
-    // The twelve nearest are within 11.5 m now, and a thirteenth that is counts too.
+    // Twelve are within 11.5 m now; a thirteenth there counts too.
     scene.cones.push_back({15, {6.0, -1.0}});
     EXPECT_LT(farthest_m(), 11.5F);
     scene.cones.push_back({16, {11.4, 0.0}});

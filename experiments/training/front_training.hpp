@@ -41,7 +41,7 @@ void validate(const FrontTrainingOptions& options);
 
 /// How good the lanes of a detector with these weights are.
 struct FrontFigures {
-    std::size_t scenes = 0;  ///< that count
+    std::size_t scenes = 0;  ///< those that count
     double usable = 0.0;     ///< share
     // Of the scenes with annotated boundaries; 0 where there are none.
     double iou = 0.0;    ///< mean

@@ -82,7 +82,7 @@ struct EdgeNeighbourhood {
 /// the map before.
 class FrontMap {
   public:
-    static constexpr std::size_t kFewEdges = 12;    ///< fewer from a cone look farther
+    static constexpr std::size_t kFewEdges = 12;    ///< a cone that has fewer looks farther
     static constexpr std::size_t kMostEdges = 160;  ///< from a cone, the shortest ones
 
     void build(const Scene& scene);
