@@ -16,15 +16,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 namespace conelane {
 namespace {
@@ -98,34 +98,34 @@ std::vector<Scene> crowded_scenes() {
     return scenes;
 }
 
-/// Processor time that passes at most between two looks at the clock, from the call to the answer. The least
-/// of three tries: a processor that is taken away for a while is not the call's fault.
-double longest_gap_ms(const std::function<void()>& call) {
+/// Processor time that passes at most between two looks at the clock, from a new detector's first call to its
+/// answer. A try with a gap of `ample_ms` is repeated up to nine times, and the least counts: a processor
+/// that is taken away for a while is not the detector's fault.
+double longest_gap_ms(std::string_view name, const Scene& scene, double ample_ms) {
     double least_ms = std::numeric_limits<double>::infinity();
-    for (int repeat = 0; repeat < 3; ++repeat) {
+    for (int attempt = 0; attempt < 10 && least_ms >= ample_ms; ++attempt) {
+        const std::unique_ptr<LaneDetector> detector = make_detector(name);
         forget_looks();
-        call();
+        (void)detector->detect(scene, {.time_limit_ms = 400.0});
         tests::note_look();
         least_ms = std::min(least_ms, clock_looks.longest_gap_ms);
     }
     return least_ms;
 }
 
-/// A limit can be overrun by no more than what is done between two looks at the clock.
+/// A limit can be overrun by no more than what is done between two looks at the clock. Large blocks go back
+/// to the system when they are given back, so that no try finds memory that one before it has paid for.
 TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
+    ASSERT_EQ(mallopt(M_MMAP_THRESHOLD, 1 << 17), 1);
     const std::vector<Scene> scenes = crowded_scenes();
     std::size_t most_cones = 0;
     for (const Scene& scene : scenes) most_cones = std::max(most_cones, scene.cones.size());
     EXPECT_GE(most_cones, 450U);
     for (const DetectorInfo& info : detectors()) {
         SCOPED_TRACE(info.name);
-        const std::unique_ptr<LaneDetector> detector = make_detector(info.name);
         for (const Scene& scene : scenes) {
-            const double gap_ms = longest_gap_ms([&] {
-                detector->reset();
-                (void)detector->detect(scene, {.time_limit_ms = 400.0});
-            });
-            EXPECT_LT(gap_ms, 1.0 * kSlowness) << scene.id << ", " << scene.cones.size() << " cones";
+            EXPECT_LT(longest_gap_ms(info.name, scene, kSlowness), kSlowness)
+                << scene.id << ", " << scene.cones.size() << " cones";
         }
     }
 }

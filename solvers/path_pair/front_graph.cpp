@@ -12,8 +12,12 @@ constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
 constexpr int kFrontsPerClock = 256;
-/// Room is made for so many, and for steps, before the first one: a vector that grows copies what it has,
-/// which takes milliseconds. Memory that is not written to costs nothing.
+/// To extend a front takes as long as to look at so many.
+constexpr int kFrontsPerExtension = 4;
+/// So many values are written or copied between two looks at the clock.
+constexpr std::size_t kValuesPerClock = 16384;
+/// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
+/// nothing.
 constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
 constexpr std::size_t kStepsPerFront = 4;
 constexpr std::size_t kMostFirstFronts = 1'000'000;
@@ -46,8 +50,8 @@ void FrontGraph::Arrays::reserve(std::size_t count) {
     onward.reserve(count);
 }
 
-bool FrontGraph::out_of_time() {
-    if (--until_clock_ < 0) {
+bool FrontGraph::out_of_time(int fronts) {
+    if ((until_clock_ -= fronts) < 0) {
         until_clock_ = kFrontsPerClock;
         is_stopped_ = is_stopped_ || (*stopped_)();
     }
@@ -56,15 +60,30 @@ bool FrontGraph::out_of_time() {
 
 template <typename T>
 bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
-    constexpr std::size_t kPerClock = 16384;
     values.clear();
     values.reserve(count);
     while (values.size() < count) {
         // Most graphs are small: then this call takes less time than a look at the clock.
         is_stopped_ = is_stopped_ || (count > kFewSlots && (*stopped_)());
         if (is_stopped_) return false;
-        values.resize(std::min(count, values.size() + kPerClock), value);
+        values.resize(std::min(count, values.size() + kValuesPerClock), value);
     }
+    return true;
+}
+
+template <typename T>
+bool FrontGraph::make_room(std::vector<T>& values, std::size_t more) {
+    if (values.size() + more <= values.capacity()) return true;
+    std::vector<T> grown;
+    grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
+    while (grown.size() < values.size()) {
+        is_stopped_ = is_stopped_ || (*stopped_)();
+        if (is_stopped_) return false;
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(grown.size());
+        const std::size_t count = std::min(values.size() - grown.size(), kValuesPerClock);
+        grown.insert(grown.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+    }
+    values = std::move(grown);
     return true;
 }
 
@@ -108,6 +127,10 @@ int FrontGraph::number(const Front& wanted) {
     std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
     for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
         if (front(table_[slot]) == wanted) return table_[slot];
+    }
+    if (!make_room(now_.fronts, 1) || !make_room(now_.forward, 1) || !make_room(now_.begin, 1) ||
+        !make_room(now_.end, 1) || !make_room(next_open_, 1)) {
+        return 0;
     }
     table_[slot] = size();
     now_.fronts.push_back(wanted);
@@ -161,7 +184,7 @@ FrontGraph::Front FrontGraph::after(const Front& front, int arc, std::uint8_t ot
     return {front.waiting, arc, other, false};
 }
 
-/// All steps of a front, their next fronts still open.
+/// All steps of a front, their next fronts still open. None once the time is up.
 void FrontGraph::add_steps(int f, double limit) {
     const ResidualGraph& r = *residual_;
     const Front here = front(f);
@@ -173,6 +196,8 @@ void FrontGraph::add_steps(int f, double limit) {
     const double waiting = relaxation_->forward(other)[at(here.waiting)] +
                            (here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)]);
     const int waiting_cone = r.head[at(here.waiting)];
+    const int ways = r.out_start[at(here.moving) + 1] - r.out_start[at(here.moving)];
+    if (!make_room(now_.steps, at(ways) + 1)) return;
     now_.begin[at(f)] = now_.steps.size();
     for (int p = r.out_start[at(here.moving)]; p < r.out_start[at(here.moving) + 1]; ++p) {
         const int next = r.out_arc[at(p)];
@@ -224,7 +249,7 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
                 open_arcs_[word] &= open_arcs_[word] - 1;
                 for (int f = std::exchange(open_at_[at(moving_)], -1); f >= 0;) {
                     const int next = std::exchange(next_open_[at(f)], kNotOpen);
-                    if (out_of_time() || !extend(f, limit, most_fronts)) return false;
+                    if (out_of_time(kFrontsPerExtension) || !extend(f, limit, most_fronts)) return false;
                     f = next;
                 }
             }
@@ -301,8 +326,10 @@ void FrontGraph::order() {
 
 bool FrontGraph::order_fronts() {
     order_.clear();
-    if (!fill(index_, now_.fronts.size(), -1)) return false;
-    next_step_.resize(now_.fronts.size());
+    order_.reserve(now_.fronts.size());
+    if (!fill(index_, now_.fronts.size(), -1) || !fill(next_step_, now_.fronts.size(), std::size_t{0})) {
+        return false;
+    }
     const auto enter = [&](int f) {
         if (f < 0 || now_.end[at(f)] == 0 || index_[at(f)] >= 0) return;
         index_[at(f)] = 0;
@@ -334,6 +361,7 @@ void FrontGraph::keep(std::span<const int> order) {
     std::swap(now_, old_);
     now_.clear();
     now_.reserve(order.size());
+    now_.steps.reserve(old_.steps.size());
     if (!fill(index_, old_.fronts.size(), -1)) return forget_fronts();
     for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
     for (const int f : order) {

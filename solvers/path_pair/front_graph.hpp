@@ -92,10 +92,15 @@ class FrontGraph {
     };
     static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     static std::uint64_t key(const Front& front);
-    bool out_of_time();
+    /// `fronts`: how many are looked at until the next call.
+    bool out_of_time(int fronts = 1);
     /// So many times the value; false, and fewer, where the time is up.
     template <typename T>
     bool fill(std::vector<T>& values, std::size_t count, T value);
+    /// Room for so many more values. A vector that grows by itself copies all of them in one go, which takes
+    /// milliseconds. False, and no more room, where the time is up.
+    template <typename T>
+    bool make_room(std::vector<T>& values, std::size_t more);
     /// The same rows of the set of all edges.
     bool fill_dominated(std::size_t words);
     void forget_fronts();
