@@ -1,5 +1,7 @@
 #include "solvers/path_pair/branch_and_bound.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -49,10 +51,6 @@ constexpr int kRestSteps = 2;
 constexpr std::size_t kMostOpenNodes = 2000;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

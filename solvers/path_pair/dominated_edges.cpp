@@ -1,15 +1,10 @@
 #include "solvers/path_pair/dominated_edges.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <algorithm>
 
 namespace conelane::path_pair {
-namespace {
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, const std::uint64_t* own,
                           std::size_t words) {

@@ -1,16 +1,11 @@
 #include "solvers/path_pair/edge_sets.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <bit>
 #include <span>
 
 namespace conelane::path_pair {
-namespace {
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
-
-}  // namespace
 
 void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, SearchClock& clock) {
     number_of_edge_.assign(at(graph.edge_count()), -1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/block_rows.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
 #include "solvers/path_pair/incumbent.hpp"
@@ -40,7 +41,6 @@ class FrontBeam {
         double estimate;
     };
 
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     [[nodiscard]] int kind(int leg) const { return relaxation_->symmetric() ? 0 : leg; }
     [[nodiscard]] double limit() const;
     [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.row(at(label)); }

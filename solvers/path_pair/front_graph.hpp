@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/block_rows.hpp"
 #include "solvers/path_pair/dominated_edges.hpp"
 #include "solvers/path_pair/edge_sets.hpp"
@@ -90,7 +91,6 @@ class FrontGraph {
         void clear();
         void reserve(std::size_t count);  ///< Precondition: cleared.
     };
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     static std::uint64_t key(const Front& front);
     /// `fronts`: how many are looked at until the next call.
     bool out_of_time(int fronts = 1);

@@ -1,5 +1,7 @@
 #include "solvers/path_pair/front_search.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -10,10 +12,6 @@ namespace {
 // Sets of edges that are looked at between two looks at the clock.
 constexpr std::size_t kWorkPerClock = 10000;
 constexpr std::size_t kWorkPerLabel = 20;  ///< its detours, along its arcs
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 // Incumbents from small parts of the graph, part of BranchAndBound.
 
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/branch_and_bound.hpp"
 
 #include <algorithm>
@@ -35,10 +36,6 @@ constexpr double kShareOfMoreWork = 1.0;
 constexpr double kLeastShare = 0.1;
 constexpr double kNarrowGap = 0.1;  ///< of the incumbent's cost
 constexpr double kWideGap = 0.5;
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

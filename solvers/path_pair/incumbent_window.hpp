@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
 
@@ -35,7 +36,6 @@ class IncumbentWindow {
   private:
     enum class Place : char { outside, reached, inside };
 
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     [[nodiscard]] int next_centre(const std::array<std::vector<int>, 2>& legs) const;
     void spread(int centre);
     void fix_outside(std::span<const int> leg, LegSystem::Kind& kind);

@@ -1,5 +1,7 @@
 #include "solvers/path_pair/onward_tables.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <algorithm>
 #include <bit>
 
@@ -10,10 +12,6 @@ constexpr std::size_t kBlock = 16;
 constexpr std::size_t kWorkPerClock = 200'000;  ///< bytes of rows between two looks at the clock
 constexpr double kLeastQuantum = 1e-9;
 constexpr double kRounding = 0.01;  ///< of a quantum: more than sums of costs are off by
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 /// mine = min(mine, max(theirs + more, excluded)). Tells whether any fell.
 bool lower(Quanta* mine, const Quanta* theirs, const Quanta* excluded, Quanta more, std::size_t count) {

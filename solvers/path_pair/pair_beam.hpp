@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/incumbent.hpp"
 #include "solvers/path_pair/pair_relaxation.hpp"
 #include "solvers/path_pair/search_clock.hpp"
@@ -41,7 +42,6 @@ class PairBeam {
         double cost;
     };
 
-    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
     [[nodiscard]] bool starts(int arc) const { return system_->kinds[0].start[at(graph_->tail(arc))] != 0; }
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
     void add_first_steps(SearchClock& clock);

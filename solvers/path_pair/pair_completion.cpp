@@ -1,15 +1,13 @@
 #include "solvers/path_pair/pair_completion.hpp"
 
+#include "solvers/path_pair/at.hpp"
+
 #include <algorithm>
 
 namespace conelane::path_pair {
 namespace {
 
 constexpr int kSecondRounds = 4;  ///< of the multipliers' ascent, before the second leg is searched
-
-std::size_t at(int index) {
-    return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

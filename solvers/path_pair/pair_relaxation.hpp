@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solvers/path_pair/arc_graph.hpp"
+#include "solvers/path_pair/at.hpp"
 #include "solvers/path_pair/leg_bounds.hpp"
 #include "solvers/path_pair/multipliers.hpp"
 #include "solvers/path_pair/residual_graph.hpp"
@@ -114,7 +115,6 @@ class PairRelaxation {
         std::vector<int> best_arc;  ///< that attains it
         std::vector<double> rest;   ///< h by cone
     };
-    static std::size_t at(int kind) { return static_cast<std::size_t>(kind); }
     void reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers);
     double combine();
     void pick_ends(const ResidualGraph& residual, int kind);

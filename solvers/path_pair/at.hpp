@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+
+namespace conelane::path_pair {
+
+/// A number of an arc, an edge, a cone or a front, as containers take it.
+[[nodiscard]] constexpr std::size_t at(int number) {
+    return static_cast<std::size_t>(number);
+}
+
+}  // namespace conelane::path_pair
