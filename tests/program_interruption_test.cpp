@@ -7,8 +7,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include <fcntl.h>
@@ -22,6 +24,17 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+
+/// Whether the program has come so far that it waits for the signal, which it blocks to do so.
+bool waits_for(pid_t program, int signal) {
+    std::ifstream status("/proc/" + std::to_string(program) + "/status");
+    for (std::string line; std::getline(status, line);) {
+        constexpr std::string_view kBlocked = "SigBlk:";
+        if (line.starts_with(kBlocked))
+            return (std::stoull(line.substr(kBlocked.size()), nullptr, 16) >> (signal - 1) & 1U) != 0;
+    }
+    return false;
+}
 
 /// Work that is begun, and a signal to all of it, as Ctrl-C gives.
 class Interruption : public Program {
@@ -40,7 +53,7 @@ class Interruption : public Program {
         ::setpgid(child, child);
         int status = 0;
         bool ready = false;
-        for (int wait = 0; wait < 6000 && !(ready = begun()); ++wait) {
+        for (int wait = 0; wait < 6000 && !(ready = begun() && waits_for(child, signal)); ++wait) {
             ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
@@ -61,12 +74,6 @@ class Interruption : public Program {
                       "s.scenes.jsonl")
                       .exit_code,
                   0);
-    }
-    [[nodiscard]] bool has_a_temporary_file(const std::string& folder) const {
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(path(folder))) {
-            if (entry.path().string().find(".tmp") != std::string::npos) return true;
-        }
-        return false;
     }
 };
 
