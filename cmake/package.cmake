@@ -29,6 +29,15 @@ function(conelane_compile_options target)
                                              $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:-Werror>)
 endfunction()
 
+# In release builds, -O3 is for the core. What waits for files and for the core compiles in half the time at LEVEL and with
+# precompiled headers: those of a target are what takes it longest to read.
+function(conelane_compile_quickly target level)
+    target_compile_options(${target} PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-O${level}>)
+    if(ARGN)
+        target_precompile_headers(${target} PRIVATE ${ARGN})
+    endif()
+endfunction()
+
 # The headers that users see are in a folder include/conelane beside the sources.
 # `conelane_library(NAME [COMPONENT C] SOURCES... PUBLIC LIBRARIES... PRIVATE LIBRARIES...)`: target conelane_NAME, for
 # users conelane::NAME. Without a component it is not installed.

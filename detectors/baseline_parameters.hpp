@@ -1,7 +1,7 @@
 #pragma once
 
-#include "graph_search/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
+#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 
 namespace conelane {
 

@@ -1,11 +1,11 @@
 #include "detectors/recipe.hpp"
 
 #include "detectors/baseline_parameters.hpp"
-#include "graph_search/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/clc_detector.hpp"
-#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
+#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
+#include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <array>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "conelane/core_solvers.hpp"
 
 #include "solvers/exhaustive.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 namespace conelane {
 namespace {

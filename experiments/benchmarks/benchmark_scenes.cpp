@@ -1,8 +1,8 @@
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 
-#include "experiments/scenes/scene_file.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/tracks/generated_tracks.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/tracks/generated_tracks.hpp"
 
 #include <cstdlib>
 #include <iterator>

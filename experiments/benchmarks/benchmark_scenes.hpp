@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -2,12 +2,12 @@
 // (as time for each of its iterations), the ranking (for each candidate), and a whole detection. Scenes are
 // of generated tracks, three false positives among ten points, 30 m; the scenes take turns.
 
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/tracks/generated_tracks.hpp"
-#include "graph_search/candidate_search.hpp"
-#include "graph_search/clc_detector.hpp"
-#include "graph_search/delaunay_beam/delaunay_triangulation.hpp"
-#include "graph_search/search_graph.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/tracks/generated_tracks.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
+#include "graph_search/clc/candidate_search.hpp"
+#include "graph_search/clc/clc_detector.hpp"
+#include "graph_search/shared/search_graph.hpp"
 
 #include <cstdint>
 #include <limits>

@@ -13,10 +13,10 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scoring/statistics.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scoring/statistics.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <array>
 #include <cstdint>
@@ -163,7 +163,7 @@ int main(int argument_count, char** arguments) {
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
         namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<experiments::AnnotatedScene>>(
+        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
             experiments::benchmark_scenes(0.3)));
     } catch (const std::exception& failure) {
         std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';

@@ -3,8 +3,8 @@
 // among five points, or those of the file that the environment variable CONELANE_SCENES names. An iteration
 // is one scene; the scenes take turns.
 
+#include "evaluation/scenes/annotated_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
 
@@ -112,7 +112,7 @@ int main(int argument_count, char** arguments) {
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
         namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<experiments::AnnotatedScene>>(
+        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
             experiments::benchmark_scenes(0.2)));
     } catch (const std::exception& failure) {
         std::cerr << "conelane_benchmarks: " << failure.what() << '\n';

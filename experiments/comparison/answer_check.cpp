@@ -1,7 +1,7 @@
 #include "experiments/comparison/answer_check.hpp"
 
 #include "conelane/check.hpp"
-#include "experiments/scenes/cone_index.hpp"
+#include "evaluation/scenes/cone_index.hpp"
 
 #include <algorithm>
 #include <cmath>

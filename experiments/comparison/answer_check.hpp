@@ -4,7 +4,7 @@
 #include "conelane/lane_graph.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
-#include "experiments/files/lane_file.hpp"
+#include "evaluation/files/lane_file.hpp"
 
 #include <optional>
 

@@ -1,12 +1,12 @@
 #include "experiments/comparison/comparison.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/outside/finished_lanes.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/outside/finished_lanes.hpp"
 
 #include <algorithm>
 #include <iterator>

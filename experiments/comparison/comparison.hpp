@@ -1,7 +1,7 @@
 #pragma once
 
+#include "evaluation/scenes/scene_set.hpp"
 #include "experiments/comparison/run_record.hpp"
-#include "experiments/scenes/scene_set.hpp"
 
 #include <filesystem>
 #include <string>

@@ -1,8 +1,8 @@
 #include "experiments/comparison/echo_floor.hpp"
 
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/json_node.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/json_node.hpp"
 
 #include <algorithm>
 #include <cstddef>

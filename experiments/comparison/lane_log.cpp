@@ -1,6 +1,6 @@
 #include "experiments/comparison/lane_log.hpp"
 
-#include "experiments/files/input_error.hpp"
+#include "evaluation/files/input_error.hpp"
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/files/lane_file.hpp"
+#include "evaluation/files/lane_file.hpp"
 
 #include <cstddef>
 #include <filesystem>

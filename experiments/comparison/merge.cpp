@@ -1,8 +1,8 @@
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/files/lane_file.hpp"
-#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <iterator>

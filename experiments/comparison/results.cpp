@@ -1,12 +1,12 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/scoring/statistics.hpp"
-#include "experiments/training_courses.hpp"
+#include "experiments/comparison/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -176,7 +176,7 @@ void RecordScorer::score(const Truth& truth, ScoredRecord& scored, CentreLine& l
         score = score_centre_line(scene, record.centre_line, record.latency_ms, truth.boundaries);
         line = centre_line_of(record.centre_line, pose);
     } else {
-        score = experiments::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
+        score = conelane::score(scene, record.answer, record.latency_ms, record.nearest, truth.boundaries);
         if (record.answer.status == LaneStatus::found) {
             outline = outline_of(record.answer.lane, scene.scene);
             line = centre_line_of(outline, pose);

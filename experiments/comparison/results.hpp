@@ -1,13 +1,13 @@
 #pragma once
 
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scoring/centre_line_error.hpp"
+#include "evaluation/scoring/lane_failure.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/scoring/score_table.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/files/lane_file.hpp"
-#include "experiments/outside/outside_method.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scoring/centre_line_error.hpp"
-#include "experiments/scoring/lane_failure.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/scoring/score_table.hpp"
 
 #include <cstddef>
 #include <filesystem>

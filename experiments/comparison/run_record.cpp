@@ -1,12 +1,12 @@
 #include "experiments/comparison/run_record.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/file_hash.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scenes/scene_options_json.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/file_hash.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/scenes/scene_options_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -87,7 +87,7 @@ nlohmann::ordered_json to_json(const OutsideMethod& method) {
 }  // namespace
 
 Entrant parse_entrant(const std::string& text, std::optional<std::size_t> nearest) {
-    if (auto outside = parse_outside_method(text)) {
+    if (auto outside = find_outside_method(text)) {
         if (nearest && !outside->is_program()) {
             throw InvalidInput(
                 "method", "'" + outside->name + "' is a finished lanes file, no cone-set size can be given");

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "evaluation/files/folder_lock.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/scenes/scene_set.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/files/folder_lock.hpp"
-#include "experiments/outside/outside_method.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/scenes/scene_set.hpp"
 
 #include <filesystem>
 #include <functional>

@@ -1,9 +1,9 @@
 #include "experiments/comparison/runner.hpp"
 
+#include "evaluation/outside/outside_program.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/pinning.hpp"
-#include "experiments/outside/outside_program.hpp"
-#include "experiments/progress.hpp"
+#include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

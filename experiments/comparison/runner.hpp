@@ -1,9 +1,9 @@
 #pragma once
 
 #include "conelane/lane_detector.hpp"
-#include "experiments/files/lane_file.hpp"
-#include "experiments/methods.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "experiments/comparison/methods.hpp"
 
 #include <cstddef>
 #include <functional>

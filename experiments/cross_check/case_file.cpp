@@ -1,12 +1,12 @@
 #include "experiments/cross_check/case_file.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/json_node.hpp"
-#include "experiments/files/parameter_file.hpp"
-#include "experiments/scenes/scene_file.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/files/program_files.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "model/lane_graph_model.hpp"
-#include "model/program_files.hpp"
 
 #include <array>
 

@@ -1,14 +1,14 @@
 #include "experiments/cross_check/cross_check.hpp"
 
+#include "evaluation/files/file_hash.hpp"
+#include "evaluation/files/folder_lock.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/cross_check/case_file.hpp"
 #include "experiments/cross_check/shrink.hpp"
-#include "experiments/files/file_hash.hpp"
-#include "experiments/files/folder_lock.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/files/json_node.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/scenes/scene_file.hpp"
+#include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

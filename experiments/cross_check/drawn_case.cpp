@@ -1,7 +1,7 @@
 #include "experiments/cross_check/drawn_case.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
-#include "experiments/seeded_random.hpp"
+#include "evaluation/seeded_random.hpp"
 
 #include <algorithm>
 #include <array>

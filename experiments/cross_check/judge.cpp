@@ -3,9 +3,9 @@
 #include "conelane/check.hpp"
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/checking/certificate_verifier.hpp"
-#include "experiments/checking/lane_graph_search.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "evaluation/checking/certificate_verifier.hpp"
+#include "evaluation/checking/lane_graph_search.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/scenes/scene_options_json.hpp"
-#include "experiments/tracks/track_spec.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/scenes/scene_options_json.hpp"
+#include "evaluation/tracks/track_spec.hpp"
 
 #include <algorithm>
 #include <iterator>

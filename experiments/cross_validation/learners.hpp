@@ -1,7 +1,7 @@
 #pragma once
 
+#include "evaluation/scenes/scene_generation.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/scenes/scene_generation.hpp"
 
 #include <cstddef>
 #include <filesystem>

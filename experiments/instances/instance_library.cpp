@@ -3,15 +3,15 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/gzip.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/scenes/scene_set.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/gzip.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/program_files.hpp"
+#include "evaluation/scenes/scene_set.hpp"
 #include "model/lane_graph_model.hpp"
-#include "model/program_files.hpp"
 #include "solvers/milp/cbc_main_solver.hpp"
 #include "solvers/milp/cbc_solver.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <array>

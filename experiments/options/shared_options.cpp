@@ -1,10 +1,10 @@
 #include "experiments/options/shared_options.hpp"
 
 #include "conelane/rld_parameter_sets.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/files/parameter_file.hpp"
-#include "experiments/scenes/scene_file.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "conelane/rld_parameters.hpp"
-#include "experiments/methods.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scenes/scene_generation.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "experiments/comparison/methods.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "experiments/report/package.hpp"
 
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
 #include "experiments/report/archive.hpp"
 
 #include <cerrno>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/files/interruption.hpp"
+#include "evaluation/files/interruption.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,9 +1,9 @@
 #include "experiments/report/picture.hpp"
 
-#include "experiments/files/atomic_file.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/scenes/condition.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/report/package.hpp"
-#include "experiments/scenes/condition.hpp"
-#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <cmath>

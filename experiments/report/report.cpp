@@ -1,11 +1,11 @@
 #include "experiments/report/report.hpp"
 
 #include "conelane/drivable_lane.hpp"
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/scenes/condition.hpp"
+#include "evaluation/scoring/published_figures.hpp"
 #include "experiments/report/package.hpp"
-#include "experiments/scenes/condition.hpp"
-#include "experiments/scoring/published_figures.hpp"
 
 #include <string>
 #include <system_error>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/rld_parameters.hpp"
-#include "experiments/scenes/scene_generation.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
 #include "experiments/tuning/evaluation.hpp"
 
 #include <cstddef>

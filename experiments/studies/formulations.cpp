@@ -2,9 +2,9 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/scenes/scene_file.hpp"
-#include "experiments/scoring/statistics.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
 #include "experiments/studies/text_table.hpp"

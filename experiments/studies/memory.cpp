@@ -1,8 +1,8 @@
 #include "experiments/studies/memory.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/scenes/scene_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 

@@ -2,8 +2,8 @@
 
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scoring/score.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scoring/score.hpp"
 
 #include <cstddef>
 #include <memory>

@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/methods.hpp"
+#include "experiments/comparison/methods.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

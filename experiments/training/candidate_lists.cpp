@@ -1,11 +1,11 @@
 #include "experiments/training/candidate_lists.hpp"
 
-#include "experiments/progress.hpp"
-#include "experiments/scenes/cone_index.hpp"
-#include "experiments/scoring/divergence.hpp"
-#include "experiments/scoring/lane_polygon.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/seeded_random.hpp"
+#include "evaluation/scenes/cone_index.hpp"
+#include "evaluation/scoring/divergence.hpp"
+#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,8 +1,8 @@
 #include "experiments/training/front_checkpoint.hpp"
 
-#include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/files/json_node.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_node.hpp"
 #include "experiments/training/front_gradient.hpp"
 
 #include <filesystem>

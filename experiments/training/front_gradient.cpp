@@ -1,6 +1,6 @@
 #include "experiments/training/front_gradient.hpp"
 
-#include "graph_search/simd_batch.hpp"
+#include "graph_search/shared/simd_batch.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/scenes/half_disc.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/seeded_random.hpp"
-#include "experiments/tracks/centre_line.hpp"
+#include "evaluation/scenes/half_disc.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "evaluation/tracks/centre_line.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/tracks/track.hpp"
-#include "experiments/tracks/track_boundaries.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/tracks/track.hpp"
+#include "evaluation/tracks/track_boundaries.hpp"
 
 #include <cstddef>
 #include <cstdint>

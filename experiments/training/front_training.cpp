@@ -1,8 +1,8 @@
 #include "experiments/training/front_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/seeded_random.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/seeded_random.hpp"
 #include "experiments/training/adam.hpp"
 #include "experiments/training/front_checkpoint.hpp"
 #include "experiments/training/front_gradient.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/scenes/scene_set.hpp"
-#include "experiments/scoring/calibration.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/scoring/calibration.hpp"
 #include "experiments/training/front_judge_learner.hpp"
 #include "experiments/training/front_learner.hpp"
 #include "experiments/training/front_scenes.hpp"

@@ -1,8 +1,8 @@
 #include "experiments/training/front_truth.hpp"
 
-#include "experiments/scenes/cone_index.hpp"
-#include "experiments/scoring/divergence.hpp"
-#include "experiments/scoring/score.hpp"
+#include "evaluation/scenes/cone_index.hpp"
+#include "evaluation/scoring/divergence.hpp"
+#include "evaluation/scoring/score.hpp"
 
 #include <algorithm>
 
@@ -69,8 +69,8 @@ bool FrontTruth::is_usable(const Cones& lane, const TrackBoundaries& boundaries)
     if (lane[kLeft].size() < 2 || lane[kRight].size() < 2) return false;
     const LaneOutline predicted = outline_in_world(lane);
     const LaneOutline truth = outline_in_world(cones_);
-    return experiments::is_usable(lane_length_m(predicted), lane_length_m(truth),
-                                  experiments::divergence_m(predicted, truth, boundaries));
+    return conelane::is_usable(lane_length_m(predicted), lane_length_m(truth),
+                               conelane::divergence_m(predicted, truth, boundaries));
 }
 
 std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,
@@ -87,7 +87,7 @@ std::array<std::size_t, 2> FrontTruth::right_cones(const Cones& lane,
 }
 
 std::optional<double> FrontTruth::divergence_m(const Cones& lane, const TrackBoundaries& boundaries) const {
-    return experiments::divergence_m(outline_in_world(lane), outline_in_world(cones_), boundaries);
+    return conelane::divergence_m(outline_in_world(lane), outline_in_world(cones_), boundaries);
 }
 
 }  // namespace conelane::experiments

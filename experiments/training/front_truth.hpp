@@ -1,8 +1,8 @@
 #pragma once
 
-#include "experiments/scenes/annotated_scene.hpp"
-#include "experiments/scoring/lane_polygon.hpp"
-#include "experiments/tracks/track_boundaries.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/tracks/track_boundaries.hpp"
 #include "graph_search/front/front_map.hpp"
 
 #include <array>

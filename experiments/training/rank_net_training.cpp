@@ -1,9 +1,9 @@
 #include "experiments/training/rank_net_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/seeded_random.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/training/adam.hpp"
 
 #include <algorithm>

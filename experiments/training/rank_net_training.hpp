@@ -1,7 +1,7 @@
 #pragma once
 
 #include "experiments/training/candidate_lists.hpp"
-#include "graph_search/ranking.hpp"
+#include "graph_search/clc/ranking.hpp"
 
 #include <cstddef>
 #include <cstdint>

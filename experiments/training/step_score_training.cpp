@@ -1,12 +1,12 @@
 #include "experiments/training/step_score_training.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/progress.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/seeded_random.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/training/adam.hpp"
-#include "graph_search/lane_features.hpp"
-#include "graph_search/start_vertices.hpp"
+#include "graph_search/clc/lane_features.hpp"
+#include "graph_search/clc/start_vertices.hpp"
 
 #include <algorithm>
 #include <cmath>

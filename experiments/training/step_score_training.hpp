@@ -1,8 +1,8 @@
 #pragma once
 
-#include "experiments/scenes/scene_set.hpp"
-#include "graph_search/candidate_search.hpp"
-#include "graph_search/lane_beam.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "graph_search/clc/candidate_search.hpp"
+#include "graph_search/clc/lane_beam.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "experiments/training/track_variant.hpp"
 
-#include "experiments/seeded_random.hpp"
+#include "evaluation/seeded_random.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>

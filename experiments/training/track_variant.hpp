@@ -1,6 +1,6 @@
 #pragma once
 
-#include "experiments/tracks/track.hpp"
+#include "evaluation/tracks/track.hpp"
 
 #include <cstddef>
 #include <cstdint>

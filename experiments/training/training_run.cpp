@@ -1,10 +1,10 @@
 #include "experiments/training/training_run.hpp"
 
-#include "experiments/files/input_error.hpp"
-#include "experiments/provenance.hpp"
-#include "experiments/scenes/scene_options_json.hpp"
-#include "experiments/scenes/scene_set.hpp"
-#include "experiments/tracks/track_spec.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scenes/scene_options_json.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "evaluation/tracks/track_spec.hpp"
 #include "experiments/training/track_variant.hpp"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "experiments/scenes/scene_generation.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
 #include "experiments/training/candidate_lists.hpp"
 #include "experiments/training/rank_net_training.hpp"
 #include "experiments/training/step_score_training.hpp"
-#include "graph_search/ranking.hpp"
+#include "graph_search/clc/ranking.hpp"
 
 #include <cstddef>
 #include <string>

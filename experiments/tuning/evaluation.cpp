@@ -1,10 +1,10 @@
 #include "experiments/tuning/evaluation.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/scenes/ground_truth.hpp"
-#include "experiments/scoring/score.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <atomic>

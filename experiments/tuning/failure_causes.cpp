@@ -1,11 +1,11 @@
 #include "experiments/tuning/failure_causes.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
+#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "experiments/comparison/answer_check.hpp"
-#include "experiments/scenes/ground_truth.hpp"
-#include "experiments/scoring/score.hpp"
 #include "experiments/tuning/objective_sums.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -1,11 +1,11 @@
 #include "experiments/tuning/method_tuning.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/files/json_node.hpp"
-#include "experiments/scoring/score.hpp"
-#include "experiments/seeded_random.hpp"
-#include "graph_search/astar_lane/astar_lane_detector.hpp"
-#include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
+#include "evaluation/files/json_node.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/seeded_random.hpp"
+#include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_beam_detector.hpp"
 
 #include <algorithm>
 #include <cmath>

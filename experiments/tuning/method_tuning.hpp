@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/lane_detector.hpp"
-#include "experiments/scenes/scene_set.hpp"
+#include "evaluation/scenes/scene_set.hpp"
 
 #include <cstddef>
 #include <cstdint>

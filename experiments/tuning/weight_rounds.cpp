@@ -1,10 +1,10 @@
 #include "experiments/tuning/weight_rounds.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scenes/ground_truth.hpp"
 #include "experiments/comparison/answer_check.hpp"
-#include "experiments/scenes/ground_truth.hpp"
 #include "experiments/tuning/weight_fit.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "graph_search/front/front_map.hpp"
-#include "graph_search/search_budget.hpp"
+#include "graph_search/shared/search_budget.hpp"
 
 #include <cstddef>
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include "graph_search/front/front_boundary.hpp"
 #include "graph_search/front/front_judge.hpp"
-#include "graph_search/shipped_weights.hpp"
+#include "graph_search/weights/shipped_weights.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "graph_search/search_graph.hpp"
+#include "graph_search/shared/search_graph.hpp"
 
 #include <algorithm>
 #include <array>

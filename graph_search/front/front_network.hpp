@@ -1,6 +1,6 @@
 #pragma once
 
-#include "graph_search/simd_batch.hpp"
+#include "graph_search/shared/simd_batch.hpp"
 
 #include <array>
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include "graph_search/front/front_cost.hpp"
 #include "graph_search/front/front_evidence.hpp"
-#include "graph_search/search_budget.hpp"
+#include "graph_search/shared/search_budget.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/files/lane_file.hpp"
-#include "experiments/scenes/annotated_scene.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/annotated_scene.hpp"
 
 #include <memory>
 
@@ -14,11 +14,11 @@ namespace conelane::python {
 namespace py = pybind11;
 
 /// A scene as Python holds it: nothing changes it, so lanes may refer to it.
-using SceneObject = std::shared_ptr<const experiments::AnnotatedScene>;
+using SceneObject = std::shared_ptr<const AnnotatedScene>;
 
 /// An answer and the scene that it is about.
 struct LaneObject {
-    experiments::LaneRecord record;
+    LaneRecord record;
     std::shared_ptr<const Scene> scene;
 };
 

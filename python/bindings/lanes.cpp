@@ -1,8 +1,8 @@
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
-#include "experiments/files/input_error.hpp"
-#include "experiments/outside/point_snapping.hpp"
-#include "experiments/scoring/score.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/outside/point_snapping.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -20,8 +20,6 @@
 
 namespace conelane::python {
 namespace {
-
-using experiments::LaneRecord;
 
 std::vector<Point> boundary(const LaneObject& lane, bool left) {
     if (lane.record.points) return left ? lane.record.points->left : lane.record.points->right;
@@ -77,16 +75,16 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
     std::unordered_map<std::string, SceneObject> scene_of;  // for look-up only
     for (const SceneObject& scene : scenes) scene_of.emplace(scene->scene.id, scene);
     std::vector<LaneObject> lanes;
-    for (LaneRecord& record : experiments::read_lanes(file)) {
+    for (LaneRecord& record : read_lanes(file)) {
         const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
-            throw experiments::InputError(file, record.line, "scene",
-                                          "'" + record.scene + "' is none of the scenes given");
+            throw InputError(file, record.line, "scene",
+                             "'" + record.scene + "' is none of the scenes given");
         }
         const Scene& scene = found->second->scene;
-        experiments::snap_to_cones(record, scene);
-        if (const std::string fault = experiments::fault_of(record, scene); !fault.empty())
-            throw experiments::InputError(file, record.line, "", fault);
+        snap_to_cones(record, scene);
+        if (const std::string fault = fault_of(record, scene); !fault.empty())
+            throw InputError(file, record.line, "", fault);
         lanes.push_back({std::move(record), {found->second, &scene}});
     }
     return lanes;
@@ -95,7 +93,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
 void write_lanes(const std::filesystem::path& file, const std::vector<const LaneObject*>& lanes) {
     std::vector<LaneRecord> records;
     for (const LaneObject* lane : lanes) records.push_back(lane->record);
-    experiments::write_lanes(file, records);
+    write_lanes(file, records);
 }
 
 std::optional<double> objective(const LaneObject& lane) {

@@ -1,6 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/version.hpp"
-#include "experiments/files/input_error.hpp"
+#include "evaluation/files/input_error.hpp"
 #include "python/bindings/bindings.hpp"
 
 #include <cstring>
@@ -29,7 +29,7 @@ PYBIND11_MODULE(_core, module) {
     py::register_local_exception_translator([](std::exception_ptr thrown) {
         try {
             if (thrown) std::rethrow_exception(thrown);
-        } catch (const conelane::experiments::InputError& error) {
+        } catch (const conelane::InputError& error) {
             set_value_error(error.what());
         } catch (const conelane::InvalidInput& error) {
             set_value_error(error.what());

@@ -1,7 +1,7 @@
 #include "conelane/invalid_input.hpp"
-#include "experiments/scenes/scene_file.hpp"
-#include "experiments/scenes/scene_generation.hpp"
-#include "experiments/tracks/track_spec.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/tracks/track_spec.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -18,10 +18,6 @@
 
 namespace conelane::python {
 namespace {
-
-using experiments::AnnotatedScene;
-using experiments::Track;
-using experiments::TrackBoundaries;
 
 using Sides = std::optional<std::pair<py::object, py::object>>;
 
@@ -56,14 +52,14 @@ std::vector<std::shared_ptr<AnnotatedScene>> shared(std::vector<AnnotatedScene>&
 void write_scenes(const std::filesystem::path& file, const std::vector<SceneObject>& scenes) {
     std::vector<AnnotatedScene> all;
     for (const SceneObject& scene : scenes) all.push_back(*scene);
-    experiments::write_scenes(file, all);
+    write_scenes(file, all);
 }
 
 std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track, double false_positive_rate,
                                                              double range_m, double every_m,
                                                              const std::optional<std::string>& condition,
                                                              bool with_color, std::uint64_t seed) {
-    experiments::SceneOptions options;
+    SceneOptions options;
     options.false_positive_rates = {false_positive_rate};
     options.ranges_m = {range_m};
     options.every_m = every_m;
@@ -72,7 +68,7 @@ std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track,
     options.seed = seed;
     const py::gil_scoped_release unlocked;
     validate(options);
-    return shared(experiments::generate_scenes(track, options));
+    return shared(generate_scenes(track, options));
 }
 
 Indices track_indices(const std::vector<std::size_t>& indices) {
@@ -150,8 +146,7 @@ Examples
         });
 
     module.def(
-        "read_scenes",
-        [](const std::filesystem::path& file) { return shared(experiments::read_scenes(file)); },
+        "read_scenes", [](const std::filesystem::path& file) { return shared(read_scenes(file)); },
         py::arg("file"), R"(read_scenes(file)
 
 Scenes of a `*.scenes.jsonl` file. One without an id gets its line number.
@@ -216,7 +211,7 @@ closed : bool
             "driven", [](const TrackBoundaries& b) { return array(b.driven); },
             "(K, 2) ndarray of float64: the path that was driven [m], where a run has no boundaries");
 
-    module.def("read_boundaries", experiments::read_track_boundaries, py::arg("file"),
+    module.def("read_boundaries", read_track_boundaries, py::arg("file"),
                R"(read_boundaries(file)
 
 Boundaries of the courses of a scenes file, from the `*.tracks.json` file beside it.
@@ -235,8 +230,7 @@ Raises
 ValueError
     Naming file and key.
 )");
-    module.def("write_boundaries", experiments::write_track_boundaries, py::arg("file"),
-               py::arg("boundaries"),
+    module.def("write_boundaries", write_track_boundaries, py::arg("file"), py::arg("boundaries"),
                R"(write_boundaries(file, boundaries)
 
 Writes a `*.tracks.json` file; an old one stays as it was where that fails.
@@ -284,7 +278,7 @@ void add_track(py::module_& module) {
         .def_property_readonly(
             "boundaries",
             [](const Track& t) {
-                TrackBoundaries all = experiments::boundaries(t);
+                TrackBoundaries all = boundaries(t);
                 if (all.driven.empty()) all.driven = t.driven;
                 return all;
             },
@@ -293,8 +287,8 @@ void add_track(py::module_& module) {
             return fmt::format("<conelane.Track '{}': {} cones>", t.name, t.cones.size());
         });
 
-    module.def("load_tracks", experiments::load_tracks, py::arg("spec"),
-               py::call_guard<py::gil_scoped_release>(), R"(load_tracks(spec)
+    module.def("load_tracks", load_tracks, py::arg("spec"), py::call_guard<py::gil_scoped_release>(),
+               R"(load_tracks(spec)
 
 Tracks from files of several formats, or drawn ones.
 

@@ -1,5 +1,5 @@
 #include "conelane/invalid_input.hpp"
-#include "experiments/scoring/score.hpp"
+#include "evaluation/scoring/score.hpp"
 #include "python/bindings/arrays.hpp"
 #include "python/bindings/bindings.hpp"
 
@@ -12,32 +12,26 @@
 namespace conelane::python {
 namespace {
 
-using experiments::AnnotatedScene;
-using experiments::SceneScore;
-using experiments::TrackBoundaries;
-
-experiments::CentreLine line_of(const LaneObject& lane, const AnnotatedScene& scene) {
-    const experiments::LaneRecord& record = lane.record;
+CentreLine line_of(const LaneObject& lane, const AnnotatedScene& scene) {
+    const LaneRecord& record = lane.record;
     const Pose& pose = scene.scene.pose;
     if (record.points) {
-        return experiments::centre_line_of(
-            experiments::LaneOutline{record.points->left, record.points->right, record.answer.lane.closed},
-            pose);
+        return centre_line_of(
+            LaneOutline{record.points->left, record.points->right, record.answer.lane.closed}, pose);
     }
-    if (!record.centre_line.empty()) return experiments::centre_line_of(record.centre_line, pose);
-    return experiments::centre_line_of(experiments::outline_of(record.answer.lane, scene.scene), pose);
+    if (!record.centre_line.empty()) return centre_line_of(record.centre_line, pose);
+    return centre_line_of(outline_of(record.answer.lane, scene.scene), pose);
 }
 
 SceneScore score_of(const LaneObject& lane, const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-    const experiments::LaneRecord& record = lane.record;
+    const LaneRecord& record = lane.record;
     if (record.points) {
-        return experiments::score_outline(
-            scene, {record.points->left, record.points->right, record.answer.lane.closed}, record.latency_ms,
-            boundaries);
+        return score_outline(scene, {record.points->left, record.points->right, record.answer.lane.closed},
+                             record.latency_ms, boundaries);
     }
     if (!record.centre_line.empty())
-        return experiments::score_centre_line(scene, record.centre_line, record.latency_ms, boundaries);
-    return experiments::score(scene, record.answer, record.latency_ms, record.nearest, boundaries);
+        return score_centre_line(scene, record.centre_line, record.latency_ms, boundaries);
+    return score(scene, record.answer, record.latency_ms, record.nearest, boundaries);
 }
 
 SceneScore score(const AnnotatedScene& scene, const LaneObject& lane, const TrackBoundaries* boundaries) {
@@ -45,9 +39,8 @@ SceneScore score(const AnnotatedScene& scene, const LaneObject& lane, const Trac
     conelane::validate(scene.scene);
     SceneScore score = score_of(lane, scene, boundaries);
     if (score.usable().value_or(false) && scene.ground_truth) {
-        const auto truth = experiments::centre_line_of(
-            experiments::outline_of(*scene.ground_truth, scene.scene), scene.scene.pose);
-        score.centre_line_error = experiments::centre_line_error(line_of(lane, scene), truth);
+        const auto truth = centre_line_of(outline_of(*scene.ground_truth, scene.scene), scene.scene.pose);
+        score.centre_line_error = centre_line_error(line_of(lane, scene), truth);
     }
     return score;
 }

@@ -2,7 +2,7 @@
 
 #include "model/deadline.hpp"
 #include "solvers/detail/guarded_solve.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/relaxation/lp_relaxation.hpp"
 #include "solvers/relaxation/rounding.hpp"
 

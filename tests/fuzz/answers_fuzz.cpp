@@ -3,11 +3,11 @@
 
 #include "conelane/formulation.hpp"
 #include "conelane/lane_graph_problem.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/files/program_files.hpp"
+#include "evaluation/files/solution_file.hpp"
 #include "experiments/comparison/lane_log.hpp"
-#include "experiments/files/lane_file.hpp"
-#include "experiments/files/solution_file.hpp"
 #include "model/lane_graph_model.hpp"
-#include "model/program_files.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -22,18 +22,15 @@
 namespace conelane::fuzz {
 namespace {
 
-using experiments::LaneRecord;
-using experiments::SolutionRecord;
-
 void read_lanes(std::string_view bytes, const std::filesystem::path& file, const ScratchFolder& folder) {
     answers([&] {
-        const std::vector<LaneRecord> records = experiments::read_lanes(file);
+        const std::vector<LaneRecord> records = read_lanes(file);
         const auto again = folder.path() / "again.lanes.jsonl";
-        experiments::write_lanes(again, records);
-        require(experiments::read_lanes(again).size() == records.size(), "every lane is written");
+        write_lanes(again, records);
+        require(read_lanes(again).size() == records.size(), "every lane is written");
     });
-    answers([&] { (void)experiments::read_foreign_lanes(file); });
-    answers([&] { (void)experiments::read_foreign_lane(bytes); });
+    answers([&] { (void)read_foreign_lanes(file); });
+    answers([&] { (void)read_foreign_lane(bytes); });
     std::filesystem::remove(folder.path() / "log.lanes.jsonl");
     (void)folder.write("log.lanes.jsonl.part", bytes);
     answers([&] {
@@ -46,10 +43,10 @@ void read_lanes(std::string_view bytes, const std::filesystem::path& file, const
 
 void read_solutions(const std::filesystem::path& file, const ScratchFolder& folder) {
     answers([&] {
-        const std::vector<SolutionRecord> records = experiments::read_solutions(file);
+        const std::vector<SolutionRecord> records = read_solutions(file);
         const auto again = folder.path() / "again.solutions.jsonl";
-        experiments::write_solutions(again, records);
-        require(experiments::read_solutions(again).size() == records.size(), "every solution is written");
+        write_solutions(again, records);
+        require(read_solutions(again).size() == records.size(), "every solution is written");
     });
 }
 
@@ -88,6 +85,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

@@ -3,9 +3,9 @@
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/lane_graph_problem.hpp"
-#include "experiments/checking/certificate_verifier.hpp"
-#include "experiments/files/certificate_file.hpp"
-#include "experiments/files/search_certificate_file.hpp"
+#include "evaluation/checking/certificate_verifier.hpp"
+#include "evaluation/files/certificate_file.hpp"
+#include "evaluation/files/search_certificate_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -35,8 +35,7 @@ constexpr double kOptimum = -4.0;
 constexpr double kTolerance = 1e-5;
 
 /// The cones of `record` are 0 to 5, which are their indices too.
-std::optional<BoundCertificate> certificate_of(const experiments::CertificateRecord& record,
-                                               std::size_t cones) {
+std::optional<BoundCertificate> certificate_of(const CertificateRecord& record, std::size_t cones) {
     const auto known = [&](ConeId id) { return id >= 0 && static_cast<std::size_t>(id) < cones; };
     BoundCertificate certificate{
         std::vector<double>(cones, 0.0), {}, record.heading_multiplier, record.bound};
@@ -59,9 +58,9 @@ void read_all(std::string_view bytes) {
     static const ScratchFolder folder;
     static const Scene scene = straight_lane();
     const auto file = folder.write("input.certificates.jsonl", bytes);
-    (void)experiments::holds_search_certificates(file);
+    (void)holds_search_certificates(file);
     answers([&] {
-        for (const auto& record : experiments::read_certificates(file)) {
+        for (const auto& record : read_certificates(file)) {
             const auto certificate = certificate_of(record, scene.cones.size());
             if (!certificate) continue;
             const BoundVerdict verdict = verify_bound(scene, {}, *certificate);
@@ -70,13 +69,13 @@ void read_all(std::string_view bytes) {
         }
     });
     answers([&] {
-        for (const auto& record : experiments::read_search_certificates(file)) {
+        for (const auto& record : read_search_certificates(file)) {
             ConeId missing{};
-            const auto certificate = experiments::from_search_record(scene, record, missing);
+            const auto certificate = from_search_record(scene, record, missing);
             if (!certificate) continue;
             constexpr std::int64_t kMostSteps = 10'000;
-            const auto verdict = experiments::verify_search(scene, {}, *certificate, kMostSteps);
-            if (verdict.kind == experiments::SearchVerdict::Kind::verified) {
+            const auto verdict = verify_search(scene, {}, *certificate, kMostSteps);
+            if (verdict.kind == SearchVerdict::Kind::verified) {
                 require(certificate->bound <= kOptimum + kTolerance, "no bound above the optimum is proven");
             } else {
                 require(!verdict.reason.empty(), "who refuses says why");
@@ -89,6 +88,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

@@ -2,7 +2,7 @@
 // limit, and a centre line of it.
 
 #include "conelane/drivable_lane.hpp"
-#include "experiments/methods.hpp"
+#include "experiments/comparison/methods.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
@@ -45,7 +45,8 @@ void require_lane_of(const Scene& scene, const Lane& lane, bool may_be_one_sided
     }
 }
 
-/// What holds for every answer; `tests/detector_contract_test.cpp` asks the same of readable scenes.
+/// What holds for every answer; `tests/detectors/detector_contract_test.cpp` asks the same of readable
+/// scenes.
 void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_one_sided) {
     switch (answer.status) {
         case LaneStatus::found:
@@ -120,6 +121,6 @@ void detect_on(FuzzedDataProvider& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     FuzzedDataProvider input(data, size);
-    conelane::fuzz::detect_on(input);
+    fuzz::detect_on(input);
     return 0;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/files/input_error.hpp"
+#include "evaluation/files/input_error.hpp"
 
 #include <cstdlib>
 #include <iostream>
@@ -24,7 +24,7 @@ bool answers(const Read& read) {
     try {
         read();
         return true;
-    } catch (const experiments::InputError& error) {
+    } catch (const InputError& error) {
         message = error.what();
     } catch (const InvalidInput& error) {
         message = error.what();

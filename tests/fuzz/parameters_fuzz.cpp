@@ -2,10 +2,10 @@
 // detectors, the cards of methods, the record of a tuning, the round trips of an echo, what names a method
 // from outside.
 
+#include "evaluation/files/method_parameter_file.hpp"
+#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/outside/outside_method.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/files/method_parameter_file.hpp"
-#include "experiments/files/parameter_file.hpp"
-#include "experiments/outside/outside_method.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
@@ -22,11 +22,11 @@ void read_all(std::string_view bytes) {
     static const ScratchFolder folder;
     const auto file = folder.write("input.json", bytes);
     answers([&] {
-        const RldParameters parameters = experiments::parse_rld_parameters(bytes, "input.json");
+        const RldParameters parameters = parse_rld_parameters(bytes, "input.json");
         validate(parameters);
         const auto again = folder.path() / "again.json";
-        experiments::write_rld_parameters(again, parameters);
-        const RldParameters read = experiments::read_rld_parameters(again);
+        write_rld_parameters(again, parameters);
+        const RldParameters read = read_rld_parameters(again);
         for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
             for (const RldParameterField& field : fields) {
                 require(read.*field.value == parameters.*field.value,
@@ -34,25 +34,21 @@ void read_all(std::string_view bytes) {
             }
         }
     });
-    answers([&] {
-        (void)make_delaunay_beam_detector(experiments::parse_delaunay_beam_parameters(bytes, "input.json"));
-    });
-    answers([&] {
-        (void)make_astar_lane_detector(experiments::parse_astar_lane_parameters(bytes, "input.json"));
-    });
-    answers([&] { (void)experiments::read_method_card(file).summary(); });
+    answers([&] { (void)make_delaunay_beam_detector(parse_delaunay_beam_parameters(bytes, "input.json")); });
+    answers([&] { (void)make_astar_lane_detector(parse_astar_lane_parameters(bytes, "input.json")); });
+    answers([&] { (void)read_method_card(file).summary(); });
     answers([&] { (void)experiments::read_echo_floor(file); });
     answers([&] { (void)experiments::read_tuning_record(file); });
     const std::string text(bytes);
-    answers([&] { (void)experiments::outside_methods_of_record(text); });
-    answers([&] { (void)experiments::parse_outside_method(text); });
-    (void)experiments::split_methods({text});
+    answers([&] { (void)outside_methods_of_record(text); });
+    answers([&] { (void)experiments::find_outside_method(text); });
+    (void)split_methods({text});
 }
 
 }  // namespace
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

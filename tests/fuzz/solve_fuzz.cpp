@@ -4,7 +4,7 @@
 #include "conelane/check.hpp"
 #include "conelane/core_solvers.hpp"
 #include "conelane/solve_scene.hpp"
-#include "solvers/path_pair_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
@@ -72,6 +72,6 @@ void solve_on(FuzzedDataProvider& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     FuzzedDataProvider input(data, size);
-    conelane::fuzz::solve_on(input);
+    fuzz::solve_on(input);
     return 0;
 }

@@ -2,8 +2,8 @@
 // line
 // `---`.
 
-#include "experiments/tracks/run_log.hpp"
-#include "experiments/tracks/track_readers.hpp"
+#include "evaluation/tracks/run_log.hpp"
+#include "evaluation/tracks/track_readers.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
@@ -16,8 +16,6 @@
 namespace conelane::fuzz {
 namespace {
 
-using experiments::Track;
-
 void require_consistent(const Track& track) {
     for (const Cone& cone : track.cones) require(cone.position.allFinite(), "a cone is finite");
     for (const std::vector<std::size_t>* boundary : {&track.left, &track.right}) {
@@ -28,9 +26,9 @@ void require_consistent(const Track& track) {
         std::ranges::sort(sorted);
         require(std::ranges::adjacent_find(sorted) == sorted.end(), "a boundary has a cone once");
     }
-    for (const experiments::RunFrame& frame : track.frames) {
+    for (const RunFrame& frame : track.frames) {
         require(frame.pose.position.allFinite(), "a pose is finite");
-        for (const experiments::MapPlace& place : frame.map) {
+        for (const MapPlace& place : frame.map) {
             require(place.cone < track.cones.size() && place.position.allFinite(), "a map is of cones");
         }
     }
@@ -42,13 +40,13 @@ void read_all(std::string_view bytes) {
     const std::size_t parting = bytes.find(kParting);
     if (parting == std::string_view::npos) {
         const auto file = folder.write("track", bytes);
-        answers([&] { require_consistent(experiments::read_eufs_track(file)); });
-        answers([&] { require_consistent(experiments::read_pacsim_track(file)); });
-        answers([&] { require_consistent(experiments::read_run_log(file)); });
+        answers([&] { require_consistent(read_eufs_track(file)); });
+        answers([&] { require_consistent(read_pacsim_track(file)); });
+        answers([&] { require_consistent(read_run_log(file)); });
     } else {
         (void)folder.write("cone_map_1.yaml", bytes.substr(0, parting + 1));
         (void)folder.write("boundaries_1.yaml", bytes.substr(parting + kParting.size()));
-        answers([&] { require_consistent(experiments::read_fsd_track(folder.path(), 1)); });
+        answers([&] { require_consistent(read_fsd_track(folder.path(), 1)); });
     }
 }
 
@@ -56,6 +54,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

@@ -1,9 +1,9 @@
 // The readers of weights: of `front`, of the network of `clc`, of step scores. What is read is valid and is
 // written as it was.
 
-#include "experiments/files/front_weights_file.hpp"
-#include "experiments/files/rank_net_file.hpp"
-#include "experiments/files/step_score_file.hpp"
+#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/rank_net_file.hpp"
+#include "evaluation/files/step_score_file.hpp"
 #include "tests/fuzz/expectations.hpp"
 
 #include <cstddef>
@@ -16,24 +16,21 @@ namespace {
 
 void read_all(std::string_view bytes) {
     answers([&] {
-        const FrontWeights weights = experiments::parse_front_weights(bytes);
+        const FrontWeights weights = parse_front_weights(bytes);
         validate(weights);
-        require(experiments::parse_front_weights(experiments::front_weights_json(weights, "{}")) == weights,
+        require(parse_front_weights(front_weights_json(weights, "{}")) == weights,
                 "weights are read as they were written");
     });
     answers([&] {
-        const RankNetWeights weights = experiments::parse_rank_net(bytes);
+        const RankNetWeights weights = parse_rank_net(bytes);
         (void)make_rank_net(weights);
-        const std::string json = experiments::rank_net_json(weights, "{}");
-        require(experiments::rank_net_json(experiments::parse_rank_net(json), "{}") == json,
-                "weights are read as they were written");
+        const std::string json = rank_net_json(weights, "{}");
+        require(rank_net_json(parse_rank_net(json), "{}") == json, "weights are read as they were written");
     });
     answers([&] {
-        const StepScores scores = experiments::parse_step_scores(bytes);
-        const std::string json =
-            experiments::step_scores_json(scores, experiments::step_scores_training(bytes));
-        require(experiments::step_scores_json(experiments::parse_step_scores(json),
-                                              experiments::step_scores_training(json)) == json,
+        const StepScores scores = parse_step_scores(bytes);
+        const std::string json = step_scores_json(scores, step_scores_training(bytes));
+        require(step_scores_json(parse_step_scores(json), step_scores_training(json)) == json,
                 "scores are read as they were written");
     });
 }
@@ -42,6 +39,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

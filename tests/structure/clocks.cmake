@@ -1,5 +1,5 @@
 # cmake -D ROOT=DIR -P clocks.cmake: the installed libraries look at the steady clock only, which nobody sets, and at one
-# place: model/deadline.hpp. tests/clock_test.cpp shows it of calls.
+# place: model/deadline.hpp. tests/detectors/clock_test.cpp shows it of calls.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/sources.cmake)
 

@@ -1,7 +1,8 @@
 # cmake -D ROOT=DIR -P includes.cmake: checks the #include lines of the sources below ROOT.
 # - Quoted includes name folder and file, and the folder is one that the including folder may depend on. A public header
 #   is "conelane/FILE", of the folder that has it below include/; it includes public headers only.
-# - Inside experiments/ a folder includes only itself and those before it in experiments_layers.
+# - Inside solvers/path_pair/, graph_search/, evaluation/, experiments/ and program/ a folder includes only itself and those
+#   before it in the list of layers.
 # - Headers of the installed libraries include no solver, Boost, parser or thread library: those stay in .cpp files,
 #   or in a header below a folder `detail`, which is private to its library.
 # - x.cpp includes x.hpp first, so compiling it shows that the header includes what it needs.
@@ -13,13 +14,18 @@ set(model_depends_on model)
 set(solvers_depends_on model solvers)
 set(graph_search_depends_on model graph_search)
 set(detectors_depends_on model solvers graph_search detectors)
-set(experiments_depends_on model solvers graph_search detectors experiments)
-set(python_depends_on model solvers graph_search detectors experiments python)
-set(tests_depends_on model solvers graph_search detectors experiments tests)
-# From tracks to tables, each folder and each file of experiments/ itself, without its ending: what stands later may
-# include what stands before.
-set(experiments_layers provenance progress seeded_random files tracks training_courses scenes scoring methods outside options comparison
-                       checking cross_check training tuning cross_validation instances studies report commands conelane benchmarks examples)
+set(evaluation_depends_on model solvers graph_search detectors evaluation)
+set(experiments_depends_on model solvers graph_search detectors evaluation experiments)
+set(program_depends_on model solvers graph_search detectors evaluation experiments program)
+set(python_depends_on model solvers graph_search detectors evaluation python)
+set(tests_depends_on model solvers graph_search detectors evaluation experiments program tests)
+# Each folder, and each file that stands beside folders, without its ending: what stands later may include what stands before.
+set(layers_of_solvers/path_pair search_clock path_pair_options graph bound primal frontier search path_pair_solver)
+set(layers_of_evaluation seeded_random files tracks scenes scoring outside checking)
+set(layers_of_experiments progress comparison options cross_check training tuning cross_validation instances
+                          studies report benchmarks examples)
+set(layers_of_program commands main)
+set(layered solvers/path_pair evaluation experiments program)
 set(private_libraries
     "coin/|Cbc|Cgl|Clp|Coin|Osi|Ip[A-Z]|nlopt|glpk|boost/|zlib|nlohmann/|yaml-cpp/|CLI/|tbb/|oneapi/")
 
@@ -31,11 +37,17 @@ foreach(header IN LISTS public_headers)
     list(GET parts 0 folder_of_${name})
 endforeach()
 
-# The place of a file in experiments_layers, counted from 0; -1 where it has none.
-function(find_layer result file)
-    string(REGEX REPLACE "^experiments/([^/.]+).*$" "\\1" name ${file})
-    list(FIND experiments_layers "${name}" place)
-    set(${result} ${place} PARENT_SCOPE)
+# The layered folder that a file is in, and its place among the layers, counted from 0; -1 where it has none. Nothing for a
+# file that is in no layered folder.
+function(find_layer result_in result file)
+    set(${result_in} "" PARENT_SCOPE)
+    foreach(top IN LISTS layered)
+        if(file MATCHES "^${top}/([^/.]+)")
+            list(FIND layers_of_${top} "${CMAKE_MATCH_1}" place)
+            set(${result_in} ${top} PARENT_SCOPE)
+            set(${result} ${place} PARENT_SCOPE)
+        endif()
+    endforeach()
 endfunction()
 
 function(check_includes folder file)
@@ -53,11 +65,9 @@ function(check_includes folder file)
     elseif((EXISTS ${ROOT}/${own_header} OR own_header MATCHES "^conelane/") AND NOT lines MATCHES "^#include \"${own_header}\"")
         message(SEND_ERROR "${file} does not include ${own_header} first")
     endif()
-    if(folder STREQUAL "experiments")
-        find_layer(layer ${file})
-        if(layer EQUAL -1)
-            message(SEND_ERROR "${file} has no place in experiments_layers")
-        endif()
+    find_layer(in layer ${file})
+    if(in AND layer EQUAL -1)
+        message(SEND_ERROR "${file} has no place in layers_of_${in}")
     endif()
     foreach(line IN LISTS lines)
         if(line MATCHES "\"([^\"]*)\"")
@@ -80,9 +90,9 @@ function(check_includes folder file)
                 message(SEND_ERROR "${file} may not include ${included}")
             elseif(NOT EXISTS ${ROOT}/${included} OR included MATCHES "[.][.]/")
                 message(SEND_ERROR "${file} includes ${included}, which is no FOLDER/FILE")
-            elseif(folder STREQUAL "experiments" AND included_folder STREQUAL "experiments")
-                find_layer(included_layer ${included})
-                if(included_layer GREATER layer)
+            elseif(in)
+                find_layer(included_in included_layer ${included})
+                if(included_in STREQUAL in AND included_layer GREATER layer)
                     message(SEND_ERROR "${file} may not include ${included}, which is of a later layer")
                 endif()
             endif()
@@ -92,4 +102,4 @@ function(check_includes folder file)
         endif()
     endforeach()
 endfunction()
-check_sources(check_includes model solvers graph_search detectors experiments python tests)
+check_sources(check_includes model solvers graph_search detectors evaluation experiments program python tests)

@@ -29,29 +29,32 @@ expect("" includes tests/a.cpp "#include \"model/scene.hpp\"")
 expect("model/a.hpp has no #pragma once" includes model/a.hpp "#include <vector>")
 foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experiments" "solvers;graph_search"
                            "graph_search;solvers" "solvers;detectors" "graph_search;detectors"
-                           "detectors;experiments" "solvers;experiments" "graph_search;experiments"
-                           "experiments;tests" "experiments;python" "detectors;python" "python;tests")
+                           "detectors;evaluation" "solvers;evaluation" "graph_search;evaluation" "evaluation;experiments"
+                           "experiments;program" "evaluation;program" "python;experiments" "experiments;tests"
+                           "experiments;python" "detectors;python" "python;tests")
     list(GET direction 0 from)
     list(GET direction 1 to)
     expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#pragma once\n#include \"${to}/b.hpp\"")
 endforeach()
 
-# Inside experiments/: a second file to include, since one that is missing is a fault of its own.
+# Layers: a second file to include, since one that is missing is a fault of its own.
 file(REMOVE_RECURSE ${SCRATCH})
-foreach(direction IN ITEMS "tracks/track;scenes/scene" "files/text;scenes/scene" "scenes/scene;studies/study"
-                           "studies/study;commands/command" "progress;files/text" "tuning/tuner;conelane")
+foreach(direction IN ITEMS "evaluation/tracks/track;evaluation/scenes/scene" "evaluation/files/text;evaluation/scenes/scene"
+                           "evaluation/seeded_random;evaluation/files/text" "experiments/tuning/tuner;experiments/studies/study"
+                           "program/commands/command;program/main"
+                           "solvers/path_pair/bound/multipliers;solvers/path_pair/search/branch_and_bound"
+                           "solvers/path_pair/primal/incumbent;solvers/path_pair/frontier/graph")
     list(GET direction 0 lower)
     list(GET direction 1 upper)
-    set(also experiments/${upper}.hpp)
-    expect("${lower}.cpp may not include experiments/${upper}.hpp, which is of a later" includes
-           experiments/${lower}.cpp "#include \"experiments/${upper}.hpp\"")
-    set(also experiments/${lower}.hpp)
-    expect("" includes experiments/${upper}.cpp "#include \"experiments/${lower}.hpp\"")
+    set(also ${upper}.hpp)
+    expect("${lower}.cpp may not include ${upper}.hpp, which is of a later" includes ${lower}.cpp "#include \"${upper}.hpp\"")
+    set(also ${lower}.hpp)
+    expect("" includes ${upper}.cpp "#include \"${lower}.hpp\"")
 endforeach()
-set(also experiments/files/text.hpp)
-expect("" includes experiments/files/more.cpp "#include \"experiments/files/text.hpp\"")
+set(also evaluation/files/text.hpp)
+expect("" includes evaluation/files/more.cpp "#include \"evaluation/files/text.hpp\"")
 set(also)
-expect("experiments/new/a.cpp has no place in experiments_layers" includes experiments/new/a.cpp "")
+expect("experiments/new/a.cpp has no place in layers_of_experiments" includes experiments/new/a.cpp "")
 
 expect("solvers/a.cpp may not include scene.hpp" includes solvers/a.cpp "#include \"scene.hpp\"")
 expect("may not include ../model/scene.hpp" includes solvers/a.cpp "#include \"../model/scene.hpp\"")
@@ -76,7 +79,7 @@ expect("" includes solvers/detail/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <Cbc...>, which" includes solvers/a.hpp "#pragma once\n#include <CbcModel.hpp>")
 expect("solvers/a.hpp includes <IpT...>, which" includes solvers/a.hpp "#pragma once\n#include <IpTNLP.hpp>")
 expect("includes <boost/...>, which" includes graph_search/a.hpp "#pragma once\n#  include <boost/geometry.hpp>")
-expect("" includes experiments/files/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
+expect("" includes evaluation/files/a.hpp "#pragma once\n#include <nlohmann/json.hpp>")
 
 expect("" includes model/scene.cpp "#include \"model/scene.hpp\"\n#include <cmath>")
 expect("model/scene.cpp does not include model/scene.hpp first" includes model/scene.cpp

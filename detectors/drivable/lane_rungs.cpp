@@ -1,0 +1,333 @@
+#include "detectors/drivable/lane_rungs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+constexpr double kSample_m = 0.5;          ///< between matched places of a boundary, at most
+constexpr double kSamplesAtMost = 2000.0;  ///< of a boundary; a longer one is sampled more coarsely
+constexpr double kRungSpacing_m = 0.25;    ///< at most
+constexpr double kShortestMidline_m = 0.5;
+constexpr double kWholeMean = 1.01;        ///< a mean within this of the least one is as good
+constexpr double kLeastAdvance = 0.2;      ///< of an extended lane, as a share of the boundary's
+constexpr double kDirectionReach_m = 2.5;  ///< to either side, of the direction along an extended lane
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+struct Place {
+    Point point;
+    double arc_m;
+};
+using Places = std::vector<Place>;
+
+/// Places along a boundary, its vertices among them. A closed one ends where it began.
+Places sampled(const LaneBoundary& boundary) {
+    const double at_most_m = std::max(kSample_m, boundary.length_m() / kSamplesAtMost);
+    Places places{{boundary.vertices().front(), 0.0}};
+    for (std::size_t i = 0; i < boundary.segments(); ++i) {
+        const Segment segment = boundary.segment(i);
+        const double start_m = boundary.segment_start_m(i);
+        const double length_m = boundary.segment_end_m(i) - start_m;
+        const double parts = std::max(1.0, std::ceil(length_m / at_most_m));
+        for (double k = 1.0; k <= parts; ++k) {
+            const double share = k / parts;
+            places.push_back(
+                {segment.from + share * (segment.to - segment.from), start_m + share * length_m});
+        }
+    }
+    return places;
+}
+
+/// Turns a closed boundary so that it begins and ends at its place `first`.
+void begin_at(Places& places, std::size_t first, double length_m) {
+    places.pop_back();  // the first place again
+    for (std::size_t i = 0; i < first; ++i) places[i].arc_m += length_m;
+    std::rotate(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(first), places.end());
+    places.push_back({places.front().point, places.front().arc_m + length_m});
+}
+
+/// Lets both boundaries of a closed lane begin where it is narrowest: at the closest places that lie on their
+/// sides and run the same way, hence face each other across this lane rather than across a neighbouring one.
+/// Where there are none, at the closest places.
+void begin_at_narrowest(Places& left, double left_length_m, Places& right, double right_length_m) {
+    const auto directions = [](const Places& places) {
+        std::vector<Point> result;
+        for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+            result.push_back((places[i + 1].point - places[i].point).normalized());
+        }
+        return result;
+    };
+    const std::vector<Point> left_directions = directions(left);
+    const std::vector<Point> right_directions = directions(right);
+    struct Best {
+        double distance_m2 = kNever;
+        std::size_t left = 0;
+        std::size_t right = 0;
+    };
+    Best facing;
+    Best closest;
+    for (std::size_t i = 0; i < left_directions.size(); ++i) {
+        for (std::size_t j = 0; j < right_directions.size(); ++j) {
+            const Point across = right[j].point - left[i].point;
+            const double distance_m2 = across.squaredNorm();
+            if (distance_m2 < closest.distance_m2) closest = {distance_m2, i, j};
+            if (distance_m2 < facing.distance_m2 && left_directions[i].dot(right_directions[j]) > 0.5 &&
+                cross(left_directions[i], across) < 0.0) {
+                facing = {distance_m2, i, j};
+            }
+        }
+    }
+    const Best& best = facing.distance_m2 < kNever ? facing : closest;
+    begin_at(left, best.left, left_length_m);
+    begin_at(right, best.right, right_length_m);
+}
+
+enum class Step : std::uint8_t { both, left, right };
+
+/// The matching from the first places on, to the last ones of both sides or, with `open_end`, to the last
+/// place of one of them and the place of the other that makes the mean of the squared lengths the least.
+std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> right, bool open_end) {
+    const std::size_t columns = right.size();
+    std::vector<Step> steps(left.size() * columns, Step::both);
+    std::vector<double> row(columns);
+    std::vector<double> row_before(columns);
+    std::size_t i_end = left.size() - 1;
+    std::size_t j_end = columns - 1;
+    double least_mean = kNever;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        std::swap(row, row_before);
+        for (std::size_t j = 0; j < columns; ++j) {
+            const double cost = (left[i].point - right[j].point).squaredNorm();
+            if (i == 0 && j == 0) {
+                row[j] = cost;
+            } else {
+                const double both = i > 0 && j > 0 ? row_before[j - 1] + 2.0 * cost : kNever;
+                const double on_left = i > 0 ? row_before[j] + cost : kNever;
+                const double on_right = j > 0 ? row[j - 1] + cost : kNever;
+                row[j] = std::min({both, on_left, on_right});
+                steps[i * columns + j] =
+                    row[j] == both ? Step::both : (row[j] == on_left ? Step::left : Step::right);
+            }
+            if (!open_end || (i + 1 < left.size() && j + 1 < columns)) continue;
+            const double mean = row[j] / static_cast<double>(i + j + 1);
+            if (mean > least_mean) continue;  // of equal ones the last: a longer lane
+            least_mean = mean;
+            i_end = i;
+            j_end = j;
+        }
+    }
+    const double whole_mean = row.back() / static_cast<double>(left.size() + columns - 1);
+    if (open_end && whole_mean <= kWholeMean * least_mean) {  // both end side by side
+        i_end = left.size() - 1;
+        j_end = columns - 1;
+    }
+    std::vector<Rung> rungs;
+    std::size_t i = i_end;
+    std::size_t j = j_end;
+    const auto add = [&] { rungs.push_back({left[i].point, right[j].point, left[i].arc_m, right[j].arc_m}); };
+    add();
+    while (i > 0 || j > 0) {
+        const Step step = steps[i * columns + j];
+        if (step != Step::right) --i;
+        if (step != Step::left) --j;
+        add();
+    }
+    std::ranges::reverse(rungs);
+    return rungs;
+}
+
+double length_m(const Rung& rung) {
+    return (rung.left - rung.right).norm();
+}
+
+/// Drops the last rungs while they fan out from the place of the last one on one side and grow.
+void drop_fan(std::vector<Rung>& rungs) {
+    const double left_m = rungs.back().left_m;
+    const double right_m = rungs.back().right_m;
+    while (rungs.size() > 1) {
+        const Rung& last = rungs.back();
+        const Rung& before = rungs[rungs.size() - 2];
+        const bool from_left = last.left_m == left_m && before.left_m == left_m;
+        const bool from_right = last.right_m == right_m && before.right_m == right_m;
+        if (!(from_left || from_right) || length_m(last) < length_m(before)) return;
+        rungs.pop_back();
+    }
+}
+
+/// Where the boundary on one side has ended, at the end of the matching, the lane keeps its width along the
+/// other one, whose places are `along`, in the direction of the matching. `left_normal` is 1 where the ended
+/// side lies to the left of that direction, else -1. Gives the places that go on from the ended side's end,
+/// with the place beside each: from the first one after `from` on.
+struct KeptWidth {
+    std::vector<Point> ended;
+    std::vector<Place> beside;
+};
+KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t from, double left_normal,
+                     double widest_m) {
+    std::size_t last = from;
+    while (last + 1 < along.size() && (along[last + 1].point - end).norm() <= widest_m) ++last;
+    const double width_m = (along[from].point - end).norm();
+    const auto side_of_line = [&](const Point& point) { return cross(along[last].point - end, point - end); };
+    const double inside = side_of_line(along[from].point);
+    KeptWidth kept;
+    Point last_middle = 0.5 * (along[from].point + end);
+    std::size_t behind = from;
+    std::size_t ahead = from;
+    for (std::size_t k = from + 1; k <= last; ++k) {
+        // The direction over several metres: that of a single segment leaps at each cone.
+        const auto apart_m = [&](std::size_t i) { return std::abs(along[i].arc_m - along[k].arc_m); };
+        while (apart_m(behind) > kDirectionReach_m) ++behind;
+        while (behind > 0 && apart_m(behind - 1) <= kDirectionReach_m) --behind;
+        while (ahead + 1 < along.size() && apart_m(ahead + 1) <= kDirectionReach_m) ++ahead;
+        const Point direction = (along[ahead].point - along[behind].point).normalized();
+        const Point across = left_normal * Point(-direction.y(), direction.x());
+        const Point opposite = along[k].point + width_m * across;
+        const Point middle = 0.5 * (opposite + along[k].point);
+        if (side_of_line(middle) * inside < 0.0) break;
+        // In a sharp corner, seen from outside, the way back is no lane.
+        const double travelled_m = (along[k].point - along[k - 1].point).norm();
+        if ((middle - last_middle).dot(direction) < kLeastAdvance * travelled_m) break;
+        last_middle = middle;
+        kept.ended.push_back(opposite);
+        kept.beside.push_back(along[k]);
+    }
+    return kept;
+}
+
+/// The same rungs at equal distances along the line of their middles. A step is along one segment of either
+/// boundary, so what lies between two rungs is on the boundaries too.
+void space_evenly(RungLadder& ladder) {
+    const std::vector<Rung> rungs = std::move(ladder.rungs);
+    ladder.rungs.clear();
+    std::vector<double> arc_m{0.0};
+    for (std::size_t i = 1; i < rungs.size(); ++i) {
+        arc_m.push_back(arc_m.back() + (rungs[i].middle() - rungs[i - 1].middle()).norm());
+    }
+    const double total_m = arc_m.back();
+    if (!(total_m >= kShortestMidline_m)) return;
+    const auto gaps =
+        2 * std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(total_m / (2.0 * kRungSpacing_m))));
+    ladder.spacing_m = total_m / static_cast<double>(gaps);
+    std::size_t i = 1;
+    for (std::size_t k = 0; k < gaps + (ladder.left.closed() ? 0 : 1); ++k) {
+        const double wanted_m = static_cast<double>(k) * ladder.spacing_m;
+        while (i + 1 < rungs.size() && arc_m[i] < wanted_m) ++i;
+        const double gap_m = arc_m[i] - arc_m[i - 1];
+        const double share = gap_m > 0.0 ? std::clamp((wanted_m - arc_m[i - 1]) / gap_m, 0.0, 1.0) : 0.0;
+        const Rung& a = rungs[i - 1];
+        const Rung& b = rungs[i];
+        ladder.rungs.push_back({a.left + share * (b.left - a.left), a.right + share * (b.right - a.right),
+                                std::lerp(a.left_m, b.left_m, share),
+                                std::lerp(a.right_m, b.right_m, share)});
+    }
+}
+
+/// Swaps the ends of a ladder's matching, so that what looks at its end looks at its beginning.
+void turn_round(Places& left, Places& right, std::vector<Rung>& rungs) {
+    std::ranges::reverse(left);
+    std::ranges::reverse(right);
+    std::ranges::reverse(rungs);
+}
+
+/// Rungs and places past the end of the matching, where one boundary has ended. `left_side` is 1 where the
+/// left boundary lies to the left of the matching's direction, else -1.
+struct Extension {
+    std::vector<Rung> rungs;
+    std::vector<Point> left;   ///< what the left boundary goes on with
+    std::vector<Point> right;  ///< what the right boundary goes on with
+};
+Extension extension(const Places& left, const Places& right, const Rung& last, double left_side,
+                    double widest_m) {
+    const auto index_of = [](const Places& places, double arc_m) {
+        return static_cast<std::size_t>(std::ranges::find(places, arc_m, &Place::arc_m) - places.begin());
+    };
+    const std::size_t i = index_of(left, last.left_m);
+    const std::size_t j = index_of(right, last.right_m);
+    Extension result;
+    const auto sign = [](double m) { return m < 0.0 ? -1.0 : 1.0; };
+    if (i + 1 == left.size()) {
+        KeptWidth kept = keep_width(last.left, right, j, left_side, widest_m);
+        double arc_m = last.left_m;
+        for (std::size_t k = 0; k < kept.ended.size(); ++k) {
+            arc_m += sign(left_side) * (kept.ended[k] - (k > 0 ? kept.ended[k - 1] : last.left)).norm();
+            result.rungs.push_back({kept.ended[k], kept.beside[k].point, arc_m, kept.beside[k].arc_m});
+        }
+        result.left = std::move(kept.ended);
+    } else if (j + 1 == right.size()) {
+        KeptWidth kept = keep_width(last.right, left, i, -left_side, widest_m);
+        double arc_m = last.right_m;
+        for (std::size_t k = 0; k < kept.ended.size(); ++k) {
+            arc_m += sign(left_side) * (kept.ended[k] - (k > 0 ? kept.ended[k - 1] : last.right)).norm();
+            result.rungs.push_back({kept.beside[k].point, kept.ended[k], kept.beside[k].arc_m, arc_m});
+        }
+        result.right = std::move(kept.ended);
+    }
+    return result;
+}
+
+/// A boundary with what goes on before its first vertex, nearest first, and after its last one.
+LaneBoundary extended(const LaneBoundary& boundary, const std::vector<Point>& before,
+                      const std::vector<Point>& after) {
+    if (before.empty() && after.empty()) return boundary;
+    std::vector<Point> vertices(before.rbegin(), before.rend());
+    vertices.insert(vertices.end(), boundary.vertices().begin(), boundary.vertices().end());
+    vertices.insert(vertices.end(), after.begin(), after.end());
+    return {vertices, false};
+}
+
+RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, double widest_m) {
+    Places left_places = sampled(left);
+    Places right_places = sampled(right);
+    // The first matching finds the end, the second one from there the beginning.
+    std::vector<Rung> rungs = matched(left_places, right_places, true);
+    drop_fan(rungs);
+    const auto up_to = [](const Places& places, double arc_m) {
+        return Places(places.begin(), std::ranges::find(places, arc_m, &Place::arc_m) + 1);
+    };
+    Places left_part = up_to(left_places, rungs.back().left_m);
+    Places right_part = up_to(right_places, rungs.back().right_m);
+    std::ranges::reverse(left_part);
+    std::ranges::reverse(right_part);
+    rungs = matched(left_part, right_part, true);
+    drop_fan(rungs);
+    turn_round(left_places, right_places, rungs);
+    const Extension before = extension(left_places, right_places, rungs.front(), -1.0, widest_m);
+    std::ranges::reverse(left_places);
+    std::ranges::reverse(right_places);
+    const Extension after = extension(left_places, right_places, rungs.back(), 1.0, widest_m);
+    rungs.insert(rungs.begin(), before.rungs.rbegin(), before.rungs.rend());
+    rungs.insert(rungs.end(), after.rungs.begin(), after.rungs.end());
+
+    RungLadder ladder{
+        extended(left, before.left, after.left), extended(right, before.right, after.right), {}};
+    const double left_shift_m = before.left.empty() ? 0.0 : -before.rungs.back().left_m;
+    const double right_shift_m = before.right.empty() ? 0.0 : -before.rungs.back().right_m;
+    for (Rung& rung : rungs) {
+        rung.left_m += left_shift_m;
+        rung.right_m += right_shift_m;
+    }
+    ladder.rungs = std::move(rungs);
+    return ladder;
+}
+
+RungLadder closed_ladder(const LaneBoundary& left, const LaneBoundary& right) {
+    Places left_places = sampled(left);
+    Places right_places = sampled(right);
+    begin_at_narrowest(left_places, left.length_m(), right_places, right.length_m());
+    return {left, right, matched(left_places, right_places, false)};
+}
+
+}  // namespace
+
+RungLadder lane_rungs(const LaneBoundary& left, const LaneBoundary& right, double widest_m) {
+    RungLadder ladder = left.closed() ? closed_ladder(left, right) : open_ladder(left, right, widest_m);
+    space_evenly(ladder);
+    return ladder;
+}
+
+}  // namespace conelane

@@ -1,0 +1,122 @@
+#include "evaluation/files/atomic_file.hpp"
+
+#include "evaluation/files/input_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace conelane {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Goes before the number of the process and that of the attempt.
+const std::string kTemporary = ".tmp";
+
+/// Open descriptors of the process, whatever they lead to: renaming over what a shell redirected them to
+/// would take it from under the other writers.
+bool is_open_descriptor(const fs::path& target) {
+    const std::string path = target.lexically_normal().string();
+    constexpr std::array<std::string_view, 2> kNames{"/dev/stdout", "/dev/stderr"};
+    constexpr std::array<std::string_view, 2> kFolders{"/dev/fd/", "/proc/self/fd/"};
+    return std::ranges::find(kNames, path) != kNames.end() ||
+           std::ranges::any_of(kFolders, [&](std::string_view folder) { return path.starts_with(folder); });
+}
+
+[[noreturn]] void fail(const fs::path& target, int error) {
+    throw InputError(target, 0, "", "cannot be written: " + std::generic_category().message(error));
+}
+
+/// Creates an empty file beside `place` under a name that no other file has.
+fs::path create_temporary(const fs::path& place, const fs::path& target) {
+    for (int attempt = 0;; ++attempt) {
+        fs::path name = place;
+        name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+        const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor >= 0) {
+            ::close(descriptor);
+            return name;
+        }
+        if (errno != EEXIST) fail(target, errno);
+    }
+}
+
+}  // namespace
+
+void remove_abandoned_files(const fs::path& folder) {
+    std::vector<fs::path> abandoned;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        const std::size_t end = name.rfind(kTemporary);
+        if (end == std::string::npos || !entry.is_regular_file()) continue;
+        const std::string_view numbers = std::string_view(name).substr(end + kTemporary.size());
+        if (numbers.find('_') != std::string_view::npos &&
+            numbers.find_first_not_of("0123456789_") == std::string_view::npos) {
+            abandoned.push_back(entry.path());
+        }
+    }
+    for (const fs::path& file : abandoned) fs::remove(file);
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : target_(target), place_(target) {
+    std::error_code error;
+    const fs::file_status status = fs::status(target, error);
+    if (fs::is_directory(status)) throw InputError(target, 0, "", "is a folder, not a file");
+    if (is_open_descriptor(target) || (fs::exists(status) && !fs::is_regular_file(status))) {
+        errno = 0;
+        stream_.open(target, std::ios::binary | std::ios::app);
+        if (!stream_) fail(target, errno);
+        return;
+    }
+    if (target.filename().empty()) fail(target, EISDIR);
+    if (fs::exists(status)) place_ = fs::canonical(target);
+    {
+        const auto held = hold_interruption();
+        temporary_ = create_temporary(place_, target);
+        clearing_.emplace([name = temporary_] { ::unlink(name.c_str()); });
+    }
+    if (fs::exists(status)) fs::permissions(temporary_, status.permissions(), error);
+    stream_.open(temporary_, std::ios::binary | std::ios::trunc);
+    if (!stream_) {
+        const int reason = errno;
+        fs::remove(temporary_, error);
+        fail(target, reason);
+    }
+}
+
+AtomicFile::~AtomicFile() {
+    if (temporary_.empty()) return;
+    stream_.close();
+    std::error_code ignored;
+    fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+    stream_.close();
+    // The stream does not keep the reason of a write that failed before.
+    if (!stream_) throw InputError(target_, 0, "", "cannot be written to its end");
+    if (temporary_.empty()) return;
+    const auto held = hold_interruption();
+    std::error_code error;
+    fs::rename(temporary_, place_, error);
+    if (error) fail(target_, error.value());
+    temporary_.clear();
+    clearing_.reset();
+}
+
+void require_writable(const fs::path& target) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(target, ignored);
+    if (fs::is_other(status)) return;
+    const AtomicFile probe(target);
+}
+
+}  // namespace conelane

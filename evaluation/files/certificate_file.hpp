@@ -1,0 +1,40 @@
+#pragma once
+
+#include "conelane/scene.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+/// A line of a `*.certificates.jsonl` file: multipliers that prove a lower bound of a scene's optimum, see
+/// BoundCertificate, with cones by id. What is not listed has the multiplier 0. The keys of the file call a
+/// multiplier `price`.
+struct CertificateRecord {
+    struct Clique {
+        std::vector<std::pair<ConeId, ConeId>> edges;
+        double multiplier;
+    };
+    std::string scene;
+    std::vector<std::pair<ConeId, double>> cone_multipliers;
+    std::vector<Clique> cliques;
+    double heading_multiplier = 0.0;
+    /// Infinite where the multipliers prove that no lane graph exists, minus infinity where nothing is
+    /// claimed.
+    double bound = -std::numeric_limits<double>::infinity();
+    std::size_t line = 0;  ///< in the file that was read; 0 where no file was read
+};
+
+/// Records in the order of the file. Throws InputError naming file, line and key.
+[[nodiscard]] std::vector<CertificateRecord> read_certificates(const std::filesystem::path& file);
+
+/// Throws InvalidInput where a multiplier is not finite, InputError where the file cannot be written. An old
+/// file then stays as it was.
+void write_certificates(const std::filesystem::path& file, std::span<const CertificateRecord> records);
+
+}  // namespace conelane

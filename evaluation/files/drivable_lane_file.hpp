@@ -1,0 +1,33 @@
+#pragma once
+
+#include "conelane/drivable_lane.hpp"
+#include "conelane/lane_detector.hpp"
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace conelane {
+
+/// A line of JSON: the centre line of what a method answered on a scene.
+struct DrivableRecord {
+    std::string scene;
+    std::string method;
+    LaneStatus status = LaneStatus::found;
+    DrivableLane lane;
+};
+
+/// One JSON object a line, with all that a DrivableLane holds; without points where it has none. `inferred`,
+/// "left" or "right", is there where that boundary is. Throws
+/// InputError where the file cannot be written; then an old file stays as it was. So do the other writers.
+void write_drivable_lanes(const std::filesystem::path& file, std::span<const DrivableRecord> records);
+
+/// CSV as in the TUM racetrack database: a comment `# x_m,y_m,w_tr_right_m,w_tr_left_m`, then a point a line.
+/// The last point of a closed lane is followed by the first one, which is not repeated.
+void write_tum_csv(const std::filesystem::path& file, const DrivableLane& lane);
+
+/// CSV of the M x 4 array that ft-fsd-path-planning gives: a comment `# s_m,x_m,y_m,curvature_1pm`, then a
+/// point a line.
+void write_ft_fsd_csv(const std::filesystem::path& file, const DrivableLane& lane);
+
+}  // namespace conelane

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/provenance.hpp"
+
+#include <filesystem>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace conelane {
+
+/// JSON Lines of figures that a command measured, each with commit, compiler and machine.
+class FigureFile {
+  public:
+    /// Throws InputError naming the file where it cannot be written, here and in `commit`.
+    explicit FigureFile(const std::filesystem::path& file) : output_(file), origin_(provenance()) {}
+
+    void add(nlohmann::ordered_json figures);
+    /// Gives the file its name; without it there is none.
+    void commit() { output_.commit(); }
+
+  private:
+    AtomicFile output_;
+    Provenance origin_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace conelane {
+
+/// Where a result comes from.
+struct Provenance {
+    std::string
+        commit;  ///< of the sources; ends in "-dirty" where they were changed, "unknown" outside a checkout
+    std::string compiler;  ///< name and version, and the build type
+    std::string machine;   ///< processor, processors, operating system
+};
+[[nodiscard]] Provenance provenance();
+
+}  // namespace conelane

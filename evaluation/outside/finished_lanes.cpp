@@ -1,0 +1,46 @@
+#include "evaluation/outside/finished_lanes.hpp"
+
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/outside/outside_program.hpp"
+#include "evaluation/outside/point_snapping.hpp"
+
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+namespace conelane {
+
+std::vector<LaneRecord> read_finished_lanes(const OutsideMethod& method,
+                                            std::span<const AnnotatedScene> scenes) {
+    std::vector<LaneRecord> answers = read_foreign_lanes(method.source);
+    std::unordered_map<std::string, LaneRecord*> answer_to;
+    for (LaneRecord& answer : answers) answer_to.emplace(answer.scene, &answer);
+    std::vector<LaneRecord> records;
+    records.reserve(scenes.size());
+    std::size_t missing = 0;
+    for (const AnnotatedScene& annotated : scenes) {
+        const Scene& scene = annotated.scene;
+        const auto found = answer_to.find(scene.id);
+        if (found == answer_to.end()) {
+            ++missing;
+            records.push_back({scene.id, method.name, {}, OutsideLimits{}.answer_ms, {}});
+            records.back().answer.status = LaneStatus::error;
+            records.back().answer.message = "the lanes file has no answer to this scene";
+            continue;
+        }
+        LaneRecord& record = *found->second;
+        if (const std::string fault = fault_of(record, scene); !fault.empty())
+            throw InputError(method.source, record.line, "", fault);
+        if (const std::string tangle = tangle_of(record, scene); !tangle.empty())
+            throw InputError(method.source, record.line, "", tangle);
+        snap_to_cones(record, scene);
+        record.method = method.name;
+        record.latency_ms = record.self_timed_ms.value_or(0.0);
+        records.push_back(std::move(record));
+    }
+    if (missing == scenes.size()) throw InputError(method.source, 0, "scene", "answers none of the scenes");
+    return records;
+}
+
+}  // namespace conelane

@@ -1,0 +1,195 @@
+#include "evaluation/outside/outside_method.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_node.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <sstream>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::string_view kProgram = "exec:";
+constexpr std::string_view kLanes = "lanes:";
+constexpr std::size_t kLongestName = 64;
+
+/// It becomes part of a file name.
+bool is_name(std::string_view name) {
+    return !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
+           std::ranges::all_of(name, [](char c) {
+               return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                      std::string_view("._+-").find(c) != std::string_view::npos;
+           });
+}
+
+bool is_file(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
+/// X.method.json beside X.lanes.jsonl or X.ANYTHING.
+fs::path card_beside(const fs::path& file) {
+    constexpr std::string_view kLanesEnding = ".lanes.jsonl";
+    std::string name = file.filename().string();
+    name = name.ends_with(kLanesEnding) ? name.substr(0, name.size() - kLanesEnding.size())
+                                        : file.stem().string();
+    return file.parent_path() / (name + ".method.json");
+}
+
+std::optional<std::string> find_string(const JsonNode& json, std::string_view key) {
+    const auto found = json.find(key);
+    if (!found) return std::nullopt;
+    return found->string();
+}
+
+std::optional<bool> find_boolean(const JsonNode& json, std::string_view key) {
+    const auto found = json.find(key);
+    if (!found) return std::nullopt;
+    return found->boolean();
+}
+
+MethodCard read_card(const JsonNode& json) {
+    MethodCard card;
+    card.name = find_string(json, "name");
+    card.address = find_string(json, "address");
+    card.licence = find_string(json, "licence");
+    card.colour_used = find_boolean(json, "colour_used");
+    card.history_used = find_boolean(json, "history_used");
+    if (const auto courses = json.find("training_courses")) {
+        card.training_courses.emplace();
+        const std::size_t size = courses->array_size();
+        for (std::size_t i = 0; i < size; ++i) card.training_courses->push_back(courses->element(i).string());
+    }
+    return card;
+}
+
+ordered_json to_json(const MethodCard& card) {
+    ordered_json json = ordered_json::object();
+    const auto put_if_said = [&](const char* key, const auto& value) {
+        if (value) json[key] = *value;
+    };
+    put_if_said("name", card.name);
+    put_if_said("address", card.address);
+    put_if_said("licence", card.licence);
+    put_if_said("colour_used", card.colour_used);
+    put_if_said("history_used", card.history_used);
+    put_if_said("training_courses", card.training_courses);
+    return json;
+}
+
+}  // namespace
+
+std::string MethodCard::summary() const {
+    std::vector<std::string> parts;
+    if (name) parts.push_back(*name);
+    if (licence) parts.push_back("licence " + *licence);
+    if (colour_used) parts.emplace_back(*colour_used ? "uses colour" : "no colour");
+    if (history_used) parts.emplace_back(*history_used ? "uses history" : "no history");
+    if (training_courses) {
+        parts.push_back(training_courses->empty()
+                            ? "no training courses"
+                            : fmt::format("trained on {}", fmt::join(*training_courses, ", ")));
+    }
+    if (address) parts.push_back(*address);
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::optional<OutsideMethod> parse_outside_method(std::string_view text) {
+    OutsideMethod method;
+    if (text.starts_with(kProgram)) {
+        text.remove_prefix(kProgram.size());
+    } else if (text.starts_with(kLanes)) {
+        text.remove_prefix(kLanes.size());
+        method.kind = OutsideMethod::Kind::lanes;
+    } else {
+        return std::nullopt;
+    }
+    const std::size_t equals = text.find('=');
+    const std::string form = method.is_program() ? "exec:NAME=COMMAND" : "lanes:NAME=FILE";
+    if (equals == std::string_view::npos || equals + 1 == text.size())
+        throw InvalidInput("method", fmt::format("'{}' is not of the form {}", text, form));
+    method.name = text.substr(0, equals);
+    method.source = text.substr(equals + 1);
+    if (!is_name(method.name)) {
+        throw InvalidInput("method",
+                           fmt::format("'{}' is no name for {}: letters, digits and ._+- only, at most {}",
+                                       method.name, form, kLongestName));
+    }
+    if (const auto card = card_path(method)) method.card = read_method_card(*card);
+    return method;
+}
+
+std::vector<std::string> split_methods(const std::vector<std::string>& texts) {
+    std::vector<std::string> split;
+    for (const std::string& text : texts) {
+        for (std::size_t begin = 0; begin <= text.size();) {
+            const bool takes_the_rest = std::string_view(text).substr(begin).starts_with(kProgram);
+            const std::size_t end =
+                takes_the_rest ? text.size() : std::min(text.find(',', begin), text.size());
+            split.push_back(text.substr(begin, end - begin));
+            begin = end + 1;
+        }
+    }
+    return split;
+}
+
+std::optional<fs::path> card_path(const OutsideMethod& method) {
+    // A lanes file may lie in a path with blanks; a word of a command is taken without its quotes.
+    std::vector<std::string> files{method.source};
+    if (method.is_program()) {
+        std::istringstream words(method.source);
+        files.assign(std::istream_iterator<std::string>(words), {});
+    }
+    for (std::string& file : files) {
+        if (method.is_program()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
+        if (is_file(file) && is_file(card_beside(file))) return card_beside(file);
+    }
+    return std::nullopt;
+}
+
+MethodCard read_method_card(const fs::path& file) {
+    MethodCard card;
+    with_json_file(file, [&](const JsonNode& json) { card = read_card(json); });
+    return card;
+}
+
+std::string outside_method_json(const OutsideMethod& method) {
+    ordered_json json{{"name", method.name}, {method.is_program() ? "exec" : "lanes", method.source}};
+    if (method.card) json["card"] = to_json(*method.card);
+    return to_line(json);
+}
+
+std::vector<OutsideMethod> outside_methods_of_record(const std::string& run_record) {
+    std::vector<OutsideMethod> found;
+    with_json_text(run_record, "run.json", [&](const JsonNode& json) {
+        const auto all = json.find("methods");
+        const std::size_t size = all ? all->array_size() : 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const JsonNode method = all->element(i);
+            const auto command = method.find("exec");
+            const auto file = method.find("lanes");
+            if (!command && !file) continue;
+            OutsideMethod outside{command ? OutsideMethod::Kind::program : OutsideMethod::Kind::lanes,
+                                  method.member("name").string(),
+                                  (command ? command : file)->string(),
+                                  {}};
+            if (const auto card = method.find("card")) outside.card = read_card(*card);
+            // A sweep has the same method once for each size.
+            if (std::ranges::find(found, outside.name, &OutsideMethod::name) == found.end())
+                found.push_back(std::move(outside));
+        }
+    });
+    return found;
+}
+
+}  // namespace conelane

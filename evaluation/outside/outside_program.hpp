@@ -1,0 +1,91 @@
+#pragma once
+
+#include "conelane/scene.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/outside/child_process.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// How long a program from outside is waited for [ms].
+struct OutsideLimits {
+    double answer_ms = 2000.0;
+    double start_ms = 20000.0;  ///< from its start to its first answer, which is not counted
+    double end_ms = 1000.0;     ///< from the end of its input to its own end
+    /// A program that answers nothing any more is left alone for the rest of the lap after so many failures
+    /// in a row, or when they have taken so long.
+    int failures = 20;
+    double lost_ms = 20000.0;
+};
+
+/// A program that answers scene after scene over standard input and output (see
+/// docs/methods-from-outside.md). Whatever it does, each scene gets an answer: one of status error where the
+/// program crashed, was late, wrote nonsense or named cones that there are not. Then it is started again for
+/// the next scene.
+///
+/// Each start is followed by an untimed answer to the scene at hand, so that no latency holds the loading of
+/// code, and by a reset.
+class OutsideProgram {
+  public:
+    OutsideProgram(std::string name, std::string command, const OutsideLimits& limits = {});
+    ~OutsideProgram();
+    OutsideProgram(const OutsideProgram&) = delete;
+    OutsideProgram& operator=(const OutsideProgram&) = delete;
+
+    /// Latency is the round trip: from the scene in memory to the lane in memory. A scene that was not asked
+    /// counts with the limit.
+    [[nodiscard]] LaneRecord answer(const Scene& scene);
+    /// What follows is another lap.
+    void reset();
+
+  private:
+    /// An answer, or what went wrong.
+    struct Attempt {
+        std::optional<LaneRecord> record;
+        std::string fault;
+    };
+    Attempt ask(const Scene& scene, double limit_ms);
+    std::string start(const Scene& scene);
+    void end_after(std::string& fault, bool is_ending);
+    void count_failure(double lost_ms);
+    [[nodiscard]] LaneRecord error(const Scene& scene, double latency_ms, const std::string& message) const;
+
+    std::string name_;
+    std::string command_;
+    OutsideLimits limits_;
+    std::unique_ptr<ChildProcess> child_;
+    std::int64_t asked_ = 0;  ///< the ids that the program sees are this running number
+    int failures_ = 0;        ///< since its last answer
+    double lost_ms_ = 0.0;    ///< by these
+    std::string last_fault_;
+    bool has_answered_ = false;
+    bool is_left_alone_ = false;
+    int laps_to_wait_ = 0;  ///< until it is tried again
+    int next_wait_ = 1;     ///< doubles with each lap that it is tried in vain
+};
+
+/// The processes of one program, as many as threads ask at a time.
+class OutsideProgramPool {
+  public:
+    OutsideProgramPool(std::string name, std::string command)
+        : name_(std::move(name)), command_(std::move(command)) {}
+
+    /// One that nobody uses; it is told of the next lap.
+    [[nodiscard]] std::unique_ptr<OutsideProgram> take();
+    void give_back(std::unique_ptr<OutsideProgram> program);
+
+  private:
+    std::string name_;
+    std::string command_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<OutsideProgram>> idle_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/tracks/track_boundaries.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// The scenes of several tracks, and the boundaries that divergence is measured against.
+struct SceneSet {
+    std::vector<AnnotatedScene> scenes;
+    TrackBoundariesByName tracks;
+};
+
+/// Part `index` of `count`, from 0: every count-th lap that has a scene.
+struct Shard {
+    std::size_t index = 0;
+    std::size_t count = 1;
+};
+
+/// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and
+/// range; of these the laps of the shard, which may have none. Takes the memory and nearly only the time of
+/// these. Throws InputError where a track is named twice or no scene of any shard has a ground truth.
+[[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
+                                      const SceneOptions& options, const Shard& shard = {});
+
+/// Writes the scenes file and its companion beside it.
+void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set);
+
+}  // namespace conelane

@@ -1,0 +1,455 @@
+#include "evaluation/scoring/score.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "evaluation/scenes/ground_truth.hpp"
+#include "evaluation/scoring/divergence.hpp"
+#include "evaluation/scoring/driven_path.hpp"
+#include "evaluation/scoring/lane_polygon.hpp"
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace conelane {
+namespace {
+
+/// Positions of a scene's cones by id.
+class ConePositions {
+  public:
+    explicit ConePositions(const Scene& scene) : scene_id_(scene.id) {
+        for (const Cone& cone : scene.cones) position_of_.emplace(cone.id, cone.position);
+    }
+    /// Throws InvalidInput where an id is not in the scene; its key is "PREFIXleft[i]" or "PREFIXright[i]".
+    [[nodiscard]] LaneOutline outline(const Lane& lane, const std::string& prefix) const {
+        return {boundary(lane.left, prefix + "left"), boundary(lane.right, prefix + "right"), lane.closed};
+    }
+
+  private:
+    [[nodiscard]] std::vector<Point> boundary(const std::vector<ConeId>& ids, const std::string& key) const {
+        std::vector<Point> vertices;
+        vertices.reserve(ids.size());
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            const auto found = position_of_.find(ids[i]);
+            if (found == position_of_.end()) {
+                throw InvalidInput(
+                    key + "[" + std::to_string(i) + "]",
+                    "cone " + std::to_string(ids[i]) + " is not in scene \"" + scene_id_ + "\"");
+            }
+            vertices.push_back(found->second);
+        }
+        return vertices;
+    }
+
+    std::string scene_id_;
+    std::unordered_map<ConeId, Point> position_of_;  // for look-up only
+};
+
+bool differs_by_one_cone_at_most(const Lane& lane, const Lane& ground_truth) {
+    const auto cones = [](const Lane& of) {
+        std::set<ConeId> ids(of.left.begin(), of.left.end());
+        ids.insert(of.right.begin(), of.right.end());
+        return ids;
+    };
+    std::vector<ConeId> different;
+    std::ranges::set_symmetric_difference(cones(lane), cones(ground_truth), std::back_inserter(different));
+    return different.size() <= kAllowedConeDifference;
+}
+
+/// A single vertex is an edge of zero length.
+std::vector<Segment> edges(const std::vector<Point>& vertices, bool closed) {
+    std::vector<Segment> result;
+    if (vertices.size() == 1) result.push_back({vertices.front(), vertices.front()});
+    for (std::size_t i = 1; i < vertices.size(); ++i) result.push_back({vertices[i - 1], vertices[i]});
+    if (closed && vertices.size() > 2) result.push_back({vertices.back(), vertices.front()});
+    return result;
+}
+
+bool is_each_on_its_side(const LaneOutline& lane, const Pose& pose) {
+    const auto offset_m = [&](const std::vector<Point>& boundary) {
+        return pose.left_m(foot_on_polyline(pose.position, boundary, lane.closed).point);
+    };
+    return offset_m(lane.left) > 0.0 && offset_m(lane.right) < 0.0;
+}
+
+bool is_free_of_crossings(const LaneOutline& lane) {
+    std::vector<Segment> all = edges(lane.left, lane.closed);
+    const std::vector<Segment> right = edges(lane.right, lane.closed);
+    all.insert(all.end(), right.begin(), right.end());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = i + 1; j < all.size(); ++j) {
+            if (segments_cross(all[i], all[j])) return false;
+        }
+    }
+    return true;
+}
+
+bool is_width_kept(const LaneOutline& lane) {
+    double narrowest_m = std::numeric_limits<double>::infinity();
+    for (const Segment& left : edges(lane.left, lane.closed)) {
+        for (const Segment& right : edges(lane.right, lane.closed)) {
+            narrowest_m = std::min(narrowest_m, segment_distance(left, right).distance_m);
+        }
+    }
+    const auto near_enough = [&](const std::vector<Point>& side, const std::vector<Point>& other) {
+        return std::ranges::all_of(side, [&](const Point& vertex) {
+            return foot_on_polyline(vertex, other, lane.closed).distance_m <= kWidestLane_m;
+        });
+    };
+    return narrowest_m >= kNarrowestLane_m && near_enough(lane.left, lane.right) &&
+           near_enough(lane.right, lane.left);
+}
+
+Accuracy accuracy_of(const Lane& lane, const LaneOutline& outline, const Lane& ground_truth,
+                     const Pose& pose) {
+    Accuracy result;
+    result.cones = differs_by_one_cone_at_most(lane, ground_truth);
+    result.crossings = is_free_of_crossings(outline);
+    // A boundary without cones is on no side and at no distance.
+    if (!outline.left.empty() && !outline.right.empty()) {
+        result.sides = is_each_on_its_side(outline, pose);
+        result.width = is_width_kept(outline);
+    }
+    return result;
+}
+
+EnumerationScore score_of(const Enumeration& enumeration, const ConePositions& positions,
+                          const LaneOutline& ground_truth) {
+    EnumerationScore result;
+    result.iterations = enumeration.iterations;
+    result.complete = enumeration.complete;
+    for (std::size_t i = 0; i < enumeration.candidates.size(); ++i) {
+        const LaneCandidate& candidate = enumeration.candidates[i];
+        const double iou = intersection_over_union(
+            positions.outline(candidate.lane, "candidates[" + std::to_string(i) + "]."), ground_truth);
+        result.best_iou = std::max(result.best_iou.value_or(0.0), iou);
+        if (iou >= kNearGroundTruthIou) {
+            std::optional<std::int64_t>& first = result.first_near_ground_truth_iteration;
+            first = std::min(first.value_or(candidate.iteration), candidate.iteration);
+        }
+    }
+    return result;
+}
+
+Category category_of(const SceneScore& score, bool equals_ground_truth) {
+    if (equals_ground_truth) return Category::ground_truth;
+    if (score.divergence_distance_m) {
+        return *score.divergence_distance_m < kCriticalDivergence_m ? Category::diverging_below_20
+                                                                    : Category::diverging_from_20;
+    }
+    return score.lane_length_m < kTooShortShare * score.ground_truth_length_m ? Category::too_short
+                                                                              : Category::near_ground_truth;
+}
+
+bool has_ground_truth(const AnnotatedScene& scene) {
+    return scene.ground_truth && scene.ground_truth->left.size() >= 2 &&
+           scene.ground_truth->right.size() >= 2;
+}
+
+/// What the lanes of a scene are held against.
+class Truth {
+  public:
+    /// Throws InvalidInput where the scene does not count.
+    Truth(const AnnotatedScene& scene, const TrackBoundaries* boundaries)
+        : pose_(scene.scene.pose), boundaries_(boundaries) {
+        if (has_ground_truth(scene)) {
+            ground_truth_ = ConePositions(scene.scene).outline(*scene.ground_truth, "ground_truth.");
+            length_m_ = lane_length_m(ground_truth_);
+            return;
+        }
+        if (boundaries != nullptr) {
+            driven_ = driven_ahead(scene.scene, boundaries->driven, scene.range_m);
+            length_m_ = polyline_length_m(driven_);
+        }
+        if (driven_.empty() || length_m_ < kShortestDriven_m) {
+            throw InvalidInput("ground_truth",
+                               "scene \"" + scene.scene.id + "\" needs at least two cones on each side");
+        }
+    }
+
+    [[nodiscard]] SceneScore nothing_found(double latency_ms) const {
+        SceneScore score;
+        score.latency_ms = latency_ms;
+        score.ground_truth_length_m = length_m_;
+        score.divergence_known = boundaries_ != nullptr;
+        if (driven_.empty()) score.iou = 0.0;
+        return score;
+    }
+
+    void judge(const LaneOutline& lane, bool equals_ground_truth, SceneScore& score) const {
+        score.lane_length_m = lane_length_m(lane);
+        if (!driven_.empty()) {
+            score.divergence_distance_m = driven_divergence_m(lane, driven_);
+        } else {
+            score.iou = intersection_over_union(lane, ground_truth_);
+            if (boundaries_ != nullptr)
+                score.divergence_distance_m = divergence_m(lane, ground_truth_, *boundaries_);
+        }
+        score.category = category_of(score, equals_ground_truth);
+    }
+
+    void judge(std::span<const Point> centre_line, SceneScore& score) const {
+        const std::vector<Point> truth =
+            driven_.empty() ? positions_of(centre_line_of(ground_truth_, pose_, length_m_)) : driven_;
+        const Follow follow = follow_of(centre_line, truth);
+        score.lane_length_m = follow.length_m;
+        if (boundaries_ != nullptr && follow.leaves) score.divergence_distance_m = follow.length_m;
+        score.category = category_of(score, false);
+    }
+
+    /// Empty sides where the scene has the driven path only.
+    [[nodiscard]] const LaneOutline& ground_truth() const { return ground_truth_; }
+
+  private:
+    static std::vector<Point> positions_of(const CentreLine& line) {
+        std::vector<Point> positions;
+        positions.reserve(line.size());
+        for (const CentreLinePoint& point : line) positions.push_back(point.position);
+        return positions;
+    }
+
+    /// How far along the true line the other one follows it, and whether it leaves it there.
+    struct Follow {
+        double length_m = 0.0;
+        bool leaves = false;
+    };
+    static Follow follow_of(std::span<const Point> line, std::span<const Point> truth) {
+        Follow follow;
+        if (truth.size() < 2) return {0.0, true};
+        const double length_m = polyline_length_m(truth);
+        const Point first_way = (truth[1] - truth[0]).normalized();
+        for (const Point& point : line) {
+            const PolylineFoot foot = foot_on_polyline(point, truth);
+            if (foot.arc_length_m >= length_m) return {length_m, false};  // past what is known
+            // Before the beginning of the true line only the offset to its side counts.
+            const double off_m =
+                foot.arc_length_m > 0.0 ? foot.distance_m : std::abs(cross(first_way, point - truth[0]));
+            if (off_m > kOffCentreLine_m) return {follow.length_m, true};
+            follow.length_m = std::max(follow.length_m, foot.arc_length_m);
+        }
+        return follow;
+    }
+
+    Pose pose_;
+    const TrackBoundaries* boundaries_;
+    LaneOutline ground_truth_;
+    std::vector<Point> driven_;  ///< empty where there is a ground truth
+    double length_m_ = 0.0;
+};
+
+/// Share of those for which the answer of `of` is known that it is yes; nothing where none is.
+template <typename Of>
+std::optional<double> share_of_known(std::span<const SceneScore> scores, Of of) {
+    std::size_t known = 0;
+    std::size_t yes = 0;
+    for (const SceneScore& score : scores) {
+        const std::optional<bool> answer = of(score);
+        if (answer) ++known;
+        if (answer.value_or(false)) ++yes;
+    }
+    if (known == 0) return std::nullopt;
+    return static_cast<double>(yes) / static_cast<double>(known);
+}
+
+/// The errors of all centre lines of a sample.
+class Steering {
+  public:
+    void add(const SceneScore& score) {
+        if (!score.centre_line_error) return;
+        const CentreLineError& error = *score.centre_line_error;
+        lateral_m_.insert(lateral_m_.end(), error.lateral_m.begin(), error.lateral_m.end());
+        if (error.heading_rad) heading_rad_.push_back(*error.heading_rad);
+    }
+    void summarise(ScoreSummary& summary) const {
+        constexpr double kMost = 0.95;
+        if (!lateral_m_.empty()) {
+            summary.lateral_median_m = median(lateral_m_);
+            summary.lateral_p95_m = quantile(lateral_m_, kMost);
+        }
+        if (!heading_rad_.empty()) {
+            summary.heading_median_rad = median(heading_rad_);
+            summary.heading_p95_rad = quantile(heading_rad_, kMost);
+        }
+    }
+
+  private:
+    std::vector<double> lateral_m_;
+    std::vector<double> heading_rad_;
+};
+
+/// Share of the scores for which `holds`; nothing where none of them is `known`.
+template <typename Known, typename Holds>
+std::optional<double> share_if_known(std::span<const SceneScore> scores, Known known, Holds holds) {
+    if (std::ranges::none_of(scores, known)) return std::nullopt;
+    return static_cast<double>(std::ranges::count_if(scores, holds)) / static_cast<double>(scores.size());
+}
+
+}  // namespace
+
+std::string_view to_string(Category category) {
+    switch (category) {
+        case Category::none:
+            return "none";
+        case Category::ground_truth:
+            return "ground_truth";
+        case Category::diverging_below_20:
+            return "diverging_below_20";
+        case Category::diverging_from_20:
+            return "diverging_from_20";
+        case Category::too_short:
+            return "too_short";
+        case Category::near_ground_truth:
+            break;
+    }
+    return "near_ground_truth";
+}
+
+bool is_success(Category category) {
+    return category != Category::none && category != Category::diverging_below_20;
+}
+
+bool is_usable(double lane_length_m, double ground_truth_length_m,
+               std::optional<double> divergence_distance_m) {
+    if (divergence_distance_m) return *divergence_distance_m >= kCriticalDivergence_m;
+    return lane_length_m >= std::min(kUsableLength_m, kTooShortShare * ground_truth_length_m);
+}
+
+LaneOutline outline_of(const Lane& lane, const Scene& scene) {
+    return ConePositions(scene).outline(lane, "");
+}
+
+bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
+    return has_ground_truth(scene) || (boundaries != nullptr && !boundaries->driven.empty() &&
+                                       polyline_length_m(driven_ahead(scene.scene, boundaries->driven,
+                                                                      scene.range_m)) >= kShortestDriven_m);
+}
+
+std::optional<bool> SceneScore::usable() const {
+    if (!divergence_known) return std::nullopt;
+    switch (category) {
+        case Category::none:
+        case Category::diverging_below_20:
+            return false;
+        case Category::ground_truth:
+            return true;
+        case Category::diverging_from_20:
+        case Category::too_short:
+        case Category::near_ground_truth:
+            break;
+    }
+    return is_usable(lane_length_m, ground_truth_length_m, divergence_distance_m);
+}
+
+SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double latency_ms,
+                 std::optional<std::size_t> nearest, const TrackBoundaries* boundaries) {
+    const Truth truth(scene, boundaries);
+    const ConePositions positions(scene.scene);
+    const bool found =
+        answer.status == LaneStatus::found && !answer.lane.left.empty() && !answer.lane.right.empty();
+
+    SceneScore result = truth.nothing_found(latency_ms);
+    result.error = answer.status == LaneStatus::error;
+    if (answer.optimality) {
+        result.solved_to_optimality =
+            found && latency_ms <= kRldTimeLimit_ms &&
+            answer.optimality->objective - answer.optimality->bound <= kRldAbsoluteGap;
+    }
+    if (answer.enumeration)
+        result.enumeration = score_of(*answer.enumeration, positions, truth.ground_truth());
+    std::optional<Lane> of_cone_set;
+    if (has_ground_truth(scene))
+        of_cone_set = nearest ? ground_truth_of_nearest(scene, *nearest) : scene.ground_truth;
+    if (of_cone_set) result.accuracy = Accuracy{};
+    if (!found) return result;
+
+    const LaneOutline lane = positions.outline(answer.lane, "");
+    truth.judge(lane, answer.lane == scene.ground_truth, result);
+    result.confidence = answer.confidence;
+    result.trusted_m = answer.trusted_m;
+    if (of_cone_set) result.accuracy = accuracy_of(answer.lane, lane, *of_cone_set, scene.scene.pose);
+    return result;
+}
+
+SceneScore score_outline(const AnnotatedScene& scene, const LaneOutline& lane, double latency_ms,
+                         const TrackBoundaries* boundaries) {
+    const Truth truth(scene, boundaries);
+    SceneScore result = truth.nothing_found(latency_ms);
+    if (!lane.left.empty() && !lane.right.empty()) truth.judge(lane, false, result);
+    return result;
+}
+
+SceneScore score_centre_line(const AnnotatedScene& scene, std::span<const Point> centre_line,
+                             double latency_ms, const TrackBoundaries* boundaries) {
+    const Truth truth(scene, boundaries);
+    SceneScore result = truth.nothing_found(latency_ms);
+    result.iou.reset();
+    if (!centre_line.empty()) truth.judge(centre_line, result);
+    return result;
+}
+
+ScoreSummary summarise(std::span<const SceneScore> scores) {
+    if (scores.empty()) throw InvalidInput("scores", "there is nothing to summarise");
+    ScoreSummary result;
+    result.scenes = scores.size();
+    std::array<std::size_t, kCategoryCount> of_category{};
+    std::size_t successes = 0;
+    std::size_t accurate = 0;
+    double best_iou_sum = 0.0;
+    Steering steering;
+    std::vector<double> ious;
+    std::vector<double> latencies_ms;
+    for (const SceneScore& score : scores) {
+        ++of_category[static_cast<std::size_t>(score.category)];
+        if (score.error) ++result.errors;
+        if (score.trained_on) ++result.trained_on;
+        if (!score.divergence_known) ++result.divergence_unknown;
+        if (score.success()) ++successes;
+        if (score.accuracy) ++result.accuracy_scenes;
+        if (score.accurate()) ++accurate;
+        if (score.enumeration) best_iou_sum += score.enumeration->best_iou.value_or(0.0);
+        if (score.iou) ious.push_back(*score.iou);
+        steering.add(score);
+        if (const auto usable = score.usable()) {
+            if (score.confidence) result.calibration.add(*score.confidence, *usable);
+            if (score.trusted_m) {
+                result.calibration.add_trust(*score.trusted_m, score.lane_length_m,
+                                             score.divergence_distance_m);
+            }
+        }
+        latencies_ms.push_back(score.latency_ms);
+    }
+    const auto count = static_cast<double>(scores.size());
+    for (std::size_t i = 0; i < kCategoryCount; ++i) {
+        result.category_share[i] = static_cast<double>(of_category[i]) / count;
+    }
+    result.success_share = static_cast<double>(successes) / count;
+    result.usable_share = share_of_known(scores, [](const SceneScore& score) { return score.usable(); });
+    const std::optional<double> steady_share =
+        share_of_known(scores, [](const SceneScore& score) { return score.steady; });
+    if (steady_share) result.unsteady_share = 1.0 - *steady_share;
+    steering.summarise(result);
+    if (!ious.empty()) result.mean_iou = mean(ious);
+    if (result.accuracy_scenes > 0) {
+        result.accurate_share = static_cast<double>(accurate) / static_cast<double>(result.accuracy_scenes);
+    }
+    result.solved_share = share_if_known(
+        scores, [](const SceneScore& score) { return score.solved_to_optimality.has_value(); },
+        [](const SceneScore& score) { return score.solved_to_optimality.value_or(false); });
+    result.complete_share = share_if_known(
+        scores, [](const SceneScore& score) { return score.enumeration.has_value(); },
+        [](const SceneScore& score) { return score.enumeration && score.enumeration->complete; });
+    result.best_candidate_near_share = share_if_known(
+        scores, [](const SceneScore& score) { return score.enumeration && score.enumeration->best_iou; },
+        [](const SceneScore& score) {
+            return score.enumeration && score.enumeration->best_iou.value_or(0.0) >= kNearGroundTruthIou;
+        });
+    if (result.best_candidate_near_share) result.best_candidate_mean_iou = best_iou_sum / count;
+    result.latency = latency_statistics(latencies_ms);
+    return result;
+}
+
+}  // namespace conelane

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+
+namespace conelane {
+
+/// Real-time budget of a detection: the period of a 20 Hz LiDAR [ms].
+inline constexpr double kRealTimeBudget_ms = 50.0;
+/// Shift of the shifted geometric mean of times [ms].
+inline constexpr double kGeometricMeanShift_ms = 1.0;
+
+/// Every function of a sample throws InvalidInput where the sample is empty. Values need not be sorted.
+
+/// The middle value; of an even count the mean of the middle two.
+[[nodiscard]] double median(std::span<const double> sample);
+
+/// Nearest-rank quantile: the smallest value that at least `share` of the sample does not exceed, so always
+/// one of the values; the smallest one for share 0. Precondition: `share` in [0, 1].
+[[nodiscard]] double quantile(std::span<const double> sample, double share);
+
+[[nodiscard]] double mean(std::span<const double> sample);
+
+/// Of the sample (divisor n - 1); 0 for a single value.
+[[nodiscard]] double standard_deviation(std::span<const double> sample);
+
+/// exp(mean of log(x + shift)) - shift. Precondition: every value is above -shift.
+[[nodiscard]] double shifted_geometric_mean(std::span<const double> sample, double shift);
+
+/// The statistics that tables show of times [ms].
+struct LatencyStatistics {
+    double median_ms = 0.0;
+    double mean_ms = 0.0;
+    double standard_deviation_ms = 0.0;
+    double p95_ms = 0.0;
+    double p99_ms = 0.0;
+    double max_ms = 0.0;
+    double shifted_geometric_mean_ms = 0.0;  ///< shift kGeometricMeanShift_ms
+    double share_within_budget = 0.0;        ///< at most kRealTimeBudget_ms, in [0, 1]
+};
+[[nodiscard]] LatencyStatistics latency_statistics(std::span<const double> latencies_ms);
+
+}  // namespace conelane

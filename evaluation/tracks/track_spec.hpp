@@ -1,0 +1,18 @@
+#pragma once
+
+#include "evaluation/tracks/track.hpp"
+
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// The tracks that a SPEC of the command line names, without doubled cones:
+/// - `generated:NAME[@SEED][,NAME[@SEED]...]`, seed 0 unless given;
+/// - `fsd:DIR`, all numbers found there in ascending order, or `fsd:DIR:1,2`;
+/// - `pacsim:FILE`, `eufs:FILE` and `ftlog:FILE`, or a folder in place of the file: all that it holds of such
+///   (.yaml, .csv and .json), by name.
+/// Throws InputError, with the SPEC as key where it is not the fault of a file.
+[[nodiscard]] std::vector<Track> load_tracks(const std::string& spec);
+
+}  // namespace conelane

@@ -1,0 +1,88 @@
+#include "experiments/comparison/methods.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
+#include "graph_search/clc/clc_detector.hpp"
+#include "solvers/registry.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace conelane::experiments {
+namespace {
+
+/// Cone-set size of the RLD paper's on-board runs.
+constexpr std::size_t kRldConeSet = 12;
+
+std::unique_ptr<RldSolver> tight_cbc() {
+    return find_rld_solver("cbc")->make(Formulation::tight);
+}
+
+std::unique_ptr<RldSolver> printed_cbc() {
+    return find_rld_solver("cbc-main")->make(Formulation::paper);
+}
+
+std::unique_ptr<LaneDetector> without_beam() {
+    ClcOptions clc = extended_clc_options();
+    clc.step_scores = nullptr;
+    return make_clc_detector(clc);
+}
+
+std::unique_ptr<LaneDetector> on_delaunay_graph() {
+    ClcOptions clc = paper_clc_options();
+    clc.edge_rule = delaunay_edges;
+    return make_clc_detector(clc);
+}
+
+std::unique_ptr<LaneDetector> longest_lane() {
+    return make_clc_detector({});
+}
+
+std::vector<Method> all_methods() {
+    std::vector<Method> all;
+    for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe});
+    const auto add = [&all](std::string_view name, std::string_view meaning, const auto& how,
+                            bool is_ablation) {
+        all.push_back({{name, meaning, how}, is_ablation});
+    };
+    if (find_rld_solver("cbc") != nullptr) {
+        add("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones",
+            RldRecipe{tight_cbc, {kRldConeSet, std::nullopt}}, false);
+        add("rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones",
+            RldRecipe{printed_cbc, {kRldConeSet, std::nullopt}}, false);
+    }
+    add("clc-no-beam", "clc whose first search follows no lane of a beam search", OtherRecipe{without_beam},
+        true);
+    add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
+        OtherRecipe{on_delaunay_graph}, true);
+    add("clc-longest", "CLC without network: the longest of the enumerated lanes", OtherRecipe{longest_lane},
+        true);
+    return all;
+}
+
+}  // namespace
+
+std::span<const Method> methods() {
+    static const std::vector<Method> kMethods = all_methods();
+    return kMethods;
+}
+
+const Method& find_method(std::string_view name) {
+    const auto method = std::ranges::find(methods(), name, &Method::name);
+    if (method == methods().end()) {
+        throw InvalidInput("method",
+                           "there is no method '" + std::string(name) + "', see `conelane methods`");
+    }
+    return *method;
+}
+
+std::optional<OutsideMethod> find_outside_method(std::string_view text) {
+    std::optional<OutsideMethod> method = parse_outside_method(text);
+    if (method && std::ranges::find(methods(), method->name, &Method::name) != methods().end())
+        throw InvalidInput("method", "'" + method->name + "' is the name of a method of this program");
+    return method;
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,123 @@
+#pragma once
+
+#include "conelane/lane.hpp"
+#include "conelane/scene.hpp"
+#include "conelane/stop_reason.hpp"
+#include "graph_search/clc/lane_beam.hpp"
+#include "graph_search/clc/lane_constraints.hpp"
+#include "graph_search/clc/path_pair_enumeration.hpp"
+#include "graph_search/clc/start_vertices.hpp"
+#include "graph_search/shared/search_budget.hpp"
+#include "graph_search/shared/search_graph.hpp"
+#include "model/deadline.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+
+struct CandidateSearchOptions {
+    std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2, of all starting pairs
+    double d_max_m = 5.5;                 ///< largest distance of consecutive cones
+    EdgeRule edge_rule;                   ///< none: all pairs within d_max, equation (2)
+    LaneBounds bounds;
+    StartVertexRules start;
+    std::size_t starting_pairs = 3;  ///< how many are tried
+    WidthBacktracking width_backtracking = WidthBacktracking::left_behind;
+    /// Of the next-vertex decider, see there; 0: equation (3) as printed.
+    double next_vertex_distance_weight = 0.0;
+    /// The first search follows the lane that a beam search of `beam_width` by these scores finds (see
+    /// LaneBeam), whose work counts as no iteration. Null: none, as in the paper.
+    std::shared_ptr<const StepScores> step_scores;
+    std::size_t beam_width = 8;
+    /// Where a search is not complete after half of its iterations, the other half goes to a second one with
+    /// at most so many discrepancies (see EnumerationRules). The first spends its iterations on the far end
+    /// of few lanes; the second sees fewer vertices of all of a lane, and finds some pairs again. 0: none, as
+    /// in the paper.
+    std::uint32_t second_search_discrepancies = 0;
+    /// A search that has filled so much memory, about, stops. 2500 iterations need some 5 MB.
+    std::size_t memory_limit_bytes = std::size_t{1} << 29U;
+};
+
+/// Throws InvalidInput naming the option that is out of its range.
+void validate(const CandidateSearchOptions& options);
+
+/// The first half of Algorithm 1: from a scene to its candidate lanes. Keeps memory from call to call.
+class CandidateSearch {
+  public:
+    struct Report {
+        std::int64_t iterations = 0;
+        bool complete = true;   ///< every starting pair tried was searched to its end
+        bool exhausted = true;  ///< and none was left out
+        /// The limit that cut a search short; that of iterations only where the others did not.
+        std::optional<StopReason> stopped_by;
+    };
+    struct Request {
+        Deadline deadline;
+        bool with_features = false;
+        /// Where the search begins (warm start, section IV-F): the lane of the scene before, by cone id; may
+        /// be null. What the car has passed and what is no longer seen drops out of it.
+        const Lane* last_lane = nullptr;
+    };
+
+    /// Throws InvalidInput as `validate` does.
+    explicit CandidateSearch(const CandidateSearchOptions& options);
+
+    /// Finds `pairs()` anew. Each starting pair but the last may use half of the iterations that are left; a
+    /// warm start and then the lane of the beam search come before them and may as well. The beam search may
+    /// use half of the time that is left. Precondition: the scene is valid.
+    Report run(const Scene& scene, const Request& request);
+
+    [[nodiscard]] const PathPairs& pairs() const { return pairs_; }
+    [[nodiscard]] const SearchGraph& graph() const { return graph_; }
+    /// A pair of `pairs()` of the last run, which was on `scene`.
+    [[nodiscard]] Lane lane(const PathPair& pair, const Scene& scene);
+
+  private:
+    /// Where a search starts and what it follows first; see PathPairEnumeration::run.
+    struct Seed {
+        StartPair start{};
+        PathPairVertices guide;
+        std::size_t found_end = 0;  ///< number of the pairs found when it was done
+    };
+
+    /// Finds the searches to be made, in their order, after `starts_` and what is left of the last lane.
+    void find_seeds(const Scene& scene, Report& report);
+    /// Sets `remaining_` to what is left of a lane: from the first cone of each side that is still seen and
+    /// ahead of the car, as far as every cone is seen. Returns false where a side has none left.
+    bool find_remaining(const Lane& lane, const Scene& scene);
+    /// Sets `beam_guide_` to the lane of the beam search; returns whether there is one.
+    bool find_beam_guide(const Scene& scene, Report& report);
+    /// Adds a search that follows the guide, unless there is one already.
+    void add_guided(const PathPairVertices& guide);
+    void run_from(const Seed& seed, bool is_last, const Scene& scene, Report& report);
+    /// Sets the features that belong to the scene.
+    void add_scene_features(const Scene& scene);
+    [[nodiscard]] std::span<Seed> seeds() { return {seeds_.data(), seed_count_}; }
+    Seed& new_seed(StartPair start);
+
+    CandidateSearchOptions options_;
+    EnumerationRules rules_;
+    SearchGraph graph_;
+    SearchBudget budget_;
+    StartPairs starts_;
+    std::vector<StartPair> pairs_to_try_;
+    std::vector<std::pair<ConeId, Vertex>> vertex_of_;
+    bool has_remaining_ = false;
+    PathPairVertices remaining_;
+    LaneBeam beam_;
+    PathPairVertices beam_guide_;
+    std::vector<Seed> seeds_;  ///< the first seed_count_ count, the others keep their memory
+    std::size_t seed_count_ = 0;
+    PathPairEnumeration enumeration_;
+    PathPairs pairs_;
+    std::vector<Vertex> side_;
+    std::vector<Point> points_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,170 @@
+#include "graph_search/clc/lane_constraints.hpp"
+
+#include "graph_search/shared/simd_batch.hpp"
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace conelane {
+namespace {
+
+/// Segments of a boundary that are looked at together.
+constexpr std::size_t kChunk = 8;
+static_assert(kChunk <= BoundaryArrays::kSpare);
+
+/// Whether both ends of `line` and of the segment are on one side of the other, or have none in common in x
+/// or in y. Where not, they nearly always meet, which the exact predicate then tells.
+bool are_apart(const Segment& line, const Segment& segment) {
+    const auto apart = [](double a, double b, double c, double d) {
+        return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
+    };
+    return apart(line.from.x(), line.to.x(), segment.from.x(), segment.to.x()) ||
+           apart(line.from.y(), line.to.y(), segment.from.y(), segment.to.y());
+}
+
+bool segment_meets(const Segment& line, const Segment& segment) {
+    return !are_apart(line, segment) && segments_intersect(line, segment);
+}
+
+/// The first of `count` segments of a boundary, from `first` on, that `line` may meet, rounded down to
+/// a whole number of chunks from `first`; `count` where there is none. Sides are told by the ends of each
+/// against the line through the other, without a branch, so that the loop vectorises.
+CONELANE_SIMD std::size_t first_suspicious_chunk(const BoundaryArrays& boundary, std::size_t first,
+                                                 std::size_t count, const Segment& line) {
+    const double* const x = boundary.x.data();
+    const double* const y = boundary.y.data();
+    const double* const all_dx = boundary.dx.data();
+    const double* const all_dy = boundary.dy.data();
+    const double line_from_x = line.from.x();
+    const double line_from_y = line.from.y();
+    const double line_to_x = line.to.x();
+    const double line_to_y = line.to.y();
+    const double line_dx = line_to_x - line_from_x;
+    const double line_dy = line_to_y - line_from_y;
+    for (; first < count; first += kChunk) {
+        std::int64_t suspicious = 0;
+        for (std::size_t i = first; i < first + kChunk; ++i) {
+            const double from_x = x[i] - line_from_x;
+            const double from_y = y[i] - line_from_y;
+            const double dx = all_dx[i];
+            const double dy = all_dy[i];
+            const double begin_side = line_dx * from_y - line_dy * from_x;
+            const double end_side = line_dx * (y[i + 1] - line_from_y) - line_dy * (x[i + 1] - line_from_x);
+            const double line_begin_side = dy * from_x - dx * from_y;
+            const double line_end_side = dx * (line_to_y - y[i]) - dy * (line_to_x - x[i]);
+            suspicious |= static_cast<std::int64_t>(i < count) &
+                          static_cast<std::int64_t>(begin_side * end_side <= 0.0) &
+                          static_cast<std::int64_t>(line_begin_side * line_end_side <= 0.0);
+        }
+        if (suspicious != 0) break;
+    }
+    return first;
+}
+
+/// Whether `line` meets one of the first `count` segments of a boundary.
+bool meets(const BoundaryArrays& boundary, std::size_t count, const Segment& line) {
+    for (std::size_t first = 0; first < count; first += kChunk) {
+        first = first_suspicious_chunk(boundary, first, count, line);
+        for (std::size_t i = first; i < std::min(first + kChunk, count); ++i) {
+            if (segment_meets(line, boundary.segment(i))) return true;
+        }
+    }
+    return false;
+}
+
+bool turns_allowed(std::span<const Point> boundary, double phi_max_rad) {
+    for (std::size_t i = 2; i < boundary.size(); ++i) {
+        const double turn = turning_angle(boundary[i - 1] - boundary[i - 2], boundary[i] - boundary[i - 1]);
+        if (std::abs(turn) >= phi_max_rad) return false;
+    }
+    return true;
+}
+
+bool polygon_is_simple(std::span<const Point> left, std::span<const Point> right) {
+    std::vector<Point> polygon(left.begin(), left.end());
+    polygon.insert(polygon.end(), right.rbegin(), right.rend());
+    const std::size_t n = polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 2; j < n; ++j) {
+            if (i == 0 && j == n - 1) continue;
+            if (segments_intersect({polygon[i], polygon[i + 1]}, {polygon[j], polygon[(j + 1) % n]})) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+bool satisfies_constraints(std::span<const Point> left, std::span<const Point> right,
+                           const LaneBounds& bounds) {
+    if (!turns_allowed(left, bounds.phi_max_rad) || !turns_allowed(right, bounds.phi_max_rad)) return false;
+    if (!polygon_is_simple(left, right)) return false;
+    const LaneWidths widths = lane_widths(left, right);
+    const auto allowed = [&](double width_m) { return bounds.w_min_m < width_m && width_m < bounds.w_max_m; };
+    return std::ranges::all_of(widths.of_vertex_m[kLeft], allowed) &&
+           std::ranges::all_of(widths.of_vertex_m[kRight], allowed) &&
+           std::ranges::all_of(widths.of_segment_m[kLeft], allowed) &&
+           std::ranges::all_of(widths.of_segment_m[kRight], allowed);
+}
+
+void LaneConstraints::reset(const Point& left, const Point& right, const LaneBounds& bounds,
+                            WidthBacktracking rule) {
+    bounds_ = bounds;
+    rule_ = rule;
+    width_.reset(left, right, bounds.w_max_m);
+    State start;
+    start.hopeless = width_.state().narrowest_squared <= bounds.w_min_m * bounds.w_min_m;
+    start.needs.fill(width_.state().too_wide[kLeft] > 0);
+    start.feasible = !start.hopeless && !start.needs[kLeft];
+    states_.assign(1, start);
+}
+
+void LaneConstraints::push(Side side, const Point& point, bool turn_allowed) {
+    State next;
+    next.hopeless = states_.back().hopeless || !turn_allowed || new_segment_meets(side, point);
+    if (next.hopeless) {
+        width_.push_unmeasured(side, point);
+    } else {
+        width_.push(side, point);
+        const OnlineLaneWidth::State& width = width_.state();
+        next.hopeless = width.narrowest_squared <= bounds_.w_min_m * bounds_.w_min_m ||
+                        (rule_ == WidthBacktracking::left_behind && width.too_wide_behind);
+        if (!next.hopeless) {
+            // A vertex too far from the other boundary is helped by extending that boundary alone.
+            next.needs = {width.too_wide[kRight] > 0, width.too_wide[kLeft] > 0};
+            next.end_line_meets = end_line_meets();
+            next.feasible = !next.needs[kLeft] && !next.needs[kRight] && !next.end_line_meets;
+        }
+    }
+    states_.push_back(next);
+}
+
+void LaneConstraints::pop(Side side) {
+    width_.pop(side);
+    states_.pop_back();
+}
+
+bool LaneConstraints::new_segment_meets(Side side, const Point& point) const {
+    const BoundaryArrays& own = width_.boundary(side);
+    const BoundaryArrays& other = width_.boundary(opposite(side));
+    const Segment segment{own.vertex(own.size - 1), point};
+    if (meets(other, other.size - 1, segment)) return true;
+    // The first segment of a side is a neighbour of the line between the first points.
+    if (own.size == 1) return false;
+    return meets(own, own.size - 2, segment) || segment_meets(segment, {own.vertex(0), other.vertex(0)});
+}
+
+bool LaneConstraints::end_line_meets() const {
+    const BoundaryArrays& left = width_.boundary(kLeft);
+    const BoundaryArrays& right = width_.boundary(kRight);
+    const Segment end_line{left.vertex(left.size - 1), right.vertex(right.size - 1)};
+    if (left.size > 2 && meets(left, left.size - 2, end_line)) return true;
+    if (right.size > 2 && meets(right, right.size - 2, end_line)) return true;
+    return left.size > 1 && right.size > 1 && segment_meets(end_line, {left.vertex(0), right.vertex(0)});
+}
+
+}  // namespace conelane

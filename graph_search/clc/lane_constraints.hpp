@@ -1,0 +1,78 @@
+#pragma once
+
+#include "graph_search/clc/lane_width.hpp"
+#include "graph_search/shared/search_graph.hpp"
+
+#include <array>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// The geometric constraints of section VI of the CLC paper; all bounds are strict.
+struct LaneBounds {
+    double phi_max_rad = std::numbers::pi / 2;  ///< C_seg: turning angle between consecutive segments
+    double w_min_m = 2.5;                       ///< C_width
+    double w_max_m = 6.5;                       ///< C_width
+};
+
+/// CD of equation (6) by its definition, for a lane of at least one point a side. C_poly: no two segments of
+/// the lane polygon (l_1, ..., l_n, r_m, ..., r_1) that are not neighbours have a point in common.
+[[nodiscard]] bool satisfies_constraints(std::span<const Point> left, std::span<const Point> right,
+                                         const LaneBounds& bounds);
+
+/// Whether the search may give up on a lane that violates C_width by a vertex that is too far from what has
+/// been built of the other boundary.
+enum class WidthBacktracking {
+    proven,      ///< only where no extension at all can satisfy the constraint: nothing feasible is missed
+    left_behind  ///< also where both boundaries have passed the vertex: the fixed matchings of Lemma 3
+};
+
+/// The constraint decider CD and the backtracking decider BTD, kept up to date while a lane grows and shrinks
+/// vertex by vertex.
+///
+/// Lemma 1, Lemma 2 and the second case of Lemma 3 hold as printed. Its first case does not hold for the
+/// width that equations (11) to (13) define: a boundary that turns back may come near a vertex it has passed.
+/// With WidthBacktracking::left_behind such lanes are given up as the paper does, otherwise they are
+/// followed.
+class LaneConstraints {
+  public:
+    struct State {
+        bool feasible = false;  ///< CD
+        /// BTD, whichever sides can still be extended.
+        bool hopeless = false;
+        /// By side: whether the lane can become feasible only by extending this side.
+        std::array<bool, 2> needs{false, false};
+        /// The line between the last points meets another segment: extending any side may satisfy C_poly.
+        bool end_line_meets = false;
+
+        /// BTD, given which sides can still be extended.
+        [[nodiscard]] bool backtrack(bool left_extensible, bool right_extensible) const {
+            return hopeless || (needs[kLeft] && !left_extensible) || (needs[kRight] && !right_extensible) ||
+                   (end_line_meets && !left_extensible && !right_extensible);
+        }
+    };
+
+    /// Starts a lane of one point a side.
+    void reset(const Point& left, const Point& right, const LaneBounds& bounds, WidthBacktracking rule);
+    /// Extends a side. `turn_allowed`: the new segment's turning angle is below phi_max; true for the first
+    /// one of a side, which no angle limits. The segment must have a length.
+    void push(Side side, const Point& point, bool turn_allowed);
+    /// Undoes the last push, which was on `side`.
+    void pop(Side side);
+
+    [[nodiscard]] const State& state() const { return states_.back(); }
+    [[nodiscard]] const OnlineLaneWidth& width() const { return width_; }
+
+  private:
+    [[nodiscard]] bool new_segment_meets(Side side, const Point& point) const;
+    [[nodiscard]] bool end_line_meets() const;
+
+    LaneBounds bounds_;
+    WidthBacktracking rule_ = WidthBacktracking::left_behind;
+    OnlineLaneWidth width_;
+    std::vector<State> states_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,212 @@
+#pragma once
+
+#include "graph_search/clc/lane_width.hpp"
+#include "graph_search/clc/neighbourhood.hpp"
+#include "graph_search/shared/search_graph.hpp"
+#include "model/geometry.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string_view>
+
+namespace conelane {
+
+/// What the ranking of candidates sees of a lane, and where it stands in LaneFeatures. The first eight are
+/// those of section VII of the CLC paper, in its order: length, the mean of both boundaries' [m]; number of
+/// cones; variance of the lane width, over W(L, R) of equation (12) with every query counted [m^2]; variance
+/// of the segment lengths [m^2]; variance of the signed turning angles between consecutive segments [rad^2].
+/// Variances are those of the whole population, 0 where there is nothing to vary. The others are this
+/// project's. lane_feature_names gives the units. Features of a pair of sides stand left, right: kConesLeft +
+/// side.
+enum LaneFeature : std::size_t {
+    // Those of the paper.
+    kLength,
+    kConesLeft,
+    kConesRight,
+    kWidthVariance,
+    kSegmentLengthVarianceLeft,
+    kSegmentLengthVarianceRight,
+    kTurnVarianceLeft,
+    kTurnVarianceRight,
+    // Length over that of the longest candidate of the scene.
+    kLongestShare,
+    // Of the two first cones, as StartVertexRules has them.
+    kStartAsymmetry,
+    kStartDistance,
+    // Of the scene.
+    kSceneCones,
+    // Of |theta_r - theta_l| at the far ends, equation (4), as advance_deviation has it.
+    kEndDeviation,
+    // Inside of the lane: no cone should lie there. As the triangles see them that the lane grows by.
+    kConesInside,
+    // Neighbours of its cones in the search graph.
+    kMeanDegree,
+    kSharpestTurn,
+    kSharpestTurnChange,
+    kLongestSegment,
+    // Chord between the direction of a segment and that of the last one opposite when it was added, squared.
+    kMeanSquaredSkew,
+    // Between the two last cones after each step.
+    kMeanAcross,
+    kAcrossVariance,
+    kMeanSegmentLengthLeft,
+    kMeanSegmentLengthRight,
+    kAbsoluteMeanTurnLeft,
+    kAbsoluteMeanTurnRight,
+    kMeanSquaredTurnChangeLeft,
+    kMeanSquaredTurnChangeRight,
+    kShortestSegment,
+    // Largest chord between the direction of a first segment and the car's heading.
+    kStartSkew,
+    // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
+    kConesBeside,
+    // At the far ends: the sharper turn, the longer segment, the last change of a turn.
+    kEndTurn,
+    kEndSegment,
+    kEndTurnChange,
+    // Vertices off where the two on each side of them would have one; skew as above.
+    kLargestOffset,
+    kRmsOffset,
+    kLargestSkew,
+    // Of the widths at the vertices; a change is from a vertex to the next of its side.
+    kNarrowest,
+    kWidest,
+    kLargestWidthChange,
+    // Of the near part alone.
+    kNearSharpestTurn,
+    kNearSharpestTurnChange,
+    kNearRmsTurnChange,
+    kNearLargestOffset,
+    kNearRmsOffset,
+    kNearLargestSegmentChange,
+    kNearRmsSegmentChange,
+    kNearLongestSegment,
+    kNearShortestSegment,
+    kNearLargestSkew,
+    kNearRmsSkew,
+    kNearCurvatureDifference,
+    kNearConesInside,
+    kNearConesBeside,
+    // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
+    kNearConesClose,
+    kNearCloseness,
+    kNearVertices,
+    kNearNarrowest,
+    kNearWidest,
+    kNearMeanWidth,
+    kNearWidthDeviation,
+    kNearLargestWidthChange,
+    kNearRmsWidthChange,
+    // Of the two first cones again: where a false one stands in the place of one of them, a lane may be
+    // right in all the rest.
+    kStartLead,
+    kStartShift,
+    kStartNearestSide,
+    kStartNearestAhead,
+    kStartFarthestAhead,
+    kLaneFeatureCount
+};
+inline constexpr std::size_t kPaperFeatureCount = 8;
+using PaperFeatures = std::array<double, kPaperFeatureCount>;
+using LaneFeatures = std::array<double, kLaneFeatureCount>;
+
+/// A name for each feature, the unit in it; a pair of sides ends in _left, _right.
+[[nodiscard]] std::span<const std::string_view> lane_feature_names();
+
+/// The features of the paper by definition. A closed lane includes its closing segments and their angles.
+/// Precondition: no boundary is empty; for a closed lane, at least three points each.
+[[nodiscard]] PaperFeatures paper_features(std::span<const Point> left, std::span<const Point> right,
+                                           bool closed = false);
+
+/// Count, sum and sum of squares of what a variance is taken of.
+struct Moments {
+    double count = 0.0;
+    double sum = 0.0;
+    double sum_of_squares = 0.0;
+
+    void add(double value) {
+        count += 1.0;
+        sum += value;
+        sum_of_squares += value * value;
+    }
+    /// 0 where nothing was added, and so are the others.
+    [[nodiscard]] double mean() const { return count == 0.0 ? 0.0 : sum / count; }
+    [[nodiscard]] double mean_of_squares() const { return count == 0.0 ? 0.0 : sum_of_squares / count; }
+    [[nodiscard]] double variance() const;
+};
+
+/// A step of a boundary from one vertex to the next belongs to the near part of the lane where it begins
+/// within this distance along the boundary [m]. A lane that is wrong there is a critical failure, and what
+/// is wrong with one vertex is lost in a figure of the whole lane.
+inline constexpr double kNearPart_m = 20.0;
+
+/// What the features need to know of a lane, brought up to date while it grows vertex by vertex. A value: the
+/// search keeps one for each lane that it may come back to.
+class LaneGrowth {
+  public:
+    /// A lane of one vertex a side, neither of which has a direction yet. `heading`: the car's, a unit
+    /// vector.
+    void start(const SearchGraph& graph, Vertex left, Vertex right, const Point& heading);
+    /// Extends a side.
+    void push(const SearchGraph& graph, Side side, Vertex vertex);
+
+    /// All features but those of the width, which add_width_features sets, and what belongs to the scene
+    /// (kLongestShare, kSceneCones, of kStart* all but kStartSkew); these are left 0.
+    [[nodiscard]] LaneFeatures features() const;
+    /// By side, the vertices of the near part, its first one included.
+    [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;
+
+  private:
+    struct Boundary {
+        Vertex last = 0;
+        Point direction{0.0, 0.0};  ///< unit vector of the last segment; zero where there is none
+        std::array<Point, 3> before_tip{Point(0.0, 0.0), Point(0.0, 0.0),
+                                        Point(0.0, 0.0)};  ///< nearest first
+        std::size_t vertices = 1;
+        double last_turn_rad = 0.0;
+        double last_segment_m = 0.0;
+        Moments segment_lengths;
+        Moments turns;
+        Moments turn_changes;
+    };
+    /// Figures of the steps of both sides, of the whole lane or of its near part.
+    struct Stretch {
+        Moments skew;  ///< chords between the directions of a new segment and the other side's last one
+        Moments turn_changes;
+        Moments offsets_m;  ///< across the boundary, from where the two vertices on each side put a vertex
+        Moments segment_changes_m;
+        double largest_skew = 0.0;
+        double sharpest_turn_rad = 0.0;
+        double sharpest_turn_change_rad = 0.0;
+        double largest_offset_m = 0.0;
+        double largest_segment_change_m = 0.0;
+        double longest_segment_m = 0.0;
+        double shortest_segment_m = std::numeric_limits<double>::infinity();
+        std::array<double, 2> turned_rad{0.0, 0.0};  ///< by side, with sign
+        std::array<double, 2> length_m{0.0, 0.0};
+        std::array<std::size_t, 2> steps{0, 0};
+        Neighbourhood cones;
+    };
+    /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
+    struct Step;
+    static void add(const Step& step, Side side, Stretch& stretch);
+
+    std::array<Boundary, 2> boundaries_;
+    std::array<Point, 2> tip_{Point(0.0, 0.0), Point(0.0, 0.0)};
+    Stretch whole_;
+    Stretch near_;
+    Moments across_;
+    Moments degree_;
+    Point heading_{0.0, 0.0};
+    double start_skew_ = 0.0;
+    double last_turn_change_rad_ = 0.0;
+};
+
+/// Sets the features of a lane that its widths decide: all in `lane` that LaneGrowth leaves 0 but those of
+/// the scene. `near_vertices`: by side, at least one.
+void add_width_features(const OnlineLaneWidth& width, const std::array<std::size_t, 2>& near_vertices,
+                        LaneFeatures& lane);
+
+}  // namespace conelane

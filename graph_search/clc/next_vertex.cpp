@@ -1,0 +1,72 @@
+#include "graph_search/clc/next_vertex.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+double measure(double sine, double cosine) {
+    const double sum = sine + std::abs(cosine);
+    if (sum == 0.0) return 0.0;
+    return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
+}
+
+/// Insertion is fastest up to about so many.
+constexpr std::size_t kFew = 48;
+
+/// Equal ones stay in the order of the vertices, which they come in.
+void sort_by_cost(std::span<NextVertex> options) {
+    if (options.size() > kFew) {
+        std::ranges::sort(options, {},
+                          [](const NextVertex& option) { return std::pair(option.cost, option.vertex); });
+        return;
+    }
+    for (std::size_t i = 1; i < options.size(); ++i) {
+        const NextVertex option = options[i];
+        std::size_t place = i;
+        for (; place > 0 && options[place - 1].cost > option.cost; --place)
+            options[place] = options[place - 1];
+        options[place] = option;
+    }
+}
+
+}  // namespace
+
+double turning_measure(const Point& before, const Point& after) {
+    return measure(std::abs(cross(before, after)), before.dot(after));
+}
+
+double turning_measure(double angle_rad) {
+    return measure(std::abs(std::sin(angle_rad)), std::cos(angle_rad));
+}
+
+void NextVertexDecider::reset(const SearchGraph& graph, double distance_weight_per_m) {
+    graph_ = &graph;
+    distance_weight_per_m_ = distance_weight_per_m;
+    options_.clear();
+    ranges_.assign(graph.directed_edge_count(), Range{kUnknown, kUnknown});
+}
+
+NextVertexDecider::Range NextVertexDecider::after_start(Vertex start, const Point& heading) {
+    return sorted(start, heading);
+}
+
+NextVertexDecider::Range NextVertexDecider::sorted(Vertex vertex, const Point& direction) {
+    const auto begin = static_cast<std::uint32_t>(options_.size());
+    SearchGraph::DirectedEdge edge = graph_->first_edge(vertex);
+    for (const Vertex neighbour : graph_->neighbours(vertex)) {
+        const Point segment = graph_->position(neighbour) - graph_->position(vertex);
+        const double turning = turning_measure(direction, segment);
+        double cost = turning;
+        if (distance_weight_per_m_ > 0.0) cost += distance_weight_per_m_ * segment.norm();
+        options_.push_back({neighbour, edge++, turning, cost});
+    }
+    sort_by_cost(std::span(options_).subspan(begin));
+    return {begin, static_cast<std::uint32_t>(options_.size())};
+}
+
+}  // namespace conelane

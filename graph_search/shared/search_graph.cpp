@@ -1,0 +1,99 @@
+#include "graph_search/shared/search_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+namespace conelane {
+namespace {
+
+/// Of a directed edge, what NextVertexDecider keeps for it included.
+constexpr std::size_t kBytesPerEdge = 32;
+
+}  // namespace
+
+void SearchGraph::build(std::span<const Point> points, double d_max_m, const EdgeRule& rule) {
+    SearchBudget unlimited;
+    unlimited.memory_limit_bytes = std::numeric_limits<std::size_t>::max();
+    (void)build(points, d_max_m, rule, unlimited);
+}
+
+bool SearchGraph::build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
+                        SearchBudget& budget) {
+    points_.assign(points.begin(), points.end());
+    neighbours_.clear();
+    first_edge_.assign(1, 0);
+
+    // A sorted list of occupied square cells of width d_max. Cells stay floating-point numbers, so that no
+    // position, however far away, overflows an integer.
+    Point origin{0.0, 0.0};
+    if (!points.empty()) origin = points.front();
+    cells_.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point offset = (points[i] - origin) / d_max_m;
+        cells_.push_back({std::floor(offset.x()), std::floor(offset.y()), static_cast<Vertex>(i)});
+    }
+    cell_of_ = cells_;
+    std::ranges::sort(cells_);
+
+    const double squared_d_max = d_max_m * d_max_m;
+    for (const Cell& own : cell_of_) {
+        const auto first = static_cast<std::ptrdiff_t>(neighbours_.size());
+        std::size_t compared = 0;
+        for (const double column : {own.column - 1.0, own.column, own.column + 1.0}) {
+            const double last_row = own.row + 1.0;
+            auto cell = std::ranges::lower_bound(cells_, Cell{column, own.row - 1.0, 0});
+            const auto begin = cell;
+            for (; cell != cells_.end() && cell->column == column && cell->row <= last_row; ++cell) {
+                const double squared_distance = (points_[cell->vertex] - points_[own.vertex]).squaredNorm();
+                if (squared_distance > 0.0 && squared_distance <= squared_d_max) {
+                    neighbours_.push_back(cell->vertex);
+                }
+            }
+            compared += static_cast<std::size_t>(cell - begin);
+        }
+        std::sort(neighbours_.begin() + first, neighbours_.end());
+        // Beyond 2^53 cells a column and the next are the same number.
+        neighbours_.erase(std::unique(neighbours_.begin() + first, neighbours_.end()), neighbours_.end());
+        first_edge_.push_back(static_cast<DirectedEdge>(neighbours_.size()));
+        const std::size_t added = neighbours_.size() - static_cast<std::size_t>(first);
+        if (budget.spend(10 + compared / 4 + added) || budget.occupy(kBytesPerEdge * neighbours_.size())) {
+            points_.clear();
+            return false;
+        }
+    }
+    if (rule) keep_pairs(rule(points));
+    neighbour_x_.resize(neighbours_.size() + kSpare);
+    neighbour_y_.resize(neighbours_.size() + kSpare);
+    for (std::size_t i = 0; i < neighbours_.size(); ++i) {
+        neighbour_x_[i] = points_[neighbours_[i]].x();
+        neighbour_y_[i] = points_[neighbours_[i]].y();
+    }
+    return true;
+}
+
+void SearchGraph::keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs) {
+    for (auto& [low, high] : pairs) {
+        if (low > high) std::swap(low, high);
+    }
+    std::ranges::sort(pairs);
+    std::vector<Vertex> kept;
+    std::vector<DirectedEdge> first_kept(1, 0);
+    for (Vertex vertex = 0; vertex < vertex_count(); ++vertex) {
+        for (const Vertex neighbour : neighbours(vertex)) {
+            const std::pair<Vertex, Vertex> pair = std::minmax(vertex, neighbour);
+            if (std::ranges::binary_search(pairs, pair)) kept.push_back(neighbour);
+        }
+        first_kept.push_back(static_cast<DirectedEdge>(kept.size()));
+    }
+    neighbours_ = std::move(kept);
+    first_edge_ = std::move(first_kept);
+}
+
+bool SearchGraph::adjacent(Vertex a, Vertex b) const {
+    return std::ranges::binary_search(neighbours(a), b);
+}
+
+}  // namespace conelane

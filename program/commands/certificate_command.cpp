@@ -1,0 +1,243 @@
+#include "conelane/bound_certificate.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "evaluation/checking/certificate_verifier.hpp"
+#include "evaluation/files/certificate_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/search_certificate_file.hpp"
+#include "evaluation/scenes/cone_index.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
+#include "program/commands/commands.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::string out;
+    std::string verify;
+    std::optional<std::size_t> nearest;
+    double time_limit_ms = std::numeric_limits<double>::infinity();
+    bool whole = false;
+    std::int64_t most_steps = 5'000'000;
+    ParameterSource parameters;
+};
+
+Scene cone_set(const Options& options, const Scene& scene) {
+    return options.nearest ? nearest_ahead(scene, *options.nearest) : scene;
+}
+
+CertificateRecord to_record(const Scene& scene, const BoundCertificate& certificate) {
+    CertificateRecord record{scene.id, {}, {}, certificate.heading_multiplier, certificate.bound};
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        if (certificate.cone_multiplier[i] == 0.0) continue;
+        record.cone_multipliers.emplace_back(scene.cones[i].id, certificate.cone_multiplier[i]);
+    }
+    for (const BoundCertificate::Clique& clique : certificate.cliques) {
+        CertificateRecord::Clique& listed = record.cliques.emplace_back();
+        listed.multiplier = clique.multiplier;
+        for (const Edge& edge : clique.edges) {
+            listed.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
+        }
+    }
+    return record;
+}
+
+/// Nothing where the record names a cone that is not in the scene; `missing` is then its id.
+std::optional<BoundCertificate> from_record(const Scene& scene, const CertificateRecord& record,
+                                            ConeId& missing) {
+    const auto index_of = index_by_id(scene);
+    const auto known = [&](ConeId id) {
+        missing = id;
+        return index_of.contains(id);
+    };
+    BoundCertificate certificate{
+        std::vector<double>(scene.cones.size(), 0.0), {}, record.heading_multiplier, record.bound};
+    for (const auto& [id, multiplier] : record.cone_multipliers) {
+        if (!known(id)) return std::nullopt;
+        certificate.cone_multiplier[index_of.at(id)] += multiplier;
+    }
+    for (const CertificateRecord::Clique& listed : record.cliques) {
+        BoundCertificate::Clique& clique = certificate.cliques.emplace_back();
+        clique.multiplier = listed.multiplier;
+        for (const auto& [a, b] : listed.edges) {
+            if (!known(a) || !known(b)) return std::nullopt;
+            clique.edges.push_back(make_edge(index_of.at(a), index_of.at(b)));
+        }
+    }
+    return certificate;
+}
+
+/// What `certify` makes of each scene of the file.
+template <typename Certify>
+auto certificates(const Options& options, const Certify& certify) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::vector<std::invoke_result_t<Certify, const Scene&>> records;
+    records.reserve(scenes.size());
+    Progress progress("certify", scenes.size());
+    for (const AnnotatedScene& annotated : scenes) {
+        records.push_back(certify(cone_set(options, annotated.scene)));
+        progress.advance();
+    }
+    return records;
+}
+
+std::vector<SearchCertificateRecord> search_certificates(const Options& options,
+                                                         const RldParameters& parameters) {
+    std::vector<std::string> unproven;
+    auto records = certificates(options, [&](const Scene& scene) {
+        const SearchCertificate certificate =
+            certify_search(make_problem(scene, parameters), options.time_limit_ms);
+        if (std::isinf(certificate.bound) && certificate.bound < 0.0) unproven.push_back(scene.id);
+        return to_search_record(scene, certificate);
+    });
+    for (const std::string& scene : unproven) {
+        fmt::print(stderr, "{}: nothing is claimed: no bound below {:g} was proven in time\n", scene,
+                   SearchCertificate::kMostBound);
+    }
+    return records;
+}
+
+std::vector<CertificateRecord> root_certificates(const Options& options, const RldParameters& parameters) {
+    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
+        throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
+    }
+    return certificates(options, [&](const Scene& scene) {
+        return to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms));
+    });
+}
+
+/// Calls `verify(record, scene)` for each record with the scene that it names.
+template <typename Record, typename Verify>
+void for_each_record(const Options& options, const std::vector<Record>& records, const Verify& verify) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::unordered_map<std::string, const Scene*> scene_of;
+    for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
+    if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
+    Progress progress("verify", records.size());
+    for (const Record& record : records) {
+        const auto found = scene_of.find(record.scene);
+        if (found == scene_of.end()) {
+            throw InputError(options.verify, record.line, "scene",
+                             "'" + record.scene + "' is not in the scenes file");
+        }
+        verify(record, cone_set(options, *found->second));
+        progress.advance();
+    }
+}
+
+std::string no_cone(ConeId id) {
+    return fmt::format("cone {} is not in the scene", id);
+}
+
+void verify_bounds(const Options& options, const RldParameters& parameters) {
+    const std::vector<CertificateRecord> records = read_certificates(options.verify);
+    std::size_t failed = 0;
+    for_each_record(options, records, [&](const CertificateRecord& record, const Scene& scene) {
+        ConeId missing{};
+        std::vector<std::string> violations;
+        if (const auto certificate = from_record(scene, record, missing)) {
+            violations = verify_bound(scene, parameters, *certificate).violations;
+        } else {
+            violations.push_back(no_cone(missing));
+        }
+        for (const std::string& violation : violations) fmt::print("{}: {}\n", record.scene, violation);
+        if (!violations.empty()) ++failed;
+    });
+    fmt::print("{} verified, {} failed\n", records.size() - failed, failed);
+    if (failed > 0) throw CLI::RuntimeError(1);
+}
+
+void verify_searches(const Options& options, const RldParameters& parameters) {
+    using Kind = SearchVerdict::Kind;
+    const std::vector<SearchCertificateRecord> records = read_search_certificates(options.verify);
+    std::size_t optima = 0;
+    std::size_t infeasible = 0;
+    std::size_t bounds = 0;
+    std::size_t refused = 0;
+    std::size_t unverified = 0;
+    for_each_record(options, records, [&](const SearchCertificateRecord& record, const Scene& scene) {
+        ConeId missing{};
+        SearchVerdict verdict;
+        if (const auto certificate = from_search_record(scene, record, missing)) {
+            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
+        } else {
+            verdict.reason = no_cone(missing);
+        }
+        if (verdict.kind != Kind::verified) fmt::print("{}: {}\n", record.scene, verdict.reason);
+        if (verdict.kind == Kind::unverified) ++unverified;
+        if (verdict.kind == Kind::refused) ++refused;
+        if (verdict.kind == Kind::verified)
+            ++(verdict.is_optimum ? optima : std::isinf(record.bound) ? infeasible : bounds);
+    });
+    fmt::print(
+        "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
+        optima, infeasible, bounds, refused, unverified, options.most_steps);
+    if (refused + unverified > 0) throw CLI::RuntimeError(1);
+}
+
+void run(const Options& options, const RldParameters& parameters) {
+    if (options.verify.empty()) {
+        if (options.whole) {
+            const auto records = search_certificates(options, parameters);
+            write_search_certificates(options.out, records);
+            fmt::print("{} certificates in {}\n", records.size(), options.out);
+        } else {
+            const auto records = root_certificates(options, parameters);
+            write_certificates(options.out, records);
+            fmt::print("{} certificates in {}\n", records.size(), options.out);
+        }
+    } else if (options.whole || holds_search_certificates(options.verify)) {
+        verify_searches(options, parameters);
+    } else {
+        verify_bounds(options, parameters);
+    }
+}
+
+}  // namespace
+
+void add_certify_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("certify",
+                                                "Lagrange multipliers that prove a lower bound of each "
+                                                "scene's optimum, with --whole all that is needed "
+                                                "to repeat the proof of the optimum; --verify recomputes "
+                                                "both independently of the solver, exit code 1 "
+                                                "where not all of it is verified");
+    auto options = std::make_shared<Options>();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    CLI::Option_group& what = *command.add_option_group("what to do");
+    add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");
+    what.add_option("--verify", options->verify, "*.certificates.jsonl to verify");
+    what.require_option(1);
+    command.add_flag(
+        "--whole", options->whole,
+        "of the whole search, verified in rational arithmetic, not of the root's bound alone; --verify "
+        "sees what a file holds");
+    command
+        .add_option("--most-steps", options->most_steps,
+                    "labels and fronts for verifying a whole search; with more it is not verified")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
+        ->capture_default_str();
+    add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
+    add_time_limit_option(command, options->time_limit_ms);
+    add_parameter_options(command, options->parameters, "the defaults");
+    command.callback([options] { run(*options, options->parameters.load()); });
+}
+
+}  // namespace conelane::experiments

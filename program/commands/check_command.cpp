@@ -1,0 +1,321 @@
+#include "conelane/check.hpp"
+#include "evaluation/checking/exact_program.hpp"
+#include "evaluation/checking/infeasibility.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/solution_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/answer_check.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
+#include "program/commands/commands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::string solutions;
+    ParameterSource parameters;
+    std::optional<std::size_t> nearest;
+    double time_limit_ms = 10'000.0;
+    bool partial = false;
+    bool exact = false;
+};
+
+/// A lane graph that the checker accepts, and where it is from.
+struct KnownLaneGraph {
+    std::string origin;
+    double objective;
+};
+
+/// A scene as a solver was given it, and what is known of it.
+struct ConeSet {
+    Scene scene;
+    std::optional<KnownLaneGraph> best;
+
+    void learn(const KnownLaneGraph& known) {
+        if (!best || known.objective < best->objective) best = known;
+    }
+};
+
+/// What rational arithmetic says of all records together.
+struct ExactTotals {
+    std::size_t programs = 0;
+    std::size_t too_large = 0;
+    std::size_t rows = 0;
+    double objective_difference = 0.0;  ///< of a stated objective
+    double objective_rounding = 0.0;    ///< of the program's objective, summed in double
+    double row_rounding = 0.0;          ///< of a row's sum in double
+    double violation = 0.0;             ///< of a row or of a column's bounds
+};
+
+/// The record's edges, or what is wrong with them.
+std::variant<LaneGraph, std::string> lane_graph_of(const SolutionRecord& record, const Scene& scene) {
+    std::unordered_map<ConeId, std::size_t> index_of;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) index_of.emplace(scene.cones[i].id, i);
+    LaneGraph graph;
+    for (const auto& [a, b] : record.edges) {
+        for (const ConeId id : {a, b}) {
+            if (!index_of.contains(id)) return fmt::format("cone {} is not in the scene", id);
+        }
+        graph.edges.push_back(make_edge(index_of.at(a), index_of.at(b)));
+    }
+    std::ranges::sort(graph.edges);
+    return graph;
+}
+
+bool has_lane_graph(const SolutionRecord& record) {
+    return record.status == "optimal" || record.status == "feasible";
+}
+bool claims_nothing(const SolutionRecord& record) {
+    return !has_lane_graph(record) && record.status != "infeasible";
+}
+
+class Check {
+  public:
+    explicit Check(const Options& options)
+        : options_(options),
+          parameters_(options.parameters.load()),
+          scenes_(read_scenes(options.scenes)),
+          records_(read_solutions(options.solutions)) {
+        for (const AnnotatedScene& scene : scenes_) scene_of_.emplace(scene.scene.id, &scene);
+        if (records_.empty()) throw InputError(options.solutions, 0, "", "holds no solution");
+        for (const SolutionRecord& record : records_) {
+            if (scene_of_.contains(record.scene)) continue;
+            throw InputError(options.solutions, record.line, "scene",
+                             "'" + record.scene + "' is not in the scenes file");
+        }
+    }
+
+    /// Prints what is wrong; how many records and missing answers failed.
+    std::size_t run() {
+        std::vector<std::vector<std::string>> violations;
+        violations.reserve(records_.size());
+        for (const SolutionRecord& record : records_) violations.push_back(check_lane_graph(record));
+        // Claims of proof come second: any lane graph of the file may refute them.
+        Progress progress("check", records_.size());
+        std::size_t silent = 0;
+        std::size_t passed = 0;
+        std::size_t failed = 0;
+        for (std::size_t i = 0; i < records_.size(); ++i) {
+            const SolutionRecord& record = records_[i];
+            if (violations[i].empty()) {
+                if (auto fault = check_proof(record)) violations[i].push_back(std::move(*fault));
+            }
+            for (const std::string& fault : violations[i]) fmt::print("{}: {}\n", record.scene, fault);
+            if (!violations[i].empty()) {
+                ++failed;
+            } else {
+                ++(claims_nothing(record) ? silent : passed);
+            }
+            progress.advance();
+        }
+        failed += count_missing();
+        if (options_.exact) print_exact();
+        if (silent > 0) fmt::print("{} claim nothing (stopped or error) and are not counted\n", silent);
+        fmt::print("{} passed, {} failed\n", passed, failed);
+        return failed;
+    }
+
+  private:
+    /// The cones that the record is about, by the option or as it says itself.
+    ConeSet& cone_set(const SolutionRecord& record) {
+        const std::optional<std::size_t> nearest = options_.nearest ? options_.nearest : record.nearest;
+        const auto [place, is_new] = cone_sets_.try_emplace({record.scene, nearest});
+        ConeSet& set = place->second;
+        if (!is_new) return set;
+        const AnnotatedScene& annotated = *scene_of_.at(record.scene);
+        set.scene = nearest ? nearest_ahead(annotated.scene, *nearest) : annotated.scene;
+        if (!annotated.ground_truth) return set;
+        Lane lane = *annotated.ground_truth;
+        if (nearest) lane = cut_to_nearest(std::move(lane), annotated.scene, *nearest);
+        const auto graph = experiments::lane_graph_of(lane, set.scene);
+        if (!graph) return set;
+        const CheckReport report = check(set.scene, parameters_, *graph);
+        if (report.violations.empty()) set.learn({"the ground truth", report.objective.value()});
+        return set;
+    }
+
+    /// What is wrong with the lane graph that the record states and with what it says of it.
+    std::vector<std::string> check_lane_graph(const SolutionRecord& record) {
+        if (!has_lane_graph(record)) return {};
+        ConeSet& set = cone_set(record);
+        const auto graph = lane_graph_of(record, set.scene);
+        if (const auto* fault = std::get_if<std::string>(&graph)) return {*fault};
+        if (!record.objective) return {"there is no objective"};
+        const CheckReport lane = check(set.scene, parameters_, std::get<LaneGraph>(graph));
+        if (lane.violations.empty()) {
+            set.learn({fmt::format("{} ({})", record.solver, record.formulation), lane.objective.value()});
+        }
+        std::vector<std::string> violations =
+            check(set.scene, parameters_, std::get<LaneGraph>(graph),
+                  {record.status == "optimal", *record.objective, record.bound})
+                .violations;
+        // What is no lane graph may have no point in the program.
+        if (options_.exact && lane.violations.empty()) {
+            if (auto fault = check_exactly(record, set.scene, std::get<LaneGraph>(graph)))
+                violations.push_back(std::move(*fault));
+        }
+        return violations;
+    }
+
+    /// What is wrong in rational arithmetic with a lane graph that the checker accepts.
+    std::optional<std::string> check_exactly(const SolutionRecord& record, const Scene& scene,
+                                             const LaneGraph& graph) {
+        std::optional<ExactProgramReport> exact;
+        try {
+            exact = recompute_exactly(scene, parameters_,
+                                      record.formulation == "paper" ? Formulation::paper : Formulation::tight,
+                                      graph);
+        } catch (const std::invalid_argument& fault) {
+            return fmt::format("in the {} program {}", record.formulation, fault.what());
+        }
+        if (!exact) {
+            ++exact_.too_large;
+            return std::nullopt;
+        }
+        const double difference = exact_difference(exact->objective, *record.objective);
+        ++exact_.programs;
+        exact_.rows += exact->rows;
+        exact_.objective_difference = std::max(exact_.objective_difference, difference);
+        exact_.objective_rounding = std::max(exact_.objective_rounding, exact->objective_rounding);
+        exact_.row_rounding = std::max(exact_.row_rounding, exact->row_rounding);
+        exact_.violation = std::max(exact_.violation, exact->violation);
+        // Limits are met within 1e-9.
+        if (exact->violation > 1e-9)
+            return fmt::format("in rational arithmetic {} is violated by {:.3g}", exact->violated,
+                               exact->violation);
+        if (difference > 1e-9 * std::max(1.0, std::abs(*record.objective)))
+            return fmt::format("in rational arithmetic the objective is {:.12g}, {:.3g} from the stated one",
+                               exact->objective.convert_to<double>(), difference);
+        return std::nullopt;
+    }
+
+    void print_exact() const {
+        fmt::print(
+            "{} lane graphs in rational arithmetic, {} rows; largest differences: {:.2g} of a stated "
+            "objective, {:.2g} and {:.2g} of an objective's and of a row's sum in double; largest violation "
+            "{:.2g}\n",
+            exact_.programs, exact_.rows, exact_.objective_difference, exact_.objective_rounding,
+            exact_.row_rounding, exact_.violation);
+        if (exact_.too_large > 0) fmt::print("{} programs are too large for it\n", exact_.too_large);
+    }
+
+    /// What is wrong with a bound or with a claim that there is no lane graph.
+    std::optional<std::string> check_proof(const SolutionRecord& record) {
+        const ConeSet& set = cone_set(record);
+        if (record.bound && set.best) {
+            const double best = set.best->objective;
+            if (*record.bound > best + 1e-6 * std::max(1.0, std::abs(best))) {
+                return fmt::format("{} claims the bound {:.6f}, but {} has the objective {:.6f}",
+                                   record.solver, *record.bound, set.best->origin, best);
+            }
+        }
+        if (record.status != "infeasible") return std::nullopt;
+        if (set.best) {
+            return fmt::format("{} claims infeasible, but {} is a lane graph", record.solver,
+                               set.best->origin);
+        }
+        return check_infeasible(record, set.scene);
+    }
+
+    std::optional<std::string> check_infeasible(const SolutionRecord& record, const Scene& scene) const {
+        const InfeasibilityVerdict verdict =
+            judge_infeasible(scene, parameters_, record.solver, options_.time_limit_ms);
+        switch (verdict.kind) {
+            case InfeasibilityVerdict::Kind::confirmed:
+                return std::nullopt;
+            case InfeasibilityVerdict::Kind::open:
+                return fmt::format(
+                    "{} claims infeasible, which could be neither confirmed nor refuted within "
+                    "{} ms",
+                    record.solver, options_.time_limit_ms);
+            case InfeasibilityVerdict::Kind::refuted:
+                break;
+        }
+        std::vector<std::string> edges;
+        for (const Edge& edge : verdict.witness->edges) {
+            edges.push_back(fmt::format("[{}, {}]", scene.cones[edge.i].id, scene.cones[edge.j].id));
+        }
+        return fmt::format("{} claims infeasible, but {} found the lane graph [{}]", record.solver,
+                           verdict.by, fmt::join(edges, ", "));
+    }
+
+    /// Prints and counts the scenes that a solver of the file left out.
+    [[nodiscard]] std::size_t count_missing() const {
+        if (options_.partial) return 0;
+        std::map<std::pair<std::string, std::string>, std::set<std::string>> answered;
+        for (const SolutionRecord& record : records_) {
+            answered[{record.solver, record.formulation}].insert(record.scene);
+        }
+        std::size_t missing = 0;
+        for (const auto& [solver, scenes] : answered) {
+            for (const AnnotatedScene& annotated : scenes_) {
+                const std::string& scene = annotated.scene.id;
+                if (scenes.contains(scene)) continue;
+                fmt::print("{}: {} ({}) gives no answer\n", scene, solver.first, solver.second);
+                ++missing;
+            }
+        }
+        return missing;
+    }
+
+    const Options& options_;
+    const RldParameters parameters_;
+    const std::vector<AnnotatedScene> scenes_;
+    const std::vector<SolutionRecord> records_;
+    std::unordered_map<std::string, const AnnotatedScene*> scene_of_;
+    std::map<std::pair<std::string, std::optional<std::size_t>>, ConeSet> cone_sets_;
+    ExactTotals exact_;
+};
+
+}  // namespace
+
+void add_check_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "check",
+        "recomputes solutions independently of the solvers; exit code 1 on a failure.\n"
+        "Proven for each lane graph: every constraint, the objective, and that the bound is not above it. An "
+        "`infeasible` passes where a search of the checker's own or multipliers confirm it from the scene "
+        "alone, "
+        "or else another exact solver does; one that nothing confirms fails. Not proven: that a bound holds. "
+        "`optimal` passes where the bound meets the objective and no lane graph of the file or of the ground "
+        "truth is better; see `certify` for proofs of bounds. A scene without an answer fails; stopped and "
+        "error "
+        "claim nothing and are counted apart.");
+    auto options = std::make_shared<Options>();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
+    add_parameter_options(command, options->parameters, "the defaults");
+    add_nearest_option(command, options->nearest,
+                       "cone-set size of `solve`, where the solutions do not say it");
+    add_time_limit_option(command, options->time_limit_ms);
+    command.add_flag(
+        "--exact", options->exact,
+        "recompute objective, rows and bounds of the program that the solver was handed in "
+        "rational arithmetic too, and say how far doubles are off; a violation above 1e-9 fails, "
+        "and an objective off by more than 1e-9 of max(1, |objective|)");
+    command.add_flag("--partial", options->partial, "scenes without an answer are no failure");
+    command.callback([options] {
+        if (Check(*options).run() > 0) throw CLI::RuntimeError(1);
+    });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,161 @@
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/tracks/generated_tracks.hpp"
+#include "experiments/comparison/comparison.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/page.hpp"
+
+#include <charconv>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// What `compare` and `sweep` share.
+struct Options {
+    ComparisonOptions comparison;
+    std::vector<std::string> methods;
+    ParameterSource parameters;
+    std::string directory;
+};
+
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    const std::size_t slash = text.find('/');
+    const char* const end = text.data() + text.size();
+    const auto index = std::from_chars(text.data(), end, shard.index);
+    if (slash != std::string::npos && index.ec == std::errc{} && index.ptr == text.data() + slash) {
+        const auto count = std::from_chars(text.data() + slash + 1, end, shard.count);
+        if (count.ec == std::errc{} && count.ptr == end && shard.index < shard.count) return shard;
+    }
+    throw CLI::ValidationError("--shard", "'" + text + "' is not I/N with 0 <= I < N");
+}
+
+void add_overwrite_flag(CLI::App& command, bool& overwrite) {
+    command.add_flag("--overwrite", overwrite,
+                     "replace another comparison in that directory; without it that is refused");
+}
+
+void add_shared_options(CLI::App& command, Options& options) {
+    ComparisonOptions& comparison = options.comparison;
+    command.add_option("--tracks", comparison.tracks,
+                       "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
+                       "ones without it");
+    command
+        .add_option(
+            "--methods", options.methods,
+            "see `conelane methods`, parted by commas; exec:NAME=COMMAND asks any program and takes the "
+            "rest of its argument, lanes:NAME=FILE scores a finished lanes file "
+            "(docs/methods-from-outside.md)")
+        ->capture_default_str();
+    add_scene_options(command, comparison.scenes);
+    comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
+    add_time_limit_option(command, comparison.run.limits.time_limit_ms);
+    add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
+    command.add_flag("--candidates", comparison.run.limits.keep_candidates,
+                     "score every enumerated lane too");
+    add_parameter_options(command, options.parameters, "the defaults");
+    command.add_option_function<std::string>(
+        "--shard", [&comparison](const std::string& text) { comparison.shard = parse_shard(text); },
+        "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane merge`");
+    command
+        .add_option("--out", options.directory,
+                    "directory of the results; a run that was stopped there goes on")
+        ->required();
+    add_overwrite_flag(command, comparison.overwrite);
+}
+
+void compare_and_print(Options& options) {
+    ComparisonOptions& comparison = options.comparison;
+    if (comparison.tracks.empty()) {
+        for (const std::string& name : generated_track_names())
+            comparison.tracks.push_back("generated:" + name);
+    }
+    options.parameters.apply_to(comparison.run.method);
+    comparison.scenes.threads = comparison.run.threads;
+    fmt::print("{}\n", compare(comparison, options.directory));
+    if (comparison.shard.count == 1) write_page(options.directory);  // merge makes that of all shards
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("compare", "methods on the same scenes, scored and tabled");
+    auto options = std::make_shared<Options>();
+    auto nearest = std::make_shared<std::optional<std::size_t>>();
+    auto full = std::make_shared<bool>(false);
+    options->methods = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
+                        "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
+    SceneOptions& scenes = options->comparison.scenes;
+    scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 22.0;
+    scenes.conditions = {"paper", "car"};
+    add_shared_options(command, *options);
+    command.add_flag("--full", *full,
+                     "the papers' size: a pose every 1.1 m, ranges of 30 and 50 m; with the time limit of a "
+                     "car, 50 ms");
+    add_nearest_option(command, *nearest, "the same cone-set size for every method");
+    command.callback([options, nearest, full, &command] {
+        SceneOptions& chosen = options->comparison.scenes;
+        if (*full && command.count("--every") == 0) chosen.every_m = 1.1;
+        if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
+        if (*full && command.count("--time-limit") == 0)
+            options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
+        // Disturbances that are asked for one by one are a condition of their own.
+        const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
+                                      command.count("--miss") + command.count("--persist") >
+                                  0;
+        if (is_disturbed && command.count("--condition") == 0) chosen.conditions.clear();
+        for (const std::string& method : split_methods(options->methods))
+            options->comparison.entrants.push_back(parse_entrant(method, *nearest));
+        compare_and_print(*options);
+    });
+}
+
+void add_sweep_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("sweep", "the same comparison over cone-set sizes");
+    auto options = std::make_shared<Options>();
+    auto sizes = std::make_shared<std::vector<std::size_t>>(
+        std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
+    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
+    SceneOptions& scenes = options->comparison.scenes;
+    scenes.false_positive_rates = {0.2};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 13.2;
+    add_shared_options(command, *options);
+    command.add_option("--sizes", *sizes, "cone-set sizes")
+        ->delimiter(',')
+        ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    command.callback([options, sizes] {
+        for (const std::string& method : split_methods(options->methods)) {
+            for (const std::size_t size : *sizes)
+                options->comparison.entrants.push_back(parse_entrant(method, size));
+        }
+        compare_and_print(*options);
+    });
+}
+
+void add_merge_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("merge", "joins the shards of one comparison");
+    auto shards = std::make_shared<std::vector<std::filesystem::path>>();
+    auto directory = std::make_shared<std::string>();
+    auto overwrite = std::make_shared<bool>(false);
+    command.add_option("shards", *shards, "directories of all shards, in any order")->required();
+    command.add_option("--out", *directory, "directory of the whole")->required();
+    add_overwrite_flag(command, *overwrite);
+    command.callback([shards, directory, overwrite] {
+        fmt::print("{}\n", merge(*shards, *directory, *overwrite));
+        write_page(*directory);
+    });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,71 @@
+#include "experiments/cross_check/cross_check.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    CrossCheckOptions cross_check;
+    std::string directory;
+    std::string replay;
+    std::size_t repetitions = 1;
+};
+
+/// How many cases differ.
+std::size_t run(const Options& options) {
+    if (options.replay.empty()) {
+        const CrossCheckSummary summary = cross_check(options.cross_check, options.directory);
+        fmt::print("{}", to_text(summary));
+        const auto differ = summary.outcomes.find(CrossCheckOutcome::differ);
+        return differ == summary.outcomes.end() ? 0 : differ->second;
+    }
+    const CrossCheckVerdict verdict = judge_stored_case(options.replay, options.repetitions);
+    for (const std::string& finding : verdict.findings) fmt::print("{}\n", finding);
+    fmt::print("{}\n", to_string(verdict.outcome));
+    return verdict.findings.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_cross_check_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "cross-check",
+        "all exact solvers against each other and against the independent checker, on drawn scenes and "
+        "parameters, degenerate and extreme ones among them, under generous and tight time limits. A case on "
+        "which they differ is shrunk and written to DIR/NAME.case.json with its scene, parameters and "
+        "program; exit code 1 where there is one");
+    auto options = std::make_shared<Options>();
+    CrossCheckOptions& drawn = options->cross_check;
+    CLI::Option_group& what = *command.add_option_group("what to do");
+    what.add_option("--out", options->directory,
+                    "directory of cases.jsonl; a run that was stopped there goes on");
+    what.add_option("--replay", options->replay, "*.case.json to judge again");
+    what.require_option(1);
+    command.add_option("--scenes", drawn.scenes, "*.scenes.jsonl, from which three in ten cases are drawn");
+    command.add_option("--seed", drawn.seed, "of the cases")->capture_default_str();
+    command.add_option("--first", drawn.first, "number of the first case, to cut a run into parts")
+        ->capture_default_str();
+    command.add_option("--cases", drawn.cases, "how many, those of a stopped run included")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    command.add_option("--solvers", drawn.solvers, "exact ones; the first one's objectives are kept")
+        ->delimiter(',')
+        ->capture_default_str();
+    add_time_limit_option(command, drawn.time_limit_ms);
+    add_threads_option(command, drawn.threads, "more than one disturbs what is proven under tight limits");
+    command.add_option("--repeat", options->repetitions, "replay as often, or until the solvers differ")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
+    command.callback([options] {
+        if (run(*options) > 0) throw CLI::RuntimeError(1);
+    });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,121 @@
+#include "evaluation/outside/outside_method.hpp"
+#include "experiments/cross_validation/cross_validation.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/page.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    CrossValidationOptions run;
+    std::vector<std::string> families;
+    std::vector<std::string> methods;
+    std::vector<std::string> learning_conditions{"paper", "car"};
+    double learning_every_m = 12.0;
+    unsigned threads = 1;
+    std::string directory;
+};
+
+/// NAME=SPEC, where a name that is there already gets another SPEC.
+std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) {
+    std::vector<CourseFamily> families;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        const std::string name = text.substr(0, equals);
+        const bool is_name = !name.empty() && std::ranges::all_of(name, [](char letter) {
+            return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                   (letter >= '0' && letter <= '9') || letter == '_' || letter == '-';
+        });
+        if (equals == std::string::npos || !is_name) {
+            throw CLI::ValidationError(
+                "--family", "'" + text + "' is not NAME=SPEC with a name of letters, digits, _ and -");
+        }
+        auto family = std::ranges::find(families, name, &CourseFamily::name);
+        if (family == families.end()) family = families.insert(families.end(), {name, {}});
+        family->tracks.push_back(text.substr(equals + 1));
+    }
+    return families;
+}
+
+void run(Options& options) {
+    CrossValidationOptions& run = options.run;
+    run.families = parse_families(options.families);
+    for (const std::string& text : split_methods(options.methods))
+        run.comparison.entrants.push_back(parse_entrant(text));
+    SceneOptions& learned = run.learning.scenes;
+    learned.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    learned.ranges_m = {30.0, 50.0};
+    learned.conditions = options.learning_conditions;
+    learned.every_m = options.learning_every_m;
+    learned.seed = run.comparison.scenes.seed;
+    learned.threads = options.threads;
+    run.comparison.scenes.threads = options.threads;
+    run.comparison.run.threads = options.threads;
+    fmt::print("{}\n", cross_validate(run, options.directory));
+    write_page(options.directory);
+}
+
+}  // namespace
+
+void add_cross_validate_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "cross-validate",
+        "compares methods on courses that none of them has learned from: a fold for each family of courses");
+    auto options = std::make_shared<Options>();
+    options->methods = {"front", "rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam", "astar-lane"};
+    SceneOptions& scenes = options->run.comparison.scenes;
+    scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    scenes.ranges_m = {30.0, 50.0};
+    scenes.conditions = {"paper", "car"};
+    scenes.every_m = 4.4;
+    command
+        .add_option("--family", options->families,
+                    "NAME=SPEC: courses of one place or designer, held out together; a name may come with "
+                    "several SPECs")
+        ->required();
+    command.add_option("--always", options->run.always, "SPECs that every fold learns from");
+    command.add_option("--methods", options->methods, "see `conelane methods`")
+        ->delimiter(',')
+        ->capture_default_str();
+    add_scene_options(command, scenes);
+    command
+        .add_option("--learn-condition", options->learning_conditions,
+                    "conditions of the scenes to learn from")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--learn-every", options->learning_every_m, "travel between poses to learn from [m]")
+        ->capture_default_str();
+    command
+        .add_option("--variants", options->run.learning.variants,
+                    "of each course that networks learn from too: stretched, every second one reversed")
+        ->check(CLI::Range(0, 100))
+        ->capture_default_str();
+    command.add_option("--evaluations", options->run.learning.evaluations, "of parameters that are tuned")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str();
+    command
+        .add_option("--front-steps", options->run.learning.front_steps,
+                    "of the training of front, as a share of those of the shipped weights")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
+    add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);
+    add_threads_option(command, options->threads, "more than one disturbs the latencies");
+    command
+        .add_option("--out", options->directory,
+                    "directory of the results; a run that was stopped there goes on")
+        ->required();
+    command.add_flag("--overwrite", options->run.comparison.overwrite,
+                     "replace another comparison in that directory; without it that is refused");
+    command.callback([options] { run(*options); });
+}
+
+}  // namespace conelane::experiments

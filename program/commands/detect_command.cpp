@@ -1,0 +1,153 @@
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/runner.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Stands for standard input and standard output.
+constexpr const char* kStandardStream = "-";
+
+struct Options {
+    std::string method;
+    std::string scenes;
+    std::string out;
+    ParameterSource parameters;
+    RunOptions run;
+};
+
+/// Where answers go line by line: a file that appears when all is done, or standard output, each at once.
+class LaneSink {
+  public:
+    explicit LaneSink(const std::string& out) {
+        if (out != kStandardStream) file_.emplace(out);
+    }
+    void put(const LaneRecord& record) {
+        std::ostream& stream = file_ ? file_->stream() : std::cout;
+        stream << lane_line(record) << '\n' << std::flush;
+        if (!stream) throw InputError("", 0, "--out", "cannot be written to its end");
+    }
+    void commit() {
+        if (file_) file_->commit();
+    }
+
+  private:
+    std::optional<AtomicFile> file_;
+};
+
+/// A method and the name that its answers bear.
+struct Answering {
+    std::string name;
+    MethodMaker make;
+};
+Answering method_of(const Options& options) {
+    const auto outside = find_outside_method(options.method);
+    if (!outside) {
+        const Method& method = find_method(options.method);
+        return {std::string(method.name), maker_of(method, options.run)};
+    }
+    if (!outside->is_program())
+        throw InvalidInput("--method", "'" + options.method + "' holds lanes already, none can be detected");
+    return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
+}
+
+/// One scene after the other; nothing is answered untimed before, since no scene is known before.
+void detect_streamed(const Answering& method, const Options& options) {
+    if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
+    const std::unique_ptr<TimedMethod> timed = method.make("");
+    LaneSink sink(options.out);
+    if (options.scenes == kStandardStream) {
+        for_each_scene_line(std::cin, [&](const SceneLine& line) {
+            if (line.reset) {
+                timed->reset();
+            } else if (line.scene) {
+                sink.put(timed->answer(line.scene->scene));
+            } else {
+                LaneRecord wrong{std::to_string(line.number), method.name, {}, 0.0, {}};
+                wrong.answer.status = LaneStatus::error;
+                wrong.answer.message = line.fault;
+                sink.put(wrong);
+            }
+        });
+    } else {
+        const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+        for (std::size_t i = 0; i < scenes.size(); ++i) {
+            if (i > 0 && !same_lap(scenes[i - 1], scenes[i])) timed->reset();
+            sink.put(timed->answer(scenes[i].scene));
+        }
+    }
+    sink.commit();
+}
+
+void detect(Options& options) {
+    options.parameters.apply_to(options.run.method);
+    const Answering method = method_of(options);
+    if (options.scenes == kStandardStream || options.out == kStandardStream) {
+        detect_streamed(method, options);
+        return;
+    }
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    write_lanes(options.out, run(method.name, method.make, scenes, options.run));
+}
+
+}  // namespace
+
+void add_methods_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("methods", "the detection methods of this build");
+    auto all = std::make_shared<bool>(false);
+    command.add_flag("--all", *all, "also those that leave a part out, to show what the part is worth");
+    command.callback([all] {
+        for (const Method& method : methods()) {
+            if (method.is_ablation && !*all) continue;
+            const ConeSet set = cone_set(method, {});
+            std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
+            if (set.context) cones += fmt::format(" of {}", *set.context);
+            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.meaning);
+        }
+    });
+}
+
+void add_detect_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "detect",
+        "lanes of scenes, by any method. With `--scenes - --out -` a stream: a lane line for each scene "
+        "line, at once; a line {\"reset\": true} says that another lap begins, a line that is no scene gets "
+        "an answer of status error");
+    auto options = std::make_shared<Options>();
+    options->run.limits.time_limit_ms = kRealTimeLimit_ms;
+    command
+        .add_option(
+            "--method", options->method,
+            "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/methods-from-outside.md)")
+        ->required();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
+        ->required();
+    add_output_option(command, "--out", options->out,
+                      "*.lanes.jsonl; - writes each line to standard output at once", true)
+        ->required();
+    add_nearest_option(command, options->run.method.nearest, "cone-set size instead of the method's own");
+    add_time_limit_option(command, options->run.limits.time_limit_ms);
+    add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
+    command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
+    add_parameter_options(command, options->parameters, "the defaults");
+    command.callback([options] { detect(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,185 @@
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/program_files.hpp"
+#include "evaluation/files/solution_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "model/lane_graph_model.hpp"
+#include "program/commands/commands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+// Both commands speak of the program of one scene. Rows that a solve adds on demand, (5) and the pairing, are
+// too many for a file, so an optimum of the file is a bound for the scene, and its optimum where it is a lane
+// graph.
+namespace conelane::experiments {
+namespace {
+
+/// Which scene's program.
+struct ProgramSource {
+    std::string scenes;
+    std::string id;
+    std::string formulation = "tight";
+    std::optional<std::size_t> nearest;
+    ParameterSource parameters;
+};
+
+void add_program_options(CLI::App& command, ProgramSource& source) {
+    command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
+    command.add_option("--id", source.id, "of the scene")->required();
+    command.add_option("--formulation", source.formulation)
+        ->check(CLI::IsMember({"tight", "paper"}))
+        ->capture_default_str();
+    add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
+    add_parameter_options(command, source.parameters, "the defaults");
+}
+
+Scene load_scene(const ProgramSource& source) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(source.scenes);
+    const auto found = std::ranges::find(scenes, source.id,
+                                         [](const AnnotatedScene& annotated) { return annotated.scene.id; });
+    if (found == scenes.end()) {
+        throw InvalidInput("--id", "there is no scene '" + source.id + "' in " + source.scenes);
+    }
+    return source.nearest ? nearest_ahead(found->scene, *source.nearest) : found->scene;
+}
+
+/// The program of a scene, with all that it refers to.
+class SceneProgram {
+  public:
+    explicit SceneProgram(const ProgramSource& source)
+        : scene(load_scene(source)),
+          formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
+          problem(make_problem(scene, source.parameters.load(), parts(formulation).extent)),
+          model(problem, formulation) {}
+    SceneProgram(const SceneProgram&) = delete;
+    SceneProgram& operator=(const SceneProgram&) = delete;
+
+    const Scene scene;
+    const Formulation formulation;
+    const LaneGraphProblem problem;
+    const LaneGraphModel model;
+};
+
+struct ExportOptions {
+    ProgramSource source;
+    std::string out;
+};
+
+void export_program(const ExportOptions& options) {
+    const std::string ending = std::filesystem::path(options.out).extension().string();
+    if (ending != ".mps" && ending != ".lp")
+        throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
+    const SceneProgram program(options.source);
+    AtomicFile file(options.out);
+    // The name is one word in these formats.
+    const std::string name = "conelane_" + options.source.formulation;
+    if (ending == ".mps") {
+        write_mps(file.stream(), program.model.program(), name);
+    } else {
+        write_lp(file.stream(), program.model.program(), name);
+    }
+    file.commit();
+    fmt::print("{} columns and {} rows in {}\n", program.model.program().columns.size(),
+               program.model.program().rows.size(), options.out);
+}
+
+struct ImportOptions {
+    ProgramSource source;
+    std::string solution;
+    std::string solver = "import";
+    std::string out;
+};
+
+SolutionFile read_solution(const std::string& path, const BinaryProgram& program) {
+    std::ifstream in(path);
+    if (!in) throw InputError(path, 0, "", "cannot be read");
+    try {
+        return read_solution_file(in, program);
+    } catch (const InvalidInput& error) {
+        throw InputError(path, 0, "", error.what());
+    }
+}
+
+/// What the file says of the scene. A point that is no lane graph is an error; where it is the program's
+/// optimum its objective still is a bound.
+SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& program,
+                         const ImportOptions& options) {
+    using Status = SolutionFile::Status;
+    SolutionRecord record;
+    record.scene = program.scene.id;
+    record.solver = options.solver;
+    record.formulation = options.source.formulation;
+    record.nearest = options.source.nearest;
+    if (solution.status == Status::optimal) record.bound = solution.objective;
+    if (solution.point.empty()) {
+        record.status = solution.status == Status::infeasible ? "infeasible" : "error";
+        if (solution.status != Status::infeasible) record.message = "the file holds no solution";
+        return record;
+    }
+    const LaneGraph graph = program.model.decode(solution.point);
+    if (!is_feasible(program.problem, graph)) {
+        record.status = "error";
+        record.message = program.model.separate(solution.point).empty()
+                             ? "the solution violates a row of the program"
+                             : "the solution violates (5) or the pairing, which are not in the file";
+        return record;
+    }
+    record.status = solution.status == Status::optimal ? "optimal" : "feasible";
+    record.objective = objective(program.problem, graph);
+    // The file's objective is rounded.
+    if (record.bound) record.bound = std::min(*record.bound, *record.objective);
+    for (const Edge& edge : graph.edges) {
+        record.edges.emplace_back(program.scene.cones[edge.i].id, program.scene.cones[edge.j].id);
+    }
+    return record;
+}
+
+void import_solution(const ImportOptions& options) {
+    const SceneProgram program(options.source);
+    const SolutionFile solution = read_solution(options.solution, program.model.program());
+    const SolutionRecord record = to_record(solution, program, options);
+    write_solutions(options.out, std::array{record});
+    fmt::print("{}{}\n", record.status, record.message.empty() ? "" : ": " + record.message);
+}
+
+}  // namespace
+
+void add_exchange_commands(CLI::App& program) {
+    CLI::App& exporting = *program.add_subcommand("export",
+                                                  "the program of a scene as MPS or LP file. Not in it are "
+                                                  "the rows that solvers here add on demand: no "
+                                                  "cycles (5), and the pairing near_far");
+    auto exports = std::make_shared<ExportOptions>();
+    add_program_options(exporting, exports->source);
+    add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
+    exporting.callback([exports] { export_program(*exports); });
+
+    CLI::App& importing = *program.add_subcommand("import-solution",
+                                                  "what another program found for an exported file, as a "
+                                                  "solution for `conelane check`; the options must "
+                                                  "be those of the export. A solution with a cycle or "
+                                                  "against the pairing is an error: those rows are not "
+                                                  "in the file");
+    auto imports = std::make_shared<ImportOptions>();
+    add_program_options(importing, imports->source);
+    importing
+        .add_option("--sol", imports->solution, "of `cbc FILE solve solution SOL` or `glpsol --write SOL`")
+        ->required();
+    importing.add_option("--solver", imports->solver, "whose solution it is, a name for the records")
+        ->capture_default_str();
+    add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
+    importing.callback([imports] { import_solution(*imports); });
+}
+
+}  // namespace conelane::experiments

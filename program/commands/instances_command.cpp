@@ -1,0 +1,85 @@
+#include "conelane/invalid_input.hpp"
+#include "experiments/instances/instance_library.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
+#include "program/commands/commands.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string out;
+    std::vector<std::string> sizes{"12", "18", "24", "36", "all"};
+    InstanceOptions instances;
+    ParameterSource parameters;
+};
+
+std::optional<std::size_t> size_of(const std::string& text) {
+    if (text == "all") return std::nullopt;
+    std::size_t size = 0;
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), size);
+    if (error != std::errc{} || rest != text.data() + text.size() || size < 1)
+        throw InvalidInput("--nearest", "'" + text + "' is neither a number of cones nor all");
+    return size;
+}
+
+void run(Options& options) {
+    InstanceOptions& instances = options.instances;
+    for (const std::string& size : options.sizes) {
+        const std::optional<std::size_t> nearest = size_of(size);
+        if (std::ranges::find(instances.nearest, nearest) != instances.nearest.end())
+            throw InvalidInput("--nearest", "'" + size + "' is there twice");
+        instances.nearest.push_back(nearest);
+    }
+    instances.parameters = options.parameters.load();
+    InstanceCounts counts;
+    {
+        const std::vector<InstanceScene> scenes = instance_scenes(instances);
+        Progress progress("instances", 2 * scenes.size());
+        counts = write_instances(options.out, scenes, instances, [&] { progress.advance(); });
+    }
+    fmt::print(
+        "{} programs in {}: {} optima and {} infeasible by both path-pair and CBC, {} open; {} left "
+        "out, too large or without an edge\n",
+        counts.written, options.out, counts.optimal, counts.infeasible,
+        counts.written - counts.optimal - counts.infeasible, counts.too_large);
+}
+
+}  // namespace
+
+void add_instances_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand(
+        "instances",
+        "a library of binary programs for other solvers: MPS files of the printed and the tight formulation, "
+        "the list conelane.test, and conelane.solu with the optima that path-pair and CBC both proved");
+    auto options = std::make_shared<Options>();
+    InstanceOptions& instances = options->instances;
+    instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
+    instances.scenes.false_positive_rates = {0.1667, 0.5};
+    instances.scenes.ranges_m = {30.0};
+    instances.scenes.every_m = 120.0;
+    command.add_option("--out", options->out, "directory; files of the same names are replaced")->required();
+    command
+        .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        ->capture_default_str();
+    command.add_option("--nearest", options->sizes, "cone-set sizes, `all` for all that is visible")
+        ->delimiter(',')
+        ->capture_default_str();
+    add_scene_options(command, instances.scenes);
+    add_parameter_options(command, options->parameters, "the defaults");
+    add_time_limit_option(command, instances.time_limit_ms);
+    command.callback([options] { run(*options); });
+}
+
+}  // namespace conelane::experiments

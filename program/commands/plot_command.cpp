@@ -1,0 +1,127 @@
+#include "conelane/drivable_lane.hpp"
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/report/package.hpp"
+#include "experiments/report/picture.hpp"
+#include "program/commands/commands.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::vector<std::string> lanes;
+    std::string id;
+    std::string out;
+    std::vector<std::string> methods;
+    bool with_given = false;
+    bool without_truth = false;
+    std::string title;
+    std::string python;
+};
+
+AnnotatedScene scene_named(const Options& options) {
+    for (AnnotatedScene& scene : read_scenes(options.scenes)) {
+        if (scene.scene.id == options.id) return std::move(scene);
+    }
+    throw InputError(options.scenes, 0, "--id", "'" + options.id + "' is no scene of it");
+}
+
+/// The boundaries of the scene's track, where a companion of the scenes file holds them.
+TrackBoundariesByName track_of(const Options& options, const std::string& track) {
+    const std::filesystem::path companion = track_boundaries_path(options.scenes);
+    if (track.empty() || !std::filesystem::exists(companion)) return {};
+    TrackBoundariesByName tracks = read_track_boundaries(companion);
+    std::erase_if(tracks, [&](const auto& named) { return named.first != track; });
+    return tracks;
+}
+
+/// The lanes of the scene in one file, in its order.
+void add_lanes(const std::string& file, const Options& options, Picture& picture) {
+    const std::size_t before = picture.lanes.size();
+    for (LaneRecord& record : read_lanes(file)) {
+        if (record.scene != options.id) continue;
+        if (!options.methods.empty() &&
+            std::ranges::find(options.methods, record.method) == options.methods.end())
+            continue;
+        PicturedLane lane{std::move(record), {}};
+        try {
+            lane.drivable = drivable(lane.record.answer, picture.scene.scene);
+        } catch (const InvalidInput& error) {
+            throw InputError(file, lane.record.line, error.key(), reason_of(error));
+        }
+        picture.lanes.push_back(std::move(lane));
+    }
+    if (options.methods.empty() && picture.lanes.size() == before)
+        throw InputError(file, 0, "--id", "'" + options.id + "' is no scene of it");
+}
+
+void plot(const Options& options) {
+    Picture picture;
+    picture.scene = scene_named(options);
+    picture.tracks = track_of(options, picture.scene.track);
+    picture.with_given = options.with_given;
+    picture.with_truth = !options.without_truth;
+    picture.title = options.title;
+    for (const std::string& file : options.lanes) add_lanes(file, options, picture);
+    for (const std::string& method : options.methods) {
+        const auto is_of = [&](const PicturedLane& lane) { return lane.record.method == method; };
+        if (std::ranges::none_of(picture.lanes, is_of)) {
+            throw InputError(options.lanes.front(), 0, "--method",
+                             "'" + method + "' answers scene '" + options.id + "' in no file of --lanes");
+        }
+    }
+    try {
+        write_picture(picture, options.out, options.python);
+    } catch (const PackageRefused&) {
+        throw CLI::RuntimeError(2);  // it has said why
+    }
+    fmt::print("{}: scene {}, {} lanes\n", options.out, options.id, picture.lanes.size());
+}
+
+}  // namespace
+
+void add_plot_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("plot", "a scene and its lanes as a picture, drawn as in the page's viewer");
+    auto options = std::make_shared<Options>();
+    command
+        .add_option("--scenes", options->scenes,
+                    "*.scenes.jsonl; with its companion *.tracks.json false cones are drawn as such")
+        ->required();
+    command.add_option("--lanes", options->lanes,
+                       "*.lanes.jsonl, the lanes to draw; without it the scene alone");
+    command.add_option("--id", options->id, "the scene")->required();
+    add_output_option(command, "--out", options->out, "X.svg or X.png")
+        ->required()
+        ->check(CLI::Validator(
+            [](const std::string& file) {
+                return file.ends_with(".svg") || file.ends_with(".png") ? ""
+                                                                        : "must end in .svg or .png: " + file;
+            },
+            ""));
+    command.add_option("--method", options->methods, "only lanes of these methods")
+        ->delimiter(',')
+        ->needs("--lanes");
+    command.add_flag("--given", options->with_given,
+                     "beside it what a detector gets: cones and pose, nothing else");
+    command.add_flag("--no-truth", options->without_truth, "without the band of the ground truth");
+    command.add_option("--title", options->title, "above the lanes; the scene's id without it");
+    command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
+    command.callback([options] { plot(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,49 @@
+#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    Options() {
+        scenes.false_positive_rates = {0.0};
+        scenes.ranges_m = {30.0};
+    }
+    std::vector<std::string> tracks;
+    SceneOptions scenes;
+    std::string out;
+};
+
+void make_scenes(const Options& options) {
+    const SceneSet set = make_scene_set(options.tracks, options.scenes);
+    write_scene_set(options.out, set);
+    fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(),
+               options.out, track_boundaries_path(options.out).string());
+}
+
+}  // namespace
+
+void add_scenes_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
+    auto options = std::make_shared<Options>();
+    command
+        .add_option("--tracks", options->tracks,
+                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
+        ->required();
+    add_scene_options(command, options->scenes);
+    add_nearest_option(command, options->scenes.nearest, "keep the N nearest cones ahead only");
+    add_threads_option(command, options->scenes.threads, "same scenes with any number");
+    add_output_option(command, "--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
+        ->required();
+    command.callback([options] { make_scenes(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,116 @@
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/outside/finished_lanes.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/point_snapping.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "evaluation/scoring/score_table.hpp"
+#include "experiments/comparison/results.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string scenes;
+    std::vector<std::string> lanes;
+    std::vector<std::string> methods;
+    std::string json;
+};
+
+/// A file and what it holds; of a method from outside where it was named as one.
+struct LanesFile {
+    std::string file;
+    std::optional<OutsideMethod> method;
+    std::vector<LaneRecord> records;
+};
+
+std::vector<LanesFile> read_all(const Options& options, std::span<const AnnotatedScene> scenes) {
+    if (options.lanes.empty() && options.methods.empty())
+        throw InvalidInput("--lanes", "is required, or --methods lanes:NAME=FILE");
+    std::unordered_map<std::string, const Scene*> scene_of;
+    for (const AnnotatedScene& annotated : scenes) scene_of.emplace(annotated.scene.id, &annotated.scene);
+    std::vector<LanesFile> all;
+    for (const std::string& file : options.lanes) {
+        all.push_back({file, {}, read_lanes(file)});
+        if (all.back().records.empty()) throw InputError(file, 0, "", "holds no lane");
+        for (LaneRecord& record : all.back().records) {
+            const auto scene = scene_of.find(record.scene);
+            if (scene != scene_of.end()) snap_to_cones(record, *scene->second);
+        }
+    }
+    for (const std::string& text : split_methods(options.methods)) {
+        auto method = find_outside_method(text);
+        if (!method || method->is_program())
+            throw InvalidInput("--methods", "'" + text + "' is not of the form lanes:NAME=FILE");
+        std::vector<LaneRecord> records = read_finished_lanes(*method, scenes);
+        all.push_back({method->source, std::move(method), std::move(records)});
+    }
+    return all;
+}
+
+void score_all(const Options& options) {
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    const std::filesystem::path companion = track_boundaries_path(options.scenes);
+    TrackBoundariesByName tracks;
+    if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
+    std::vector<LanesFile> files = read_all(options, scenes);
+    OutsideMethods outside;
+    RecordScorer scorer(scenes, tracks,
+                        [&](const std::string& method) { return outside.courses_of(method, false); });
+    std::vector<ScoredRecord> scored;
+    std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const auto& [file, method, records] = files[i];
+        if (method) outside.methods.push_back(*method);
+        for (const LaneRecord& record : records) {
+            const std::size_t first = file_of.try_emplace({record.method, record.nearest}, i).first->second;
+            if (first == i) continue;
+            throw InputError(file, record.line, "method",
+                             "lanes of '" + record.method + "' are in " + files[first].file + " too");
+        }
+        std::ranges::move(scorer.score(records, file), std::back_inserter(scored));
+    }
+    const std::vector<ScoreRow> rows = summarise(scored);
+    if (!options.json.empty()) {
+        nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
+        if (!options.methods.empty()) run["lanes_of_methods"] = options.methods;
+        write_results(options.json, rows, scored, outside, run.dump());
+    }
+    fmt::print("{}{}", score_table(rows), outside_notes(scored, outside));
+    if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("score", "every measure of both papers, a table of all methods");
+    auto options = std::make_shared<Options>();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
+    command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more");
+    command.add_option("--methods", options->methods,
+                       "lanes:NAME=FILE: answers of another program, scored under that name "
+                       "(docs/methods-from-outside.md)");
+    add_output_option(command, "--json", options->json, "write the rows as JSON lines too");
+    command.callback([options] { score_all(*options); });
+}
+
+}  // namespace conelane::experiments

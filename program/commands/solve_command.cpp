@@ -1,0 +1,126 @@
+#include "conelane/invalid_input.hpp"
+#include "conelane/solve_scene.hpp"
+#include "evaluation/files/solution_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
+#include "program/commands/commands.hpp"
+#include "solvers/registry.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::string solver = "cbc";
+    std::string formulation = "tight";
+    std::string scenes;
+    std::string out;
+    std::optional<std::size_t> nearest;
+    ParameterSource parameters;
+    SolveLimits limits;
+    bool warm_start = false;
+};
+
+/// How many scenes have which status, in the order in which these are met.
+std::string status_counts(const std::vector<SolutionRecord>& records) {
+    std::vector<std::pair<std::string, std::size_t>> counts;
+    for (const SolutionRecord& record : records) {
+        const auto known = std::ranges::find(counts, record.status, &decltype(counts)::value_type::first);
+        if (known == counts.end()) {
+            counts.emplace_back(record.status, 1);
+        } else {
+            ++known->second;
+        }
+    }
+    std::vector<std::string> parts;
+    parts.reserve(counts.size());
+    for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+void solve_all(const Options& options) {
+    const RldSolverEntry* entry = find_rld_solver(options.solver);
+    if (entry == nullptr) {
+        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
+    }
+    const RldParameters parameters = options.parameters.load();
+    const std::unique_ptr<RldSolver> solver =
+        entry->make(options.formulation == "paper" ? Formulation::paper : Formulation::tight);
+    const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
+    std::vector<SolutionRecord> records;
+    records.reserve(scenes.size());
+    std::optional<std::pair<Scene, LaneGraph>> previous;
+    Progress progress(options.solver, scenes.size());
+    for (const AnnotatedScene& annotated : scenes) {
+        const Scene scene =
+            options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
+        std::optional<LaneGraph> start;
+        if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
+        const RldReport report =
+            solve_scene(*solver, scene, parameters, options.limits, start ? &*start : nullptr).report;
+        SolutionRecord record{scene.id,
+                              options.solver,
+                              options.formulation,
+                              std::string(to_string(report.status)),
+                              report.message,
+                              {},
+                              report.objective,
+                              report.bound,
+                              report.nodes,
+                              report.build_ms,
+                              report.solve_ms,
+                              report.stopped_by,
+                              options.nearest};
+        if (report.lane_graph) {
+            for (const Edge& edge : report.lane_graph->edges) {
+                record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
+            }
+        }
+        if (report.lane_graph) previous.emplace(scene, *report.lane_graph);
+        records.push_back(std::move(record));
+        progress.advance();
+    }
+    write_solutions(options.out, records);
+    fmt::print("{} scenes: {}, in {}\n", records.size(), status_counts(records), options.out);
+}
+
+}  // namespace
+
+void add_solvers_command(CLI::App& program) {
+    program.add_subcommand("solvers", "the RLD solvers of this build")->callback([] {
+        for (const RldSolverEntry& solver : rld_solvers()) {
+            fmt::print("{:<16} {:<28} {}\n", solver.name,
+                       solver.uses_formulation ? "formulations: tight, paper" : "", solver.meaning);
+        }
+    });
+}
+
+void add_solve_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
+    auto options = std::make_shared<Options>();
+    command.add_option("--solver", options->solver, "see `conelane solvers`")->capture_default_str();
+    command.add_option("--formulation", options->formulation)
+        ->check(CLI::IsMember({"tight", "paper"}))
+        ->capture_default_str();
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
+    add_output_option(command, "--out", options->out, "*.solutions.jsonl")->required();
+    add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
+    add_time_limit_option(command, options->limits.time_limit_ms);
+    command.add_flag("--warm-start", options->warm_start,
+                     "start from the lane graph of the scene before, its cones found again by id");
+    add_parameter_options(command, options->parameters, "the defaults");
+    command.callback([options] { solve_all(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,58 @@
+#include "evaluation/files/figure_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/studies/study.hpp"
+#include "program/commands/commands.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    std::vector<std::unique_ptr<Study>> studies = make_studies();
+    std::string out;
+};
+
+void run(Study& study, const std::string& out) {
+    StudyResult result = study.run();
+    if (!out.empty()) {
+        FigureFile output(out);
+        for (nlohmann::ordered_json& row : result.rows) output.add(std::move(row));
+        output.commit();
+    }
+    fmt::print("{}", result.table);
+}
+
+void list(const std::vector<std::unique_ptr<Study>>& studies) {
+    for (const auto& study : studies) {
+        fmt::print("{:<22} {}\n", study->description().name, study->description().question);
+    }
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("study", "measures one question; without a name it lists the questions");
+    command.require_subcommand(0, 1);
+    auto options = std::make_shared<Options>();
+    for (const auto& study : options->studies) {
+        const StudyDescription& description = study->description();
+        const std::string name(description.name);
+        CLI::App& one = *command.add_subcommand(name, std::string(description.question));
+        one.footer("Protocol: " + std::string(description.protocol));
+        study->add_options(one);
+        add_output_option(one, "--out", options->out, "write the rows as JSON lines too");
+        one.callback([options, &measured = *study] { run(measured, options->out); });
+    }
+    command.callback([options, &command] {
+        if (command.get_subcommands().empty()) list(options->studies);
+    });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,130 @@
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/training/front_training_run.hpp"
+#include "program/commands/commands.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+struct Options {
+    FrontTrainingRunOptions run;
+    std::string out;
+};
+
+void print(const std::string& of, const FrontFigures& figures) {
+    const auto percent = [](std::optional<double> share) { return 100.0 * share.value_or(0.0); };
+    const Calibration& said = figures.calibration;
+    fmt::print(
+        "  {:<6} {:>6} scenes  usable {:.2f} %, IoU {:.2f} %, exact {:.1f} %; confidence off by {:.2f} %, "
+        "{:.1f} % sure, of these usable {:.2f} %; trusted {:.1f} %, right there {:.2f} %\n",
+        of, figures.scenes, 100.0 * figures.usable, 100.0 * figures.iou, 100.0 * figures.exact,
+        percent(said.error()), percent(said.sure()), percent(said.usable_where_sure()),
+        percent(said.trusted_share()), percent(said.right_where_trusted()));
+}
+
+void print(const FrontProgress& progress, const FrontTrainingRunOptions& run) {
+    using Stage = FrontProgress::Stage;
+    fmt::print("step {} of {}, {}: loss {:.4f}", progress.step, progress.steps,
+               progress.stage == Stage::move_by_move     ? "move by move"
+               : progress.stage == Stage::through_search ? "through the search"
+                                                         : "judging",
+               progress.loss);
+    if (progress.stage != Stage::judging)
+        fmt::print(", true lane allowed {:.1f} %", 100.0 * progress.reached);
+    if (progress.stage == Stage::through_search)
+        fmt::print(", kept {:.1f} %, answered {:.1f} %", 100.0 * progress.kept, 100.0 * progress.found);
+    if (progress.stage == Stage::judging) fmt::print(", usable {:.1f} %", 100.0 * progress.found);
+    if (progress.stage != Stage::move_by_move) fmt::print(", risk {:.4f}", progress.risk);
+    fmt::print("\n");
+    for (std::size_t i = 0; i < progress.held_out.size(); ++i) print(run.conditions[i], progress.held_out[i]);
+    std::fflush(stdout);
+}
+
+void train(const Options& options) {
+    AtomicFile output(options.out);
+    const FrontTrainingRun result =
+        run_front_training(options.run, [&](const FrontProgress& progress) { print(progress, options.run); });
+    output.stream() << front_weights_json(result.weights, result.record);
+    output.commit();
+}
+
+void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
+                      const std::string& meaning, int least = 1) {
+    constexpr int kMost = 10'000'000;
+    command.add_option(name, count, meaning)->check(CLI::Range(least, kMost))->capture_default_str();
+}
+
+void add_number_option(CLI::App& command, const std::string& name, double& number,
+                       const std::string& meaning) {
+    command.add_option(name, number, meaning)->capture_default_str();
+}
+
+}  // namespace
+
+void add_train_front_command(CLI::App& train_command) {
+    CLI::App& command = *train_command.add_subcommand(
+        "front", "trains the weights of front: move by move along true lanes, then through its search");
+    auto options = std::make_shared<Options>();
+    FrontTrainingRunOptions& run = options->run;
+    FrontTrainingOptions& training = run.training;
+    command
+        .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
+        ->required();
+    command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
+    add_number_option(command, "--hold-out-every", run.hold_out_every_m, "travel between poses there [m]");
+    command.add_option("--condition", run.conditions, "of the scenes held out: paper, car, harsh")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--fp", run.rates, "false positives / all points of the scenes held out")
+        ->delimiter(',')
+        ->capture_default_str();
+    add_count_option(command, "--imitation-steps", training.imitation_steps, "steps of Adam move by move", 0);
+    add_count_option(command, "--search-steps", training.search_steps, "steps of Adam through the search", 0);
+    add_count_option(command, "--judge-steps", training.judge_steps,
+                     "steps of Adam of the judge of whole lanes", 0);
+    add_number_option(command, "--imitation-rate", training.imitation_rate, "learning rate move by move");
+    add_number_option(command, "--search-rate", training.search_rate, "learning rate through the search");
+    add_number_option(command, "--judge-rate", training.judge_rate, "learning rate of the judge");
+    add_number_option(command, "--trusted", training.trusted,
+                      "share of the lanes that shall be right as far as they are trusted");
+    add_count_option(command, "--trust-draws", training.trust_draws,
+                     "changed courses on which that is made so, after the training");
+    add_count_option(command, "--draws", training.draws_per_step, "changed courses to a step");
+    add_count_option(command, "--scenes-a-draw", training.scenes.scenes_per_draw, "scenes of each");
+    add_count_option(command, "--beam", training.loss.search.beam_width, "width of the beam in training");
+    add_number_option(command, "--fall-out", training.loss.fall_out,
+                      "weight of the loss where the true lane leaves the beam");
+    add_number_option(command, "--minimum-risk", training.loss.minimum_risk, "weight of the expected risk");
+    add_number_option(command, "--listwise", training.loss.listwise,
+                      "weight of the loss over the best lanes");
+    add_count_option(command, "--figures-every", training.figures_every,
+                     "steps between two looks at what is held out");
+    command.add_option("--checkpoint", training.checkpoint, "file that a training ended before goes on from");
+    command.add_option("--seed", training.seed, "of everything drawn")->capture_default_str();
+    command.add_flag("!--no-warp", training.scenes.warp, "courses keep their shape");
+    command.add_flag("!--no-respacing", training.scenes.respace,
+                     "cones stay where they are on their boundary");
+    command.add_flag("!--no-disturbance", training.scenes.disturb, "no noise, missed cones and pose error");
+    command.add_flag("--other-course", training.scenes.other_course,
+                     "a second course lies beside the first in a third of the draws");
+    command.add_flag("!--no-short-sight", training.scenes.short_sight,
+                     "true cones are seen as far as false ones");
+    command
+        .add_option("--without", training.without,
+                    "inputs of the cost that it shall not see, by their names in front_features.cpp")
+        ->delimiter(',');
+    add_threads_option(command, training.threads, "the weights are the same with any number");
+    add_output_option(command, "--out", options->out, "weights (JSON)")->required();
+    command.callback([options] { train(*options); });
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,290 @@
+#include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/json_node.hpp"
+#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scenes/scene_options_json.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
+#include "experiments/tuning/evaluation.hpp"
+#include "experiments/tuning/evaluation_log.hpp"
+#include "experiments/tuning/failure_causes.hpp"
+#include "experiments/tuning/tuner.hpp"
+#include "experiments/tuning/weight_rounds.hpp"
+#include "program/commands/commands.hpp"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Options {
+    std::vector<std::string> tracks;
+    SceneOptions scenes;
+    EvaluationOptions evaluation;
+    TunerOptions tuner;
+    std::size_t rounds = 0;
+    std::string start;
+    bool shape = false;
+    std::string out;
+    std::filesystem::path log;
+};
+
+/// All that the figures of parameters depend on, `start` for what tuning does not move.
+ordered_json conditions(const Options& options, const RldParameters& start) {
+    ordered_json json{{"commit", provenance().commit},
+                      {"tracks", options.tracks},
+                      {"objective", to_string(options.evaluation.objective)}};
+    json.update(scene_options_json(options.scenes));
+    json.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
+                             {"most_nodes", options.evaluation.most_nodes},
+                             {"pairing", to_string(start.pairing)},
+                             {"w_color", start.w_color},
+                             {"shape", has_shape_costs(start)},
+                             {"use_confidence", start.use_confidence},
+                             {"forbid_crossing", start.forbid_crossing}});
+    if (options.evaluation.nearest) json["nearest"] = *options.evaluation.nearest;
+    if (options.evaluation.context) json["context"] = *options.evaluation.context;
+    return json;
+}
+
+ordered_json to_json(const RldParameters& parameters) {
+    ordered_json json = ordered_json::object();
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
+    if (!has_shape_costs(parameters)) return json;
+    for (const RldParameterField& field : rld_extra_fields()) {
+        json[std::string(field.key)] = parameters.*field.value;
+    }
+    return json;
+}
+
+/// The mean over all scenes, and by rate and by track.
+ordered_json to_json(const std::vector<LapFigure>& laps) {
+    ordered_json json{{"mean", mean_over_scenes(laps)}};
+    const auto add_means = [&](const char* key, const auto& key_of) {
+        ordered_json means = ordered_json::object();
+        for (const LapFigure& lap : laps) {
+            if (means.contains(key_of(lap))) continue;
+            std::vector<LapFigure> same;
+            for (const LapFigure& other : laps) {
+                if (key_of(other) == key_of(lap)) same.push_back(other);
+            }
+            means[key_of(lap)] = mean_over_scenes(same);
+        }
+        json[key] = means;
+    };
+    add_means("by_rate", [](const LapFigure& lap) { return fmt::format("{}", lap.rate); });
+    add_means("by_track", [](const LapFigure& lap) { return lap.track; });
+    return json;
+}
+
+/// Of each rate: scenes by why they are inaccurate, and how many inaccurate ones have wrong cones where.
+struct FailureCounts {
+    ordered_json causes = ordered_json::object();
+    ordered_json places = ordered_json::object();
+};
+
+void count_one(ordered_json& counts, std::string_view name) {
+    ordered_json& count = counts[std::string(name)];
+    count = count.is_null() ? 1 : count.get<std::size_t>() + 1;
+}
+
+FailureCounts count_failures(const std::vector<AnnotatedScene>& scenes, const RldParameters& parameters,
+                             const EvaluationOptions& options) {
+    FailureCounts counts;
+    for (const AnnotatedScene& scene : scenes) {
+        const std::string rate = fmt::format("{}", scene.false_positive_rate.value_or(0.0));
+        const Diagnosis found = diagnose(scene, parameters, options);
+        count_one(counts.causes[rate], to_string(found.cause));
+        if (!found.wrong) continue;
+        ordered_json& places = counts.places[rate];
+        if (found.wrong->near_end > 0) count_one(places, "near_end");
+        if (found.wrong->inside > 0) count_one(places, "inside");
+        if (found.wrong->far_end > 0) count_one(places, "far_end");
+        if (found.wrong->on_lost_boundary > 0) count_one(places, "lost_boundary");
+        if (*found.wrong == WrongCones{}) count_one(places, "none");
+    }
+    return counts;
+}
+
+/// Two lines for each rate: shares of the scenes that count.
+void print_failures(const FailureCounts& failures) {
+    const std::string not_counted(to_string(FailureCause::no_ground_truth));
+    for (const auto& [rate, causes] : failures.causes.items()) {
+        double scenes = 0.0;
+        for (const auto& [cause, count] : causes.items()) {
+            if (cause != not_counted) scenes += count.get<double>();
+        }
+        const auto shares = [&](const ordered_json& counts) {
+            std::vector<std::string> parts;
+            for (const auto& [name, count] : counts.items()) {
+                if (name != not_counted)
+                    parts.push_back(fmt::format("{} {:.1f} %", name, 100.0 * count.get<double>() / scenes));
+            }
+            return fmt::format("{}", fmt::join(parts, ", "));
+        };
+        fmt::print("false positives {}: {}\n", rate, shares(causes));
+        if (failures.places.contains(rate))
+            fmt::print("    wrong cones at: {}\n", shares(failures.places[rate]));
+    }
+}
+
+ordered_json record_of(const Options& options, const RldParameters& start, const Tuned& tuned) {
+    ordered_json record = conditions(options, start);
+    record["folds"] = options.tuner.folds;
+    record["rounds"] = options.rounds;
+    record["evaluations"] = options.tuner.evaluations;
+    record["compiler"] = provenance().compiler;
+    record["machine"] = provenance().machine;
+    ordered_json folds = ordered_json::array();
+    std::vector<LapFigure> held_out;
+    for (const Fold& fold : tuned.folds) {
+        held_out.insert(held_out.end(), fold.held_out_laps.begin(), fold.held_out_laps.end());
+        folds.push_back({{"held_out", fold.held_out},
+                         {"training", fold.training},
+                         {"held_out_figures", to_json(fold.held_out_laps)},
+                         {"held_out_figures_of_start", to_json(fold.held_out_laps_of_start)},
+                         {"parameters", to_json(fold.parameters)}});
+    }
+    if (!tuned.folds.empty()) record["held_out_figures"] = to_json(held_out);
+    record["figures_of_start"] = to_json(tuned.laps_of_start);
+    record["figures"] = to_json(tuned.laps);
+    record["fold_results"] = folds;
+    return record;
+}
+
+std::filesystem::path record_path(std::filesystem::path parameters) {
+    return parameters.replace_extension(".record.json");
+}
+
+void run(Options& options) {
+    if (!std::isfinite(options.evaluation.time_limit_ms)) {
+        throw InvalidInput("--time-limit", "a tuning records one, inf is none");
+    }
+    options.scenes.threads = options.evaluation.threads;
+    options.tuner.seed = options.scenes.seed;
+    RldParameters start = ParameterSource{options.start, {}}.load();
+    if (options.shape) start = with_shape_costs(start);
+    const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
+    EvaluationLog log(options.log, to_line(conditions(options, start)),
+                      [&](const RldParameters& parameters) { return evaluation(parameters); });
+    const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
+    Tuned tuned;
+    {
+        // The start, and for each fit the start again and the winner on what was held out.
+        Progress progress(
+            "tune", 1 + fits * (solves_in(options.rounds) + options.rounds + options.tuner.evaluations + 2));
+        const auto evaluate = [&](const RldParameters& parameters) {
+            std::vector<LapFigure> laps = log(parameters);
+            progress.advance();
+            return laps;
+        };
+        const WeightRoundsOptions rounds{options.rounds, options.scenes.seed, [&] { progress.advance(); }};
+        const auto propose = [&](const RldParameters& from, const std::set<std::string>& tracks) {
+            return fit_weights_in_rounds(evaluation, from, tracks, rounds);
+        };
+        tuned = tune(evaluate, start, options.tuner, propose);
+    }
+    write_rld_parameters(options.out, tuned.parameters);
+    ordered_json record = record_of(options, start, tuned);
+    const FailureCounts failures = count_failures(evaluation.scenes(), tuned.parameters, options.evaluation);
+    record["losses"] = failures.causes;  // the name in all records so far
+    record["wrong_cones"] = failures.places;
+    AtomicFile file(record_path(options.out));
+    file.stream() << record.dump(2) << '\n';
+    file.commit();
+
+    fmt::print("{} on {} scenes: {:.2f} % before, {:.2f} % after\n", to_string(options.evaluation.objective),
+               evaluation.scenes().size(), 100.0 * mean_over_scenes(tuned.laps_of_start),
+               100.0 * mean_over_scenes(tuned.laps));
+    for (const Fold& fold : tuned.folds) {
+        fmt::print("held out {}: {:.2f} % before, {:.2f} % after\n", fmt::join(fold.held_out, " "),
+                   100.0 * mean_over_scenes(fold.held_out_laps_of_start),
+                   100.0 * mean_over_scenes(fold.held_out_laps));
+    }
+    print_failures(failures);
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& program) {
+    CLI::App& command =
+        *program.add_subcommand("tune", "finds the RLD parameters that answer best on given tracks");
+    auto options = std::make_shared<Options>();
+    options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
+    options->scenes.ranges_m = {30.0};
+    options->scenes.every_m = 6.6;
+    command
+        .add_option("--tracks", options->tracks,
+                    "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
+        ->required();
+    command
+        .add_option_function<std::string>(
+            "--objective",
+            [options](const std::string& name) {
+                for (const TuningObjective objective : {TuningObjective::accuracy, TuningObjective::iou,
+                                                        TuningObjective::success, TuningObjective::usable}) {
+                    if (to_string(objective) == name) options->evaluation.objective = objective;
+                }
+            },
+            "what to maximise, as a mean over scenes [accuracy]")
+        ->check(CLI::IsMember({"accuracy", "iou", "success", "usable"}));
+    add_nearest_option(command, options->evaluation.nearest, "cone-set size; all cones without it");
+    command
+        .add_option_function<std::size_t>(
+            "--context", [options](std::size_t count) { options->evaluation.context = count; },
+            "find the lane among this many nearest cones, then cut it to --nearest")
+        ->needs("--nearest")
+        ->check(CLI::Range(1, 100'000));
+    add_scene_options(command, options->scenes);
+    add_time_limit_option(command, options->evaluation.time_limit_ms);
+    command
+        .add_option("--most-nodes", options->evaluation.most_nodes,
+                    "of a scene's search; one that takes more counts as wrong")
+        ->check(CLI::Range(1, 1'000'000'000))
+        ->capture_default_str();
+    command
+        .add_option("--folds", options->tuner.folds,
+                    "groups of tracks, each of which is held out once; 1 holds none out")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        .add_option("--rounds", options->rounds,
+                    "of fitting the weights to the lane graphs found so far, before the search of each fit; "
+                    "not in the log")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    command
+        .add_option("--evaluations", options->tuner.evaluations,
+                    "parameters that the search evaluates in each fit, at most")
+        ->check(CLI::Range(0, 1'000'000))
+        ->capture_default_str();
+    command.add_option(
+        "--start", options->start,
+        "parameters to start from: a name or a file, as for --params elsewhere; without it the defaults");
+    command.add_flag("--shape", options->shape, "start with the costs of a lane's shape and tune them too");
+    add_threads_option(command, options->evaluation.threads, "scenes solved at a time");
+    add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
+    command.add_option(
+        "--log", options->log,
+        "*.jsonl, a line for each evaluation; with the same log a tuning that was stopped goes on");
+    command.callback([options] { run(*options); });
+}
+
+}  // namespace conelane::experiments

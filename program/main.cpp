@@ -1,0 +1,134 @@
+// The program `conelane`: one sub-command for each stage from tracks to tables.
+
+#include "evaluation/files/interruption.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+#include "solvers/registry.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+/// Messages end up in one line whatever a library put into them.
+std::string one_line(std::string text) {
+    for (char& character : text) {
+        if (character == '\n' || character == '\r') character = ' ';
+    }
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+/// A stream that was closed at the start would be given to the next file that is opened, which then holds the
+/// program's messages. It becomes one that refuses them.
+void open_standard_streams() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+        // The lowest free number is taken, which is this one.
+        if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor) std::abort();
+    }
+}
+
+/// The exit code, or that of a failure where the output did not reach its place.
+int flushed(int exit_code) {
+    std::cout.flush();
+    const bool failed_before = std::ferror(stdout) != 0 || !std::cout;
+    if (std::fflush(stdout) == 0 && !failed_before) return exit_code;
+    fmt::print(stderr, "conelane: standard output cannot be written to its end\n");
+    return kBadInput;
+}
+
+/// An unset variable of a script must not pass for an option that was not given.
+void refuse_empty_values(CLI::App& program) {
+    const CLI::Validator check([](const std::string& text) { return text.empty() ? "is empty" : ""; }, "");
+    for (CLI::Option* option : program.get_options()) {
+        // Transformations come before an option's own checks.
+        if (option->get_items_expected_max() > 0) option->transform(check);
+    }
+    for (CLI::App* command : program.get_subcommands({})) refuse_empty_values(*command);
+}
+
+std::string version() {
+    const conelane::Provenance origin = conelane::provenance();
+    std::string solvers;
+    for (const conelane::RldSolverEntry& solver : conelane::rld_solvers()) {
+        solvers += (solvers.empty() ? "" : ", ") + std::string(solver.name);
+    }
+    return fmt::format("conelane {}\ncommit {}\ncompiler {}\nsolvers {}", CONELANE_VERSION, origin.commit,
+                       origin.compiler, solvers);
+}
+
+int run(int argument_count, char** arguments) {
+    namespace experiments = conelane::experiments;
+    CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
+                     "conelane");
+    program.set_version_flag("--version", version());
+    program.require_subcommand(0, 1);  // none is said below, after a misspelt one
+    experiments::add_compare_command(program);
+    experiments::add_cross_validate_command(program);
+    experiments::add_report_command(program);
+    experiments::add_plot_command(program);
+    experiments::add_sweep_command(program);
+    experiments::add_merge_command(program);
+    experiments::add_tune_command(program);
+    experiments::add_tune_method_command(program);
+    experiments::add_scenes_command(program);
+    experiments::add_detect_command(program);
+    experiments::add_echo_command(program);
+    experiments::add_methods_command(program);
+    experiments::add_drive_command(program);
+    experiments::add_score_command(program);
+    experiments::add_solve_command(program);
+    experiments::add_solvers_command(program);
+    experiments::add_check_command(program);
+    experiments::add_cross_check_command(program);
+    experiments::add_certify_command(program);
+    experiments::add_exchange_commands(program);
+    experiments::add_instances_command(program);
+    experiments::add_study_command(program);
+    experiments::add_train_command(program);
+    refuse_empty_values(program);
+    // All options are read by then, and no command has begun.
+    program.parse_complete_callback([&program] {
+        for (CLI::App* command : program.get_subcommands()) experiments::refuse_lost_inputs(*command);
+    });
+    try {
+        program.parse(argument_count, arguments);
+    } catch (const CLI::Success& help) {
+        return program.exit(help);
+    } catch (const CLI::RuntimeError& failed) {
+        return failed.get_exit_code();
+    } catch (const CLI::ParseError& bad_option) {
+        fmt::print(stderr, "conelane: {}\n", one_line(bad_option.what()));
+        return kBadInput;
+    } catch (const std::exception& failure) {
+        if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` says it
+        fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
+        return kBadInput;
+    }
+    if (program.get_subcommands().empty()) {
+        fmt::print(stderr, "conelane: a subcommand is needed, see `conelane --help`\n");
+        return kBadInput;
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+    open_standard_streams();
+    conelane::end_cleanly_on_signals();
+    return flushed(run(argument_count, arguments));
+}

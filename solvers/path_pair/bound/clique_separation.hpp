@@ -1,0 +1,28 @@
+#pragma once
+
+#include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Finds cliques of incompatible edges that an averaged use x of the edges violates, sum of x > 1: greedily
+/// from each edge in use, largest x first, then extended to a maximal clique by edges of the residual graph.
+class CliqueSeparation {
+  public:
+    /// Number of cliques added to the pool, at most `most`; fewer once the clock has struck.
+    int separate(const ArcGraph& graph, std::span<const double> edge_use, std::span<const char> edge_alive,
+                 int most, CliquePool& pool, SearchClock& clock);
+
+  private:
+    std::vector<int> used_;
+    std::vector<int> clique_;
+    std::vector<std::uint64_t> common_;  ///< edges incompatible with all of the clique
+    std::vector<char> covered_;
+};
+
+}  // namespace conelane::path_pair

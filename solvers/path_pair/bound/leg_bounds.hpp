@@ -1,0 +1,51 @@
+#pragma once
+
+#include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Shortest walks over the residual arcs by label correcting,
+///     forward(b)  = reduced(b) + min(start(b), min over a before b of forward(a) + turn(a, b))
+///     backward(a) = min(end(a), min over b after a of turn(a, b) + reduced(b) + backward(b)),
+/// so forward(a) + backward(a) is the cheapest leg through a. A walk is a relaxed path: it may meet a cone
+/// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
+class LegBounds {
+  public:
+    /// With a clock, both end early once it has struck: the labels are of no use then.
+    void bind(SearchClock& clock) { clock_ = &clock; }
+
+    /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
+    /// gains from a cycle without end; `cycles` then holds the arcs of one or more, each followed by -1.
+    /// `before`, the tree of the walks, may come in as it was left by a call for similar costs: the labels
+    /// start from its walks. Precondition: where it has the graph's size, its entries are arcs of it or -1.
+    [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
+                               std::span<const double> start, std::vector<double>& label,
+                               std::vector<int>& before, std::vector<int>& cycles);
+
+    /// `end` by arc: the cost of ending with it. Arcs that `usable` does not mark are as if absent.
+    /// Precondition: no cycle of usable arcs has a negative cost.
+    void backward(const ResidualGraph& graph, std::span<const double> reduced, std::span<const double> end,
+                  std::span<const char> usable, std::vector<double>& label);
+
+  private:
+    void begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
+                       std::span<const double> start, std::vector<double>& label, std::vector<int>& before);
+    bool find_cycles(std::span<const int> before, std::vector<int>& cycles);
+
+    SearchClock* clock_ = nullptr;
+    std::vector<std::uint64_t> open_;  ///< arcs whose label changed
+    std::vector<int> colour_;
+    std::vector<int> walk_;
+};
+
+/// Raises the multipliers of each cycle's cones equally until the cycle costs nothing. A cycle that shares a
+/// cone with one before it is left as it is: it may no longer gain.
+void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::span<const double> reduced,
+                  std::vector<double>& cone_multiplier);
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,169 @@
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+
+#include <algorithm>
+
+namespace conelane::path_pair {
+
+void Decisions::reset(const ArcGraph& graph) {
+    edge_.assign(static_cast<std::size_t>(graph.edge_count()), 0);
+    edges_at_.assign(static_cast<std::size_t>(graph.cone_count()), 0);
+    end_.assign(static_cast<std::size_t>(graph.cone_count()), End::open);
+    visited_.assign(static_cast<std::size_t>(graph.cone_count()), 0);
+    always_ = 0;
+}
+
+void Decisions::require_edge(const ArcGraph& graph, int which, bool required) {
+    edge_[static_cast<std::size_t>(which)] = required ? 1 : 0;
+    const int step = required ? 1 : -1;
+    for (const int cone : {graph.tail(2 * which), graph.head(2 * which)}) {
+        edges_at_[static_cast<std::size_t>(cone)] += step;
+        visited_[static_cast<std::size_t>(cone)] += step;
+    }
+}
+
+void Decisions::decide_end(int cone, End decision) {
+    const int change = (decision == End::always ? 1 : 0) - (end(cone) == End::always ? 1 : 0);
+    always_ += change;
+    visited_[static_cast<std::size_t>(cone)] += change;
+    end_[static_cast<std::size_t>(cone)] = decision;
+}
+
+void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
+                          const Decisions& decisions, SearchClock& clock) {
+    graph_ = &graph;
+    system_ = &system;
+    cliques_ = &cliques;
+    decisions_ = &decisions;
+    clock_ = &clock;
+    bounds_.bind(clock);
+    for (Legs& legs : legs_) legs.before.clear();  // the search must not depend on the one before
+}
+
+bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
+    const int cone = residual.head[at(arc)];
+    return system_->kinds[at(kind)].end[at(cone)] != 0 && decisions_->end(cone) != Decisions::End::never &&
+           decisions_->may_be_last(cone, residual.edge(arc));
+}
+
+void PairRelaxation::reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers) {
+    reduce(*graph_, *cliques_, multipliers, residual, edge_multiplier_, reduced_);
+    for (int kind = 0; kind < system_->kind_count; ++kind) {
+        std::vector<double>& start = legs_[at(kind)].start;
+        start.resize(residual.arc.size());
+        for (int a = 0; a < residual.size(); ++a) {
+            const int cone = residual.tail[at(a)];
+            start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
+                                   decisions_->may_be_last(cone, residual.edge(a))
+                               ? multipliers.cone[at(cone)]
+                               : kUnreachable;
+        }
+    }
+}
+
+double PairRelaxation::evaluate(const ResidualGraph& residual, Multipliers& multipliers) {
+    reduce_arc_costs(residual, multipliers);
+    for (int kind = 0; kind < system_->kind_count; ++kind) {
+        Legs& legs = legs_[at(kind)];
+        const bool bounded =
+            bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycles_);
+        if (clock_->out_of_time(residual.out_arc.size())) return -kUnreachable;
+        if (bounded) {
+            pick_ends(residual, kind);
+            continue;
+        }
+        raise_cycles(residual, cycles_, reduced_, multipliers.cone);
+        reduce_arc_costs(residual, multipliers);
+        kind = -1;  // the multipliers rose: all kinds again
+    }
+    offset_ = multipliers.offset();
+    return combine() - offset_;
+}
+
+void PairRelaxation::pick_ends(const ResidualGraph& residual, int kind) {
+    Legs& legs = legs_[at(kind)];
+    legs.best.assign(static_cast<std::size_t>(graph_->cone_count()), kUnreachable);
+    legs.best_arc.assign(static_cast<std::size_t>(graph_->cone_count()), -1);
+    for (int a = 0; a < residual.size(); ++a) {
+        const std::size_t cone = at(residual.head[at(a)]);
+        if (legs.forward[at(a)] < legs.best[cone] && may_end(residual, kind, a)) {
+            legs.best[cone] = legs.forward[at(a)];
+            legs.best_arc[cone] = a;
+        }
+    }
+}
+
+double PairRelaxation::combine() {
+    double bound = kUnreachable;
+    ends_ = {-1, -1};
+    if (!system_->ends_are_partners) {
+        for (int kind = 0; kind < 2; ++kind) {
+            const std::vector<double>& best = legs_[at(other(kind))].best;
+            const auto least = std::ranges::min_element(best);
+            legs_[at(kind)].rest.assign(best.size(), *least);
+            ends_[at(other(kind))] = static_cast<int>(least - best.begin());
+        }
+        bound = legs_[0].rest[0] + legs_[1].rest[0];
+        return bound;
+    }
+    for (int kind = 0; kind < system_->kind_count; ++kind) {
+        Legs& legs = legs_[at(kind)];
+        const std::vector<double>& best = legs_[at(other(kind))].best;
+        legs.rest.assign(best.size(), kUnreachable);
+        for (int cone = 0; cone < graph_->cone_count(); ++cone) {
+            if (legs.best[at(cone)] == kUnreachable) continue;
+            double& rest = legs.rest[at(cone)];
+            int end = -1;
+            for (const int partner : graph_->partners(cone)) {
+                if (best[at(partner)] < rest && decisions_->ends_fit(cone, partner)) {
+                    rest = best[at(partner)];
+                    end = partner;
+                }
+            }
+            if (legs.best[at(cone)] + rest < bound) {
+                bound = legs.best[at(cone)] + rest;
+                ends_[at(kind)] = cone;
+                ends_[1 - at(kind)] = end;
+            }
+        }
+    }
+    return bound;
+}
+
+void PairRelaxation::evaluate_backward(const ResidualGraph& residual) {
+    reachable_.resize(residual.arc.size());
+    for (int kind = 0; kind < system_->kind_count; ++kind) {
+        Legs& legs = legs_[at(kind)];
+        legs.end.resize(residual.arc.size());
+        for (int a = 0; a < residual.size(); ++a) {
+            reachable_[at(a)] = legs.forward[at(a)] < kUnreachable ? 1 : 0;
+            legs.end[at(a)] = may_end(residual, kind, a) ? legs.rest[at(residual.head[at(a)])] : kUnreachable;
+        }
+        bounds_.backward(residual, reduced_, legs.end, reachable_, legs.backward);
+    }
+}
+
+void PairRelaxation::onward(const ResidualGraph& residual, int kind, std::vector<double>& label) {
+    const Legs& legs = legs_[at(kind)];
+    reachable_.resize(residual.arc.size());
+    onward_end_.resize(residual.arc.size());
+    for (int a = 0; a < residual.size(); ++a) {
+        reachable_[at(a)] = legs.forward[at(a)] < kUnreachable ? 1 : 0;
+        onward_end_[at(a)] = may_end(residual, kind, a) ? 0.0 : kUnreachable;
+    }
+    bounds_.backward(residual, reduced_, onward_end_, reachable_, label);
+}
+
+const std::array<std::vector<int>, 2>& PairRelaxation::walks(const ResidualGraph&) {
+    for (int leg = 0; leg < 2; ++leg) {
+        const Legs& legs = legs_[symmetric() ? 0 : at(leg)];
+        walks_[at(leg)].clear();
+        if (ends_[at(leg)] < 0) continue;
+        for (int a = legs.best_arc[at(ends_[at(leg)])]; a >= 0; a = legs.before[at(a)]) {
+            walks_[at(leg)].push_back(a);
+        }
+        std::ranges::reverse(walks_[at(leg)]);
+    }
+    return walks_;
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,139 @@
+#pragma once
+
+#include "solvers/path_pair/bound/leg_bounds.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/residual_graph.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Where the two legs begin and end. Kind 0 alone where both legs are alike.
+struct LegSystem {
+    struct Kind {
+        std::vector<char> start;  ///< by cone
+        std::vector<char> end;
+    };
+    std::array<Kind, 2> kinds;
+    int kind_count = 1;
+    bool ends_are_partners = true;  ///< the legs' ends must be partners (17); else any ends go together
+};
+
+/// What a branch of the search demands.
+class Decisions {
+  public:
+    void reset(const ArcGraph& graph);
+
+    /// Demands an edge, or takes the demand back.
+    void require_edge(const ArcGraph& graph, int which, bool required);
+    [[nodiscard]] bool edge_required(int edge) const { return edge_[static_cast<std::size_t>(edge)] != 0; }
+
+    /// Whether a far cone ends a leg.
+    enum class End : char { open, never, always };
+    void decide_end(int cone, End decision);
+    [[nodiscard]] End end(int cone) const { return end_[static_cast<std::size_t>(cone)]; }
+
+    /// Whether a leg may start or end at a cone by this edge: one required there stays inside no leg
+    /// otherwise.
+    [[nodiscard]] bool may_be_last(int cone, int by_edge) const {
+        const int count = edges_at_[static_cast<std::size_t>(cone)];
+        return count == 0 || (count == 1 && edge_required(by_edge));
+    }
+    /// Whether two cones may be the ends of the two legs, (17) apart.
+    [[nodiscard]] bool ends_fit(int cone, int other) const {
+        return (end(cone) == End::always ? 1 : 0) + (end(other) == End::always ? 1 : 0) == always_;
+    }
+    /// By cone, above 0 where every leg pair of the branch visits it.
+    [[nodiscard]] std::span<const int> visited() const { return visited_; }
+
+  private:
+    std::vector<char> edge_;
+    std::vector<int> edges_at_;
+    std::vector<End> end_;
+    std::vector<int> visited_;
+    int always_ = 0;
+};
+
+/// The Lagrangian relaxation of a pair of legs at given multipliers. With F_k(f) the reduced cost of the
+/// cheapest walk of kind k that ends at cone f, and h_k(f) the cheapest F of the other leg over the partners
+/// of f,
+///     bound = min over k, f of F_k(f) + h_k(f) - offset,
+/// and, with h as the cost of ending, forward(a) + backward(a) - offset bounds every pair that uses arc a.
+class PairRelaxation {
+  public:
+    void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
+              const Decisions& decisions, SearchClock& clock);
+
+    /// The bound. Where a walk gains from a cycle, the multipliers of the cycle's cones are first raised
+    /// until the cycle costs nothing. Minus infinity if stopped.
+    double evaluate(const ResidualGraph& residual, Multipliers& multipliers);
+
+    /// Backward labels for the multipliers last evaluated. Once the clock has struck, these and those below
+    /// are of no use.
+    void evaluate_backward(const ResidualGraph& residual);
+
+    /// By arc: the cheapest way on from it to an end, whatever the other leg does. Precondition: evaluated.
+    void onward(const ResidualGraph& residual, int kind, std::vector<double>& label);
+
+    /// Arcs of the legs that attain the bound.
+    [[nodiscard]] const std::array<std::vector<int>, 2>& walks(const ResidualGraph& residual);
+
+    [[nodiscard]] bool symmetric() const { return system_->kind_count == 1; }
+    [[nodiscard]] const LegSystem& system() const { return *system_; }
+    [[nodiscard]] int other(int kind) const { return symmetric() ? 0 : 1 - kind; }
+    [[nodiscard]] double offset() const { return offset_; }
+    [[nodiscard]] std::span<const double> reduced() const { return reduced_; }
+    [[nodiscard]] std::span<const double> start(int kind) const { return legs_[at(kind)].start; }
+    [[nodiscard]] std::span<const double> forward(int kind) const { return legs_[at(kind)].forward; }
+    [[nodiscard]] std::span<const double> backward(int kind) const { return legs_[at(kind)].backward; }
+    /// By arc: h of its head, kUnreachable where a leg must not end with it.
+    [[nodiscard]] std::span<const double> end(int kind) const { return legs_[at(kind)].end; }
+    /// F by cone.
+    [[nodiscard]] double best(int kind, int cone) const {
+        return legs_[at(kind)].best[static_cast<std::size_t>(cone)];
+    }
+    [[nodiscard]] bool ends_fit(int cone, int other) const {
+        return !system_->ends_are_partners ||
+               (graph_->are_partners(cone, other) && decisions_->ends_fit(cone, other));
+    }
+    /// The cones at which the legs of the bound end; -1 without legs.
+    [[nodiscard]] const std::array<int, 2>& ends() const { return ends_; }
+    [[nodiscard]] bool may_end(const ResidualGraph& residual, int kind, int arc) const;
+
+  private:
+    struct Legs {
+        std::vector<double> start;
+        std::vector<double> forward;
+        std::vector<int> before;
+        std::vector<double> backward;
+        std::vector<double> end;
+        std::vector<double> best;   ///< F by cone
+        std::vector<int> best_arc;  ///< that attains it
+        std::vector<double> rest;   ///< h by cone
+    };
+    void reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers);
+    double combine();
+    void pick_ends(const ResidualGraph& residual, int kind);
+
+    const ArcGraph* graph_ = nullptr;
+    const LegSystem* system_ = nullptr;
+    const CliquePool* cliques_ = nullptr;
+    const Decisions* decisions_ = nullptr;
+    SearchClock* clock_ = nullptr;
+    LegBounds bounds_;
+    std::array<Legs, 2> legs_;
+    std::vector<double> reduced_;
+    std::vector<double> edge_multiplier_;
+    std::vector<int> cycles_;
+    std::vector<char> reachable_;
+    std::vector<double> onward_end_;
+    std::array<std::vector<int>, 2> walks_;
+    std::array<int, 2> ends_{-1, -1};
+    double offset_ = 0.0;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,527 @@
+#include "solvers/path_pair/frontier/front_graph.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace conelane::path_pair {
+namespace {
+
+// Smaller gains are rounding.
+constexpr double kGain = 1e-12;
+constexpr int kNotOpen = -2;
+constexpr std::size_t kFewSlots = 1024;
+constexpr int kFrontsPerClock = 256;
+/// To extend a front takes as long as to look at so many.
+constexpr int kFrontsPerExtension = 4;
+/// So many values are written or copied between two looks at the clock.
+constexpr std::size_t kValuesPerClock = 16384;
+/// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
+/// nothing.
+constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
+constexpr std::size_t kStepsPerFront = 4;
+constexpr std::size_t kMostFirstFronts = 1'000'000;
+
+}  // namespace
+
+void FrontGraph::Arrays::clear() {
+    fronts.clear();
+    last.clear();
+    begin.clear();
+    end.clear();
+    steps.clear();
+    forward.clear();
+    onward.clear();
+}
+
+std::uint64_t FrontGraph::key(const Front& front) {
+    return (static_cast<std::uint64_t>(front.moving) << 32) +
+           (static_cast<std::uint64_t>(front.waiting) << 2) + (front.moving_kind == 1 ? 2U : 0U) +
+           (front.ended ? 1U : 0U);
+}
+
+void FrontGraph::Arrays::reserve(std::size_t count) {
+    fronts.reserve(count);
+    last.reserve(count);
+    begin.reserve(count);
+    end.reserve(count);
+    steps.reserve(kStepsPerFront * count);
+    forward.reserve(count);
+    onward.reserve(count);
+}
+
+bool FrontGraph::out_of_time(int fronts) {
+    if ((until_clock_ -= fronts) < 0) {
+        until_clock_ = kFrontsPerClock;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
+template <typename T>
+bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
+    values.clear();
+    values.reserve(count);
+    while (values.size() < count) {
+        // Most graphs are small: then this call takes less time than a look at the clock.
+        is_stopped_ = is_stopped_ || (count > kFewSlots && (*stopped_)());
+        if (is_stopped_) return false;
+        values.resize(std::min(count, values.size() + kValuesPerClock), value);
+    }
+    return true;
+}
+
+template <typename T>
+bool FrontGraph::make_room(std::vector<T>& values, std::size_t more) {
+    if (values.size() + more <= values.capacity()) return true;
+    std::vector<T> grown;
+    grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
+    while (grown.size() < values.size()) {
+        is_stopped_ = is_stopped_ || (*stopped_)();
+        if (is_stopped_) return false;
+        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(grown.size());
+        const std::size_t count = std::min(values.size() - grown.size(), kValuesPerClock);
+        grown.insert(grown.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+    }
+    values = std::move(grown);
+    return true;
+}
+
+bool FrontGraph::fill_dominated(std::size_t words) {
+    dominated_.reset(words);
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return false;
+        std::fill_n(dominated_.add(), words, ~std::uint64_t{0});
+    }
+    return true;
+}
+
+void FrontGraph::forget_fronts() {
+    now_.clear();
+    starts_.clear();
+}
+
+double FrontGraph::start_cost(int f) const {
+    const Front& start = front(f);
+    const int kind = start.moving_kind;
+    const int other = relaxation_->other(kind);
+    return relaxation_->start(kind)[at(start.moving)] + relaxation_->reduced()[at(start.moving)] +
+           relaxation_->start(other)[at(start.waiting)] + relaxation_->reduced()[at(start.waiting)];
+}
+
+bool FrontGraph::grow_table() {
+    if (!fill(table_, std::max(kFewSlots, table_.size() * 2), -1)) return false;
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return false;
+        std::size_t slot = (key(front(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
+        while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
+        table_[slot] = f;
+    }
+    return true;
+}
+
+/// The front's number, a new one where it has none. Any number once the time is up: all are dropped then.
+int FrontGraph::number(const Front& wanted) {
+    if (2 * (now_.fronts.size() + 1) > table_.size() && !grow_table()) return 0;
+    // Fibonacci hashing: the upper half depends on all bits.
+    std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
+    for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
+        if (front(table_[slot]) == wanted) return table_[slot];
+    }
+    if (!make_room(now_.fronts, 1) || !make_room(now_.forward, 1) || !make_room(now_.begin, 1) ||
+        !make_room(now_.end, 1) || !make_room(next_open_, 1)) {
+        return 0;
+    }
+    table_[slot] = size();
+    now_.fronts.push_back(wanted);
+    now_.forward.push_back(kUnreachable);
+    now_.begin.push_back(0);
+    now_.end.push_back(0);  // no steps yet: the first one is at 1 or later
+    next_open_.push_back(kNotOpen);
+    if (edges_ != nullptr) std::fill_n(dominated_.add(), edges_->words(), ~std::uint64_t{0});
+    return size() - 1;
+}
+
+/// The first fronts below the limit.
+void FrontGraph::begin(double limit) {
+    const ResidualGraph& r = *residual_;
+    const bool symmetric = relaxation_->symmetric();
+    const int second = relaxation_->other(0);
+    const auto cost = [&](int kind, int a) {
+        return relaxation_->start(kind)[at(a)] + relaxation_->reduced()[at(a)];
+    };
+    stack_.clear();  // arcs that a leg of the second kind may start with
+    for (int b = 0; b < r.size(); ++b) {
+        if (cost(second, b) < kUnreachable) stack_.push_back(b);
+    }
+    for (int a = 0; a < r.size(); ++a) {
+        if (cost(0, a) == kUnreachable) continue;
+        if (now_.fronts.size() > kMostFirstFronts || out_of_time()) break;
+        for (const int b : stack_) {
+            const double start = cost(0, a) + cost(second, b);
+            if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
+            if ((symmetric && b <= a) || r.head[at(a)] == r.head[at(b)] ||
+                !dominated_of_arcs_->may_pair(0, a, second, b, false)) {
+                continue;
+            }
+            const int f =
+                number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
+            now_.forward[at(f)] = start;
+            starts_.push_back(f);
+            if (edges_ != nullptr) {
+                intersect_with_union(dominated_.row(at(f)), edges_->lost_after(a), edges_->lost_after(b),
+                                     edges_->words());
+            }
+            open(f);
+        }
+    }
+    stack_.clear();
+}
+
+FrontGraph::Front FrontGraph::after(const Front& front, int arc, std::uint8_t other) {
+    if (arc < 0) return {front.waiting, front.moving, other, true};
+    if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
+    return {front.waiting, arc, other, false};
+}
+
+/// All steps of a front, their next fronts still open. None once the time is up.
+void FrontGraph::add_steps(int f, double limit) {
+    const ResidualGraph& r = *residual_;
+    const Front here = front(f);
+    const int kind = here.moving_kind;
+    const int other = relaxation_->other(kind);
+    const std::span<const double> reduced = relaxation_->reduced();
+    const std::span<const double> onward = leg_onward_[at(kind)];
+    const double forward = relaxation_->forward(kind)[at(here.moving)];
+    const double waiting = relaxation_->forward(other)[at(here.waiting)] +
+                           (here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)]);
+    const int waiting_cone = r.head[at(here.waiting)];
+    const int ways = r.out_start[at(here.moving) + 1] - r.out_start[at(here.moving)];
+    if (!make_room(now_.steps, at(ways) + 1)) return;
+    now_.begin[at(f)] = now_.steps.size();
+    for (int p = r.out_start[at(here.moving)]; p < r.out_start[at(here.moving) + 1]; ++p) {
+        const int next = r.out_arc[at(p)];
+        const double moving = forward + r.out_cost[at(p)] + reduced[at(next)] + onward[at(next)];
+        if (!(moving + waiting < limit) || r.head[at(next)] == waiting_cone ||
+            !dominated_of_arcs_->may_follow(kind, here.moving, next) ||
+            !dominated_of_arcs_->may_pair(kind, next, other, here.waiting, here.ended)) {
+            continue;
+        }
+        now_.steps.push_back({-1, next, r.out_cost[at(p)]});
+    }
+    if (!here.ended && relaxation_->may_end(r, kind, here.moving)) now_.steps.push_back({-1, -1, 0.0});
+    now_.end[at(f)] = now_.steps.size();
+}
+
+bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
+                       std::size_t most_fronts, const EdgeSets* edges) {
+    residual_ = &residual;
+    edges_ = edges;
+    dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
+    if (edges_ != nullptr) nothing_.assign(edges_->words(), 0);
+    dominated_of_arcs_ = &dominated;
+    for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
+        relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
+    }
+    now_.clear();
+    now_.reserve(std::min(kReservedFronts, most_fronts));
+    next_open_.clear();
+    next_open_.reserve(std::min(kReservedFronts, most_fronts));
+    now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
+    starts_.clear();
+    open_at_.assign(residual.arc.size(), -1);
+    open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
+    moving_ = 0;
+    table_.assign(kFewSlots, -1);
+    until_clock_ = 0;
+    is_stopped_ = false;
+    begin(limit);
+    if (is_stopped_ || now_.fronts.size() > kMostFirstFronts) {
+        stack_.clear();
+        return false;
+    }
+    // Arc by arc: steps lead to fronts whose moving arc mostly comes later.
+    for (again_ = true; again_;) {
+        again_ = false;
+        for (std::size_t word = 0; word < open_arcs_.size(); ++word) {
+            while (open_arcs_[word] != 0) {
+                moving_ = static_cast<int>(word * 64) + std::countr_zero(open_arcs_[word]);
+                open_arcs_[word] &= open_arcs_[word] - 1;
+                for (int f = std::exchange(open_at_[at(moving_)], -1); f >= 0;) {
+                    const int next = std::exchange(next_open_[at(f)], kNotOpen);
+                    if (out_of_time(kFrontsPerExtension) || !extend(f, limit, most_fronts)) return false;
+                    f = next;
+                }
+            }
+        }
+    }
+    order();
+    return !is_stopped_;
+}
+
+void FrontGraph::open(int f) {
+    if (next_open_[at(f)] != kNotOpen) return;
+    const std::size_t arc = at(front(f).moving);
+    next_open_[at(f)] = std::exchange(open_at_[arc], f);
+    open_arcs_[arc / 64] |= std::uint64_t{1} << (arc % 64);
+    again_ |= arc / 64 < at(moving_) / 64;
+}
+
+/// Every walk up to a front loses these edges: one more walk comes to `to`. True where the set shrinks.
+bool FrontGraph::narrow_dominated(int from, int to, int arc) {
+    if (edges_ == nullptr) return false;
+    const std::size_t words = edges_->words();
+    const std::uint64_t* const own = arc < 0 ? nothing_.data() : edges_->lost_after(arc);
+    return intersect_with_union(dominated_.row(at(to)), dominated_.row(at(from)), own, words);
+}
+
+/// Lowers the forward costs of the fronts after this one. False where there are too many.
+bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
+    const Front here = front(f);
+    const int other = relaxation_->other(here.moving_kind);
+    const std::span<const double> reduced = relaxation_->reduced();
+    const std::span<const double> leg_onward = leg_onward_[at(here.moving_kind)];
+    const double forward = now_.forward[at(f)];
+    const double waiting = here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)];
+    if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) return true;
+    if (now_.end[at(f)] == 0) add_steps(f, limit);
+    for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+        const auto [known, arc, turn] = now_.steps[p];
+        if (edges_ != nullptr && arc >= 0 && EdgeSets::contains(dominated_.row(at(f)), edges_->number(arc))) {
+            continue;
+        }
+        const double label = forward + (turn + (arc < 0 ? 0.0 : reduced[at(arc)]));
+        const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
+        if (!(label + on + waiting < limit)) continue;
+        int to = known;
+        if (to < 0) {
+            now_.steps[p].to = to = number(after(here, arc, static_cast<std::uint8_t>(other)));
+            if (now_.fronts.size() > most_fronts) return false;
+        }
+        const bool narrowed = narrow_dominated(f, to, arc);
+        const bool cheaper = label < now_.forward[at(to)] - kGain;
+        if (cheaper) now_.forward[at(to)] = label;
+        if (cheaper || narrowed) open(to);
+    }
+    return true;
+}
+
+/// Renumbers the fronts that have steps, or are last, in reversed finishing order of a depth-first search:
+/// nearly every step leads to a later front.
+void FrontGraph::order() {
+    if (!order_fronts()) return forget_fronts();
+    const ResidualGraph& r = *residual_;
+    for (const Front& f : now_.fronts) {
+        if (out_of_time()) return forget_fronts();
+        const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
+                          relaxation_->ends_fit(r.head[at(f.moving)], r.head[at(f.waiting)]);
+        now_.last.push_back(last ? 1 : 0);
+    }
+    if (!fill(now_.onward, now_.fronts.size(), kUnreachable) ||
+        !fill(keep_step_, now_.steps.size(), char{1})) {
+        return forget_fronts();
+    }
+    keep(order_);
+}
+
+bool FrontGraph::order_fronts() {
+    order_.clear();
+    order_.reserve(now_.fronts.size());
+    if (!fill(index_, now_.fronts.size(), -1) || !fill(next_step_, now_.fronts.size(), std::size_t{0})) {
+        return false;
+    }
+    const auto enter = [&](int f) {
+        if (f < 0 || now_.end[at(f)] == 0 || index_[at(f)] >= 0) return;
+        index_[at(f)] = 0;
+        next_step_[at(f)] = now_.begin[at(f)];
+        stack_.push_back(f);
+    };
+    for (const int start : starts_) {
+        enter(start);
+        while (!stack_.empty()) {
+            if (out_of_time()) {
+                stack_.clear();
+                return false;
+            }
+            const int f = stack_.back();
+            if (next_step_[at(f)] == now_.end[at(f)]) {
+                order_.push_back(f);
+                stack_.pop_back();
+            } else {
+                enter(now_.steps[next_step_[at(f)]++].to);
+            }
+        }
+    }
+    std::ranges::reverse(order_);
+    return true;
+}
+
+/// Renumbers: what is not in `order`, and steps that keep_step_ does not mark, are dropped.
+void FrontGraph::keep(std::span<const int> order) {
+    std::swap(now_, old_);
+    now_.clear();
+    now_.reserve(order.size());
+    now_.steps.reserve(old_.steps.size());
+    if (!fill(index_, old_.fronts.size(), -1)) return forget_fronts();
+    for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
+    for (const int f : order) {
+        if (out_of_time()) return forget_fronts();
+        now_.fronts.push_back(old_.fronts[at(f)]);
+        now_.last.push_back(old_.last[at(f)]);
+        now_.forward.push_back(old_.forward[at(f)]);
+        now_.onward.push_back(old_.onward[at(f)]);
+        now_.begin.push_back(now_.steps.size());
+        for (std::size_t p = old_.begin[at(f)]; p < old_.end[at(f)]; ++p) {
+            const Step& step = old_.steps[p];
+            if (keep_step_[p] == 0 || step.to < 0 || index_[at(step.to)] < 0) continue;
+            now_.steps.push_back({index_[at(step.to)], step.arc, step.turn});
+        }
+        now_.end.push_back(now_.steps.size());
+    }
+    std::size_t kept = 0;
+    for (const int f : starts_) {
+        if (index_[at(f)] >= 0) starts_[kept++] = index_[at(f)];
+    }
+    starts_.resize(kept);
+}
+
+double FrontGraph::find_onward(double limit) {
+    if (!fill(now_.onward, now_.fronts.size(), kUnreachable)) {
+        forget_fronts();
+        return -kUnreachable;
+    }
+    changed_.assign(now_.fronts.size(), 0);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return -kUnreachable;
+            const std::span<const Step> on = steps(f);
+            const auto changed = [&](const Step& step) { return changed_[at(step.to)] >= sweep - 1; };
+            if (sweep > 1 && std::none_of(on.begin(), on.end(), changed)) continue;
+            double value = is_last(f) ? 0.0 : kUnreachable;
+            for (const Step& step : on) value = std::min(value, cost(step) + onward(step.to));
+            if (!(value < onward(f) - kGain) || !(value + now_.forward[at(f)] < limit)) continue;
+            now_.onward[at(f)] = value;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+    double bound = kUnreachable;
+    for (const int f : starts_) bound = std::min(bound, start_cost(f) + now_.onward[at(f)]);
+    return bound;
+}
+
+void FrontGraph::find_forward() {
+    if (!fill(now_.forward, now_.fronts.size(), kUnreachable)) return forget_fronts();
+    changed_.assign(now_.fronts.size(), 0);
+    for (const int f : starts_) now_.forward[at(f)] = start_cost(f);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
+            const double value = now_.forward[at(f)];
+            if (value == kUnreachable || (sweep > 1 && changed_[at(f)] < sweep - 1)) continue;
+            for (const Step& step : steps(f)) {
+                const double label = value + cost(step);
+                if (!(label < now_.forward[at(step.to)] - kGain)) continue;
+                now_.forward[at(step.to)] = label;
+                changed_[at(step.to)] = sweep;
+                again |= step.to <= f;
+            }
+        }
+    }
+}
+
+void FrontGraph::drop(double limit) {
+    order_.clear();
+    if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_fronts();
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return forget_fronts();
+        const double forward = now_.forward[at(f)];
+        if (!(forward + onward(f) < limit)) continue;
+        order_.push_back(f);
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            const Step& step = now_.steps[p];
+            if (forward + cost(step) + onward(step.to) < limit) keep_step_[p] = 1;
+        }
+    }
+    keep(order_);
+}
+
+void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
+    const std::size_t words = edges.words();
+    const auto row = [&](int f) { return dominated_.row(at(f)); };
+    const auto is_dominated = [&](int f, int arc) {
+        return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
+    };
+    nothing_.assign(words, 0);
+    const std::uint64_t* const nothing = nothing_.data();
+    if (!fill(keep_step_, now_.steps.size(), char{1})) return;
+    changed_.assign(now_.fronts.size(), 0);
+
+    // Every walk from a first front up to this one has lost these edges.
+    if (!fill_dominated(words)) return;
+    for (const int f : starts_) {
+        intersect_with_union(row(f), edges.lost_after(front(f).moving), edges.lost_after(front(f).waiting),
+                             words);
+    }
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = 0; f < size(); ++f) {
+            if (out_of_time()) return;
+            if (sweep > 1 && changed_[at(f)] < sweep - 1) continue;
+            for (const Step& step : steps(f)) {
+                if (is_dominated(f, step.arc)) continue;
+                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
+                if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
+                changed_[at(step.to)] = sweep;
+                again |= step.to <= f;
+            }
+        }
+    }
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return;
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
+        }
+    }
+
+    // Every walk from this front on to a last one excludes these edges.
+    if (!fill_dominated(words)) return;
+    changed_.assign(now_.fronts.size(), 0);
+    again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = size(); f-- > 0;) {
+            if (out_of_time()) return;
+            bool changed = false;
+            if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
+            for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+                const Step& step = now_.steps[p];
+                if (keep_step_[p] == 0 || changed_[at(step.to)] < sweep - 1 ||
+                    is_dominated(step.to, step.arc)) {
+                    continue;
+                }
+                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_before(step.arc);
+                changed |= intersect_with_union(row(f), row(step.to), own, words);
+            }
+            if (!changed) continue;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+    order_.clear();
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return;
+        order_.push_back(f);
+        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
+        }
+    }
+    keep(order_);
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,150 @@
+#pragma once
+
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/frontier/dominated_edges.hpp"
+#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/block_rows.hpp"
+#include "solvers/path_pair/graph/edge_sets.hpp"
+#include "solvers/path_pair/graph/residual_graph.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Both legs abreast as one walk. A front is the pair of their last arcs. Of the two, the one that stands
+/// earlier in the residual graph moves: its leg goes on or ends, and once it has ended the other one moves.
+/// So every pair of legs is exactly one walk from front to front, and with reduced costs
+///     forward(f)  = cheapest walk from a first front to f,
+///     onward(f)   = cheapest walk on from f to a last one, whose ends are partners,
+/// forward(f) + onward(f) - offset bounds every pair that passes f. Fronts and steps that reach a limit are
+/// dropped, and so are steps by a dominated edge: one that every walk up to the front has lost, or that every
+/// walk on excludes.
+class FrontGraph {
+  public:
+    struct Front {
+        int moving;   ///< last arc of the leg that moves, in the residual graph, ...
+        int waiting;  ///< ... and of the other one, which waits or has ended
+        std::uint8_t moving_kind;
+        bool ended;
+        bool operator==(const Front&) const = default;
+    };
+    struct Step {
+        int to;       ///< the next front
+        int arc;      ///< by which; -1 where the moving leg ends
+        double turn;  ///< cost of the turn into it
+    };
+
+    /// Once `stopped` says so, everything below ends early and what it found is of no use; where the fronts
+    /// were being renumbered, none is left.
+    void bind(PairRelaxation& relaxation, const std::function<bool()>& stopped) {
+        relaxation_ = &relaxation;
+        stopped_ = &stopped;
+    }
+
+    /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
+    /// forward(f). With `edges`, steps by edges that every walk up to their front has lost are left out on
+    /// the way. False where there are more than `most_fronts`, or stopped. Precondition: the relaxation was
+    /// evaluated on the residual graph. `limit`: with offset, here and below.
+    bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
+               std::size_t most_fronts, const EdgeSets* edges = nullptr);
+
+    /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
+    double find_onward(double limit);
+    /// forward(f) anew, after steps were dropped.
+    void find_forward();
+    /// Precondition: forward and onward costs are found. They stay.
+    void drop(double limit);
+    /// Drops the steps by dominated edges of fronts, which the same intersections give as for arcs. The
+    /// forward and onward costs then no longer hold.
+    void drop_dominated_edges(const EdgeSets& edges);
+
+    [[nodiscard]] int size() const { return static_cast<int>(now_.fronts.size()); }
+    [[nodiscard]] const ResidualGraph& residual() const { return *residual_; }
+    [[nodiscard]] const Front& front(int f) const { return now_.fronts[at(f)]; }
+    [[nodiscard]] std::span<const int> starts() const { return starts_; }
+    [[nodiscard]] bool is_last(int f) const { return now_.last[at(f)] != 0; }
+    [[nodiscard]] std::span<const Step> steps(int f) const {
+        return {now_.steps.data() + now_.begin[at(f)], now_.steps.data() + now_.end[at(f)]};
+    }
+    [[nodiscard]] double onward(int f) const { return now_.onward[at(f)]; }
+    /// Reduced cost of the two arcs of a first front.
+    [[nodiscard]] double start_cost(int f) const;
+    [[nodiscard]] double cost(const Step& step) const {
+        return step.turn + (step.arc < 0 ? 0.0 : relaxation_->reduced()[at(step.arc)]);
+    }
+
+  private:
+    struct Arrays {
+        std::vector<Front> fronts;
+        std::vector<char> last;
+        std::vector<std::size_t> begin;  ///< of a front's steps
+        std::vector<std::size_t> end;
+        std::vector<Step> steps;
+        std::vector<double> forward;
+        std::vector<double> onward;
+
+        void clear();
+        void reserve(std::size_t count);  ///< Precondition: cleared.
+    };
+    static std::uint64_t key(const Front& front);
+    /// `fronts`: how many are looked at until the next call.
+    bool out_of_time(int fronts = 1);
+    /// So many times the value; false, and fewer, where the time is up.
+    template <typename T>
+    bool fill(std::vector<T>& values, std::size_t count, T value);
+    /// Room for so many more values. A vector that grows by itself copies all of them in one go, which takes
+    /// milliseconds. False, and no more room, where the time is up.
+    template <typename T>
+    bool make_room(std::vector<T>& values, std::size_t more);
+    /// The same rows of the set of all edges.
+    bool fill_dominated(std::size_t words);
+    void forget_fronts();
+
+    void begin(double limit);
+    void open(int f);
+    bool narrow_dominated(int from, int to, int arc);
+    bool extend(int f, double limit, std::size_t most_fronts);
+    void add_steps(int f, double limit);
+    /// `other`: the kind of the leg that waits.
+    [[nodiscard]] static Front after(const Front& front, int arc, std::uint8_t other);
+    int number(const Front& wanted);
+    bool grow_table();  ///< false, and no table, where the time is up
+    void order();
+    bool order_fronts();
+    void keep(std::span<const int> order);
+
+    PairRelaxation* relaxation_ = nullptr;
+    const std::function<bool()>* stopped_ = nullptr;
+    int until_clock_ = 0;
+    bool is_stopped_ = false;
+    const ResidualGraph* residual_ = nullptr;
+    const DominatedEdges* dominated_of_arcs_ = nullptr;
+    const EdgeSets* edges_ = nullptr;                ///< of the build, if it looks for dominated edges
+    std::array<std::vector<double>, 2> leg_onward_;  ///< by kind and arc
+    Arrays now_;
+    std::vector<int> starts_;
+
+    // Scratch.
+    Arrays old_;
+    std::vector<int> table_;      ///< front by slot, linear probing
+    std::vector<int> open_at_;    ///< by moving arc, the first of its open fronts
+    std::vector<int> next_open_;  ///< by front
+    std::vector<std::uint64_t> open_arcs_;
+    int moving_ = 0;      ///< the arc whose fronts are extended
+    bool again_ = false;  ///< an arc before it has open fronts
+    std::vector<int> index_;
+    std::vector<int> order_;
+    std::vector<int> stack_;
+    std::vector<std::size_t> next_step_;
+    std::vector<char> keep_step_;         ///< of old_.steps
+    std::vector<int> changed_;            ///< by front, the sweep that changed it last
+    BlockRows<std::uint64_t> dominated_;  ///< by front
+    std::vector<std::uint64_t> nothing_;  ///< the empty set
+};
+
+}  // namespace conelane::path_pair

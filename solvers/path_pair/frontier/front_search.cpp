@@ -1,0 +1,196 @@
+#include "solvers/path_pair/frontier/front_search.hpp"
+
+#include "solvers/path_pair/graph/at.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace conelane::path_pair {
+namespace {
+
+// Sets of edges that are looked at between two looks at the clock.
+constexpr std::size_t kWorkPerClock = 10000;
+constexpr std::size_t kWorkPerLabel = 20;  ///< its detours, along its arcs
+
+}  // namespace
+
+void FrontSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+    graph_ = &graph;
+    relaxation_ = &relaxation;
+    incumbent_ = &incumbent;
+}
+
+double FrontSearch::limit() const {
+    return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
+}
+
+bool FrontSearch::out_of_time(std::size_t work) {
+    work_ += work;
+    if (work_ >= kWorkPerClock) {
+        work_ = 0;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
+void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
+    const std::uint64_t* const more = edges_->lost_after(arc);
+    for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
+    const int edge = fronts_->residual().edge(arc);
+    label.cost += graph_->cost(edge);
+    if (graph_->along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
+}
+
+void FrontSearch::wait(Label label) {
+    const std::size_t front = at(label.front);
+    label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
+    open_[front / 64] |= std::uint64_t{1} << (front % 64);
+    *labels_.add() = label;
+}
+
+void FrontSearch::begin() {
+    for (const int f : fronts_->starts()) {
+        if (out_of_time(1)) return;
+        const double reduced = fronts_->start_cost(f);
+        if (!(reduced + fronts_->onward(f) < limit())) continue;
+        Label label{-1, -1, f, 0, -1, 0.0, reduced};
+        std::uint64_t* const lost = lost_.add();
+        std::fill_n(lost, words_, std::uint64_t{0});
+        take(fronts_->front(f).moving, label, lost);
+        take(fronts_->front(f).waiting, label, lost);
+        wait(label);
+    }
+}
+
+FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges,
+                                      const OnwardTables& tables, const Limits& limits,
+                                      const std::function<bool()>& stopped) {
+    fronts_ = &fronts;
+    edges_ = &edges;
+    tables_ = &tables;
+    limits_ = limits;
+    words_ = edges.words();
+    labels_.reset(1);
+    lost_.reset(words_);
+    waiting_.assign(at(fronts.size()), -1);
+    open_.assign((at(fronts.size()) + 63) / 64, 0);
+    wanted_.resize(words_);
+    stopped_ = &stopped;
+    work_ = kWorkPerClock;
+    is_stopped_ = false;
+    is_narrow_ = false;
+    begin();
+    if (is_stopped_) return Outcome::stopped;
+    again_ = true;
+    while (again_) {
+        again_ = false;
+        for (std::size_t word = 0; word < open_.size(); ++word) {
+            while (open_[word] != 0) {
+                const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
+                open_[word] &= open_[word] - 1;
+                settle(f);
+                if (is_stopped_) return Outcome::stopped;
+                if (labels_.size() > limits.most_labels) return Outcome::stopped;
+            }
+        }
+    }
+    return is_narrow_ ? Outcome::narrow : Outcome::exhausted;
+}
+
+/// Expands the labels that wait at a front.
+void FrontSearch::settle(int f) {
+    here_.clear();
+    for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
+    std::sort(here_.begin(), here_.end(), [&](int a, int b) { return label_at(a).cost < label_at(b).cost; });
+    kept_along_heading_.clear();
+    kept_lost_.clear();
+    any_lost_.assign(words_, 0);
+    for (const int l : here_) {
+        const Label& label = label_at(l);
+        if (!(label.reduced + fronts_->onward(f) < limit())) continue;
+        if (out_of_time(kWorkPerLabel + kept_along_heading_.size())) return;
+        const int most = tables_->quanta_below(limit() - label.reduced - fronts_->onward(f));
+        if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
+        if (dominated(label, lost(l), most)) continue;
+        if (kept_along_heading_.size() >= limits_.width) {
+            is_narrow_ = true;
+            return;
+        }
+        kept_along_heading_.push_back(label.along_heading);
+        kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
+        for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
+        if (fronts_->is_last(f) && label.along_heading >= 2 &&
+            label.cost < incumbent_->cutoff() - limits_.tolerance) {
+            offer(l);
+        }
+        expand(l);
+    }
+}
+
+/// Whether every walk on that uses none of the edges lost by some arc of the label has a detour above `most`.
+bool FrontSearch::detour_reaches_limit(int l, int most) const {
+    const int f = label_at(l).front;
+    for (;; l = label_at(l).before) {
+        const Label& label = label_at(l);
+        if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
+        if (label.before >= 0) continue;
+        const FrontGraph::Front& start = fronts_->front(label.front);
+        return tables_->detour(f, start.moving) > most || tables_->detour(f, start.waiting) > most;
+    }
+}
+
+/// By one that is kept, which costs no more. What completes this label below the limit uses no edge whose
+/// regret is above `most`.
+bool FrontSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
+    const Quanta* regret = tables_->regrets(label.front);
+    for (std::size_t w = 0; w < words_; ++w, regret += 64) {
+        wanted_[w] = any_lost_[w] & ~lost[w];
+        for (std::uint64_t bits = wanted_[w]; bits != 0; bits &= bits - 1) {
+            if (regret[std::countr_zero(bits)] > most) wanted_[w] ^= bits & (~bits + 1);
+        }
+    }
+    const std::uint64_t* rival = kept_lost_.data();
+    for (const int along_heading : kept_along_heading_) {
+        std::uint64_t missing = 0;
+        for (std::size_t w = 0; w < words_; ++w) missing |= rival[w] & wanted_[w];
+        if (missing == 0 && along_heading >= label.along_heading) return true;
+        rival += words_;
+    }
+    return false;
+}
+
+void FrontSearch::expand(int l) {
+    const Label label = label_at(l);
+    for (const FrontGraph::Step& step : fronts_->steps(label.front)) {
+        const double reduced = label.reduced + fronts_->cost(step);
+        if (!(reduced + fronts_->onward(step.to) < limit())) continue;
+        if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
+        Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
+        std::uint64_t* const lost_on = lost_.add();
+        std::copy_n(lost(l), words_, lost_on);
+        if (step.arc >= 0) take(step.arc, on, lost_on);
+        wait(on);
+        again_ |= step.to / 64 < label.front / 64;
+    }
+}
+
+void FrontSearch::offer(int label) {
+    const ResidualGraph& residual = fronts_->residual();
+    chain_.clear();
+    for (int l = label; l >= 0; l = label_at(l).before) chain_.push_back(l);
+    std::ranges::reverse(chain_);
+    const FrontGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
+    std::array<int, 2> last{start.moving, start.waiting};
+    for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[at(last[leg])]);
+    for (std::size_t k = 1; k < chain_.size(); ++k) {
+        const int arc = label_at(chain_[k]).arc;
+        if (arc < 0) continue;
+        const std::size_t leg = last[0] == fronts_->front(label_at(chain_[k - 1]).front).moving ? 0 : 1;
+        last[leg] = arc;
+        legs_[leg].push_back(residual.arc[at(arc)]);
+    }
+    incumbent_->offer(legs_[0], legs_[1]);
+}
+
+}  // namespace conelane::path_pair

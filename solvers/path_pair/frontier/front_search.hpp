@@ -1,0 +1,105 @@
+#pragma once
+
+#include "solvers/path_pair/frontier/front_graph.hpp"
+#include "solvers/path_pair/frontier/onward_tables.hpp"
+#include "solvers/path_pair/graph/block_rows.hpp"
+#include "solvers/path_pair/graph/edge_sets.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Pairs of legs by labels on the fronts. A label is the beginnings of both legs up to a front, with the
+/// edges that they have lost. Front by front, cheapest first; a label is dropped where
+///   - its reduced cost and the cheapest walk on reach the cutoff, also where the walk must do without the
+///     edges that one of its arcs has lost, or
+///   - another label of the front dominates it: that one costs no more (true costs, without multipliers), has
+///     as many edges along the heading, and has lost no edge that this one still has and that a walk on below
+///     the cutoff uses.
+/// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
+class FrontSearch {
+  public:
+    enum class Outcome {
+        exhausted,  ///< nothing below the cutoff is left
+        narrow,     ///< some fronts had more than `width` labels
+        stopped     ///< by `most_labels` or the clock
+    };
+    static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
+
+    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
+
+    struct Limits {
+        double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
+        std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
+        std::size_t most_labels;
+    };
+    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
+    /// the tables are theirs.
+    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
+                const Limits& limits, const std::function<bool()>& stopped);
+
+  private:
+    struct Label {
+        int before;  ///< the label that it continues, -1 for the first of a chain
+        int arc;     ///< by which; -1 where a leg ended
+        int front;
+        int along_heading;  ///< edges, at most 2
+        int next;           ///< of the labels that wait at the front
+        double cost;        ///< without multipliers
+        double reduced;
+    };
+
+    void begin();
+    void take(int arc, Label& label, std::uint64_t* lost) const;
+    void wait(Label label);
+    [[nodiscard]] bool out_of_time(std::size_t work);
+    void settle(int f);
+    [[nodiscard]] bool detour_reaches_limit(int label, int most) const;
+    [[nodiscard]] bool dominated(const Label& label, const std::uint64_t* lost, int most);
+    void expand(int label);
+    void offer(int label);
+    /// With offset.
+    [[nodiscard]] double limit() const;
+    [[nodiscard]] std::uint64_t* lost(int label) { return lost_.row(static_cast<std::size_t>(label)); }
+    [[nodiscard]] Label& label_at(int number) { return *labels_.row(static_cast<std::size_t>(number)); }
+    [[nodiscard]] const Label& label_at(int number) const {
+        return *labels_.row(static_cast<std::size_t>(number));
+    }
+
+    const ArcGraph* graph_ = nullptr;
+    PairRelaxation* relaxation_ = nullptr;
+    Incumbent* incumbent_ = nullptr;
+    const FrontGraph* fronts_ = nullptr;
+    const EdgeSets* edges_ = nullptr;
+    const OnwardTables* tables_ = nullptr;
+    Limits limits_{};
+    const std::function<bool()>* stopped_ = nullptr;
+    std::size_t work_ = 0;  ///< since the clock was looked at
+    bool is_stopped_ = false;
+    bool is_narrow_ = false;  ///< the width left a label out
+
+    std::size_t words_ = 0;
+    BlockRows<Label> labels_;
+    BlockRows<std::uint64_t> lost_;    ///< by label
+    std::vector<int> waiting_;         ///< by front, the label that came last
+    std::vector<std::uint64_t> open_;  ///< fronts with labels that wait
+    bool again_ = false;               ///< there is one before the front that is settled
+
+    // Of the front that is settled.
+    std::vector<int> here_;
+    std::vector<int> kept_along_heading_;
+    std::vector<std::uint64_t> kept_lost_;
+    std::vector<std::uint64_t> any_lost_;  ///< by one that is kept
+    std::vector<std::uint64_t> wanted_;
+
+    std::vector<int> chain_;
+    std::array<std::vector<int>, 2> legs_;
+};
+
+}  // namespace conelane::path_pair

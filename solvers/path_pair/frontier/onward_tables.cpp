@@ -1,0 +1,182 @@
+#include "solvers/path_pair/frontier/onward_tables.hpp"
+
+#include "solvers/path_pair/graph/at.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace conelane::path_pair {
+namespace {
+
+constexpr std::size_t kBlock = 16;
+constexpr std::size_t kWorkPerClock = 200'000;  ///< bytes of rows between two looks at the clock
+constexpr double kLeastQuantum = 1e-9;
+constexpr double kRounding = 0.01;  ///< of a quantum: more than sums of costs are off by
+
+/// mine = min(mine, max(theirs + more, excluded)). Tells whether any fell.
+bool lower(Quanta* mine, const Quanta* theirs, const Quanta* excluded, Quanta more, std::size_t count) {
+    Quanta change = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto sum = static_cast<Quanta>(theirs[k] + more);
+        const Quanta least = std::min(mine[k], std::max(sum, excluded[k]));
+        change |= static_cast<Quanta>(mine[k] ^ least);
+        mine[k] = least;
+    }
+    return change != 0;
+}
+
+}  // namespace
+
+bool OnwardTables::out_of_time(std::size_t work) {
+    work_ += work;
+    if (work_ >= kWorkPerClock) {
+        work_ = 0;
+        is_stopped_ = is_stopped_ || (*stopped_)();
+    }
+    return is_stopped_;
+}
+
+/// So many times kTooMany; false, and fewer, where the time is up.
+bool OnwardTables::fill(std::vector<Quanta>& table, std::size_t count) {
+    table.clear();
+    table.reserve(count);
+    while (table.size() < count) {
+        if (out_of_time(kWorkPerClock)) return false;
+        table.resize(std::min(count, table.size() + kWorkPerClock), kTooMany);
+    }
+    return true;
+}
+
+Quanta OnwardTables::to_quanta(double cost) const {
+    const double count = cost / quantum_;
+    return count < kTooMany ? static_cast<Quanta>(std::max(0.0, count)) : kTooMany;
+}
+
+Quanta OnwardTables::more(int front, const FrontGraph::Step& step) const {
+    return to_quanta(fronts_->cost(step) + fronts_->onward(step.to) - fronts_->onward(front));
+}
+
+int OnwardTables::quanta_below(double slack) const {
+    return static_cast<int>(std::clamp<double>(slack / quantum_ + kRounding, 0.0, kTooMany - 1));
+}
+
+std::size_t OnwardTables::row_bytes(const ResidualGraph& residual) {
+    return 2 * residual.arc.size() + 64 + kBlock;
+}
+
+void OnwardTables::find(const FrontGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
+                        const std::function<bool()>& stopped) {
+    fronts_ = &fronts;
+    edges_ = &edges;
+    stopped_ = &stopped;
+    work_ = 0;
+    is_stopped_ = false;
+    double bound = kUnreachable;
+    for (const int f : fronts.starts()) bound = std::min(bound, fronts.start_cost(f) + fronts.onward(f));
+    quantum_ = std::max((limit - bound) / (kTooMany - 1), kLeastQuantum);
+    edge_count_ = edges.words() * 64;
+    find_regrets();
+    have_detours_ = with_detours && !is_stopped_;
+    if (!have_detours_) return;
+    number_arcs();
+    find_excluded();
+    find_detours();
+}
+
+void OnwardTables::find_regrets() {
+    const std::size_t count = edge_count_;
+    if (!fill(regret_, at(fronts_->size()) * count)) return;
+    nothing_.assign(count, 0);
+    changed_.assign(at(fronts_->size()), 0);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = fronts_->size(); f-- > 0;) {
+            Quanta* const mine = regret_.data() + at(f) * count;
+            bool change = false;
+            for (const FrontGraph::Step& step : fronts_->steps(f)) {
+                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
+                const Quanta delta = more(f, step);
+                if (delta == kTooMany) continue;
+                if (out_of_time(count)) return;
+                change |= lower(mine, regret_.data() + at(step.to) * count, nothing_.data(), delta, count);
+                if (step.arc < 0) continue;
+                Quanta& own = mine[edges_->number(step.arc)];
+                change |= delta < own;
+                own = std::min(own, delta);
+            }
+            if (!change) continue;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+}
+
+/// Columns for the arcs that fronts have; what is left of the graph are mostly few.
+void OnwardTables::number_arcs() {
+    constexpr std::size_t kNone = ~std::size_t{0};
+    column_.assign(fronts_->residual().arc.size(), kNone);
+    arcs_.clear();
+    const auto add = [&](int arc) {
+        if (column_[at(arc)] != kNone) return;
+        column_[at(arc)] = arcs_.size();
+        arcs_.push_back(arc);
+    };
+    for (int f = 0; f < fronts_->size(); ++f) {
+        add(fronts_->front(f).moving);
+        add(fronts_->front(f).waiting);
+    }
+    arc_count_ = (arcs_.size() + kBlock) / kBlock * kBlock;
+    for (std::size_t& column : column_) column = std::min(column, arcs_.size());
+}
+
+void OnwardTables::find_excluded() {
+    columns_of_edge_.assign(edge_count_, {-1, -1});
+    for (std::size_t column = 0; column < arcs_.size(); ++column) {
+        std::array<int, 2>& columns = columns_of_edge_[edges_->number(arcs_[column])];
+        columns[columns[0] < 0 ? 0 : 1] = static_cast<int>(column);
+    }
+    excluded_.assign(arcs_.size() * arc_count_, 0);
+    for (std::size_t column = 0; column < arcs_.size(); ++column) {
+        const std::uint64_t* const lost = edges_->lost_after(arcs_[column]);
+        for (std::size_t w = 0; w < edges_->words(); ++w) {
+            for (std::uint64_t bits = lost[w]; bits != 0; bits &= bits - 1) {
+                for (const int row : columns_of_edge_[w * 64 + at(std::countr_zero(bits))]) {
+                    if (row >= 0) excluded_[at(row) * arc_count_ + column] = kTooMany;
+                }
+            }
+        }
+    }
+}
+
+void OnwardTables::find_detours() {
+    const std::size_t count = arc_count_;
+    if (!fill(detour_, at(fronts_->size()) * count)) return;
+    nothing_.assign(count, 0);
+    changed_.assign(at(fronts_->size()), 0);
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int f = fronts_->size(); f-- > 0;) {
+            Quanta* const mine = detour_.data() + at(f) * count;
+            bool change = false;
+            if (sweep == 1 && fronts_->is_last(f)) {
+                change = lower(mine, nothing_.data(), nothing_.data(), to_quanta(-fronts_->onward(f)), count);
+            }
+            for (const FrontGraph::Step& step : fronts_->steps(f)) {
+                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
+                const Quanta delta = more(f, step);
+                if (delta == kTooMany) continue;
+                if (out_of_time(count)) return;
+                const Quanta* const excluded =
+                    step.arc < 0 ? nothing_.data() : excluded_.data() + column_[at(step.arc)] * count;
+                change |= lower(mine, detour_.data() + at(step.to) * count, excluded, delta, count);
+            }
+            if (!change) continue;
+            changed_[at(f)] = sweep;
+            again = true;
+        }
+    }
+}
+
+}  // namespace conelane::path_pair

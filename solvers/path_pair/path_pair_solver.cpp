@@ -1,0 +1,276 @@
+#include "solvers/path_pair/path_pair_solver.hpp"
+
+#include "model/deadline.hpp"
+#include "solvers/detail/guarded_solve.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/search/branch_and_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+namespace {
+
+using namespace path_pair;  // NOLINT(google-build-using-namespace): this file is its interface
+
+// Labels are exact to less than this, so smaller gaps cannot be told from none.
+constexpr double kLeastGap = 1e-10;
+
+class PathPairSolver : public RldSolver {
+  public:
+    explicit PathPairSolver(const PathPairOptions& options)
+        : options_(options), search_(graph_, incumbent_, options_) {}
+
+    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
+                    const LaneGraph* start) override {
+        const Deadline deadline(limits.time_limit_ms);
+        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
+            const Stopwatch build_watch;
+            report.status = SolveStatus::stopped;
+            SearchClock clock([&deadline] { return deadline.passed(); });
+            if (is_too_large(problem)) {
+                report.stopped_by = StopReason::memory;
+            } else if (clock.out_of_time() || !graph_.build(problem, clock)) {
+                report.stopped_by = StopReason::time;
+            }
+            report.build_ms = build_watch.elapsed_ms();
+            if (report.stopped_by) return;
+            const Stopwatch solve_watch;
+            search(problem, limits, start, deadline, report);
+            report.solve_ms = solve_watch.elapsed_ms();
+        });
+    }
+
+    BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
+        const Deadline deadline(time_limit_ms);
+        SearchClock no_limit;  // a certificate needs a graph
+        graph_.build(problem, no_limit);
+        incumbent_.reset(graph_, 0.0);
+        near_to_far(problem);
+        BoundCertificate certificate;
+        certificate.bound = search_.run_root(system_, kLeastGap, [&deadline] { return deadline.passed(); });
+        const Multipliers& multipliers = search_.root_multipliers();
+        certificate.cone_multiplier = multipliers.cone;
+        certificate.heading_multiplier = multipliers.heading;
+        for (std::size_t q = 0; q < multipliers.clique.size(); ++q) {
+            if (multipliers.clique[q] <= 0.0) continue;
+            certificate.cliques.push_back(
+                {clique_edges(problem, static_cast<int>(q)), multipliers.clique[q]});
+        }
+        return certificate;
+    }
+
+    SearchCertificate certify_search(const LaneGraphProblem& problem, const RldReport& report,
+                                     double time_limit_ms) {
+        SearchCertificate certificate{{}, report.lane_graph, report.objective, -kUnreachable};
+        if (report.status == SolveStatus::infeasible) {
+            certificate.bound = kUnreachable;
+        } else if (report.bound && std::abs(*report.bound) < SearchCertificate::kMostBound) {
+            // Sums of doubles are off by less.
+            certificate.bound = *report.bound - std::max(1e-9, 1e-12 * std::abs(*report.bound));
+        }
+        if (certificate.bound == -kUnreachable) return certificate;
+        const Deadline deadline(time_limit_ms);
+        SearchClock no_limit;
+        graph_.build(problem, no_limit);
+        for_each_system(problem, [&](const std::optional<std::size_t>& far_start) {
+            certificate.parts.push_back(certify_part(problem, certificate.bound, deadline));
+            certificate.parts.back().far_start = far_start;
+        });
+        return certificate;
+    }
+
+  private:
+    using Outcome = BranchAndBound::Outcome;
+
+    void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
+                const Deadline& deadline, RldReport& report) {
+        // No two lane graphs differ by more: beyond it a wider gap means the same.
+        const double most = cost_limit(problem);
+        const double tolerance =
+            std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kLeastGap);
+        search_.reset_nodes();
+        const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
+        // Nearly every lane costs less than 0; the rare scene without one is searched again with a cutoff
+        // that every lane is below by more than the tolerance.
+        Outcome outcome{};
+        for (const double cutoff : {0.0, most + tolerance}) {
+            incumbent_.reset(graph_, cutoff);
+            if (start_is_feasible) offer(problem, *start);
+            outcome = search(problem, tolerance, deadline);
+            ++report.rounds;
+            if (incumbent_.found() || !outcome.complete) break;
+        }
+        report.nodes = search_.nodes();
+        if (!outcome.complete) report.stopped_by = StopReason::time;
+        if (incumbent_.found()) {
+            report.status = outcome.complete ? SolveStatus::optimal : SolveStatus::feasible;
+            report.lane_graph = lane_graph(problem);
+            report.objective = objective(problem, *report.lane_graph);
+            report.bound = std::min(outcome.bound, *report.objective);
+        } else {
+            report.status = outcome.complete ? SolveStatus::infeasible : SolveStatus::stopped;
+            if (!outcome.complete) report.bound = outcome.bound;
+        }
+    }
+
+    /// Precondition: the lane graph is feasible.
+    void offer(const LaneGraphProblem& problem, const LaneGraph& start) {
+        std::array<std::vector<int>, 2> legs;
+        const auto boundaries = paths(start, problem.cone_count);
+        for (std::size_t leg = 0; leg < 2; ++leg) {
+            const std::vector<std::size_t>& path = (*boundaries)[leg];
+            for (std::size_t k = 0; k + 1 < path.size(); ++k) {
+                legs[leg].push_back(graph_.arc(static_cast<int>(path[k]), static_cast<int>(path[k + 1])));
+            }
+        }
+        incumbent_.offer(legs[0], legs[1]);
+    }
+
+    /// More than any lane graph costs.
+    static double cost_limit(const LaneGraphProblem& problem) {
+        double sum = 1.0;
+        for (const ProblemEdge& edge : problem.edges) sum += edge.high_cost ? 0.0 : std::max(0.0, edge.cost);
+        for (const ProblemTurn& turn : problem.turns) sum += turn.high_cost ? 0.0 : turn.cost;
+        return sum;
+    }
+
+    /// Both legs from the near cones to the far ones.
+    void near_to_far(const LaneGraphProblem& problem) {
+        const std::size_t n = problem.cone_count;
+        for (LegSystem::Kind& kind : system_.kinds) {
+            kind.start.assign(n, 0);
+            kind.end.assign(n, 0);
+        }
+        for (std::size_t cone = 0; cone < n; ++cone) {
+            (problem.near[cone] ? system_.kinds[0].start : system_.kinds[0].end)[cone] = 1;
+        }
+        system_.kind_count = 1;
+        system_.ends_are_partners = true;
+    }
+
+    /// Calls `visit(far_start)` for each system of legs, set up in `system_`: from near to far; and for the
+    /// pairing `paper`, one leg between near cones and one between far ones, a system for each first end of
+    /// the far leg, which is the cone of smaller index.
+    template <typename Visit>
+    void for_each_system(const LaneGraphProblem& problem, const Visit& visit) {
+        near_to_far(problem);
+        visit(std::nullopt);
+        if (problem.parameters.pairing == Pairing::near_far) return;
+        system_.kinds[0].end = system_.kinds[0].start;
+        system_.kind_count = 2;
+        system_.ends_are_partners = false;
+        for (int cone = 0; cone < graph_.cone_count(); ++cone) {
+            std::ranges::fill(system_.kinds[1].start, char{0});
+            std::ranges::fill(system_.kinds[1].end, char{0});
+            system_.kinds[1].start[static_cast<std::size_t>(cone)] = 1;
+            bool any = false;
+            for (const int partner : graph_.partners(cone)) {
+                if (partner < cone) continue;
+                system_.kinds[1].end[static_cast<std::size_t>(partner)] = 1;
+                any = true;
+            }
+            if (any) visit(std::optional(static_cast<std::size_t>(cone)));
+        }
+    }
+
+    Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
+        Outcome outcome{std::numeric_limits<double>::infinity(), true};
+        for_each_system(problem, [&](const std::optional<std::size_t>&) {
+            const Outcome part = search_.run(system_, tolerance, [&deadline] { return deadline.passed(); });
+            outcome.bound = std::min(outcome.bound, part.bound);
+            outcome.complete = outcome.complete && part.complete;
+        });
+        return outcome;
+    }
+
+    /// What the root does with its bound known to be the right one.
+    SearchCertificate::Part certify_part(const LaneGraphProblem& problem, double bound,
+                                         const Deadline& deadline) {
+        constexpr double kUnit = 1.0 / (1 << SearchCertificate::kFractionBits);
+        SearchCertificate::Part part;
+        // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
+        const double most =
+            cost_limit(problem) + 2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
+        const double cutoff = std::min(bound, most);
+        // Drops nothing here that exact arithmetic does not drop.
+        incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));
+        const std::vector<Multipliers> stages =
+            search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });
+        const auto units = [](double multiplier) {
+            constexpr auto kMost = static_cast<double>(SearchCertificate::kMostUnits);
+            return std::llround(std::min(multiplier / kUnit, kMost));
+        };
+        std::vector<std::size_t> place(static_cast<std::size_t>(search_.cliques().size()), 0);  // from 1
+        for (const Multipliers& multipliers : stages) {
+            SearchCertificate::Stage& stage = part.stages.emplace_back();
+            for (const double multiplier : multipliers.cone) stage.cone.push_back(units(multiplier));
+            stage.heading = units(multipliers.heading);
+            for (std::size_t q = 0; q < multipliers.clique.size(); ++q) {
+                if (multipliers.clique[q] <= 0.0) continue;
+                if (place[q] == 0) {
+                    part.cliques.push_back(clique_edges(problem, static_cast<int>(q)));
+                    place[q] = part.cliques.size();
+                }
+                stage.clique.emplace_back(place[q] - 1, units(multipliers.clique[q]));
+            }
+        }
+        return part;
+    }
+
+    [[nodiscard]] std::vector<Edge> clique_edges(const LaneGraphProblem& problem, int clique) const {
+        std::vector<Edge> edges;
+        for (const int edge : search_.cliques().edges(clique)) {
+            const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
+            edges.push_back({e.i, e.j});
+        }
+        return edges;
+    }
+
+    [[nodiscard]] LaneGraph lane_graph(const LaneGraphProblem& problem) const {
+        LaneGraph graph;
+        for (const int edge : incumbent_.edges()) {
+            const ProblemEdge& e = problem.edges[graph_.problem_edge(edge)];
+            graph.edges.push_back({e.i, e.j});
+        }
+        std::ranges::sort(graph.edges);
+        return graph;
+    }
+
+    PathPairOptions options_;
+    ArcGraph graph_;
+    Incumbent incumbent_;
+    LegSystem system_;
+    BranchAndBound search_;
+};
+
+}  // namespace
+
+BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time_limit_ms) {
+    // The multipliers alone have to carry the bound, so the incumbent must not drop anything.
+    PathPairOptions options;
+    options.fix_arcs = false;
+    options.search_fronts = false;
+    return PathPairSolver(options).certify(problem, time_limit_ms);
+}
+
+SearchCertificate certify_search(const LaneGraphProblem& problem, double time_limit_ms) {
+    PathPairSolver solver({});
+    const RldReport report = solver.solve(problem, {.time_limit_ms = time_limit_ms}, nullptr);
+    PathPairOptions options;
+    options.complete_walks = false;
+    options.search_fronts = false;
+    return PathPairSolver(options).certify_search(problem, report, time_limit_ms);
+}
+
+std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options) {
+    return std::make_unique<PathPairSolver>(options);
+}
+
+}  // namespace conelane

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "conelane/bound_certificate.hpp"
+#include "conelane/rld_solver.hpp"
+#include "model/search_certificate.hpp"
+#include "solvers/path_pair/path_pair_options.hpp"
+
+#include <limits>
+#include <memory>
+
+namespace conelane {
+
+/// Exact branch and bound on the problem itself: see solvers/path_pair/exact-search.md. The instance owns its
+/// workspace and reuses it from call to call. A gap below 1e-10 counts as 1e-10.
+[[nodiscard]] std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options = {});
+
+/// Multipliers and cliques that prove a lower bound for the pairing near_far, for `verify_bound`. They are
+/// the root's. The multipliers alone carry this bound, so it may be below the solver's own.
+[[nodiscard]] BoundCertificate certify_root_bound(
+    const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
+
+/// Solves the problem and says how the proof can be repeated without this solver. Where the limit strikes
+/// first the certificate is for the bound that was proven until then; minus infinity where there was none.
+[[nodiscard]] SearchCertificate certify_search(
+    const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
+
+}  // namespace conelane

@@ -1,0 +1,54 @@
+#include "solvers/path_pair/primal/incumbent.hpp"
+
+namespace conelane::path_pair {
+
+void Incumbent::reset(const ArcGraph& graph, double cutoff) {
+    graph_ = &graph;
+    cutoff_ = cutoff;
+    found_ = false;
+    edges_.clear();
+}
+
+double Incumbent::leg_cost(std::span<const int> leg) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < leg.size(); ++k) {
+        sum += graph_->cost(leg[k] / 2);
+        if (k > 0) sum += graph_->turn_cost(leg[k - 1], leg[k]);
+    }
+    return sum;
+}
+
+bool Incumbent::offer(std::span<const int> first, std::span<const int> second) {
+    if (first.empty() || second.empty()) return false;
+    const double cost = leg_cost(first) + leg_cost(second);
+    if (!(cost < cutoff_)) return false;
+    visited_.assign(static_cast<std::size_t>(graph_->cone_count()), 0);
+    candidate_.clear();
+    int along_heading = 0;
+    for (const std::span<const int> leg : {first, second}) {
+        char& start = visited_[static_cast<std::size_t>(graph_->tail(leg.front()))];
+        if (start != 0) return false;
+        start = 1;
+        for (const int arc : leg) {
+            char& visited = visited_[static_cast<std::size_t>(graph_->head(arc))];
+            if (visited != 0) return false;
+            visited = 1;
+            candidate_.push_back(arc / 2);
+            along_heading += graph_->along_heading(arc / 2) ? 1 : 0;
+        }
+    }
+    if (along_heading < 2) return false;
+    for (std::size_t k = 0; k < candidate_.size(); ++k) {
+        for (std::size_t l = 0; l < k; ++l) {
+            if (graph_->incompatible(candidate_[k], candidate_[l])) return false;
+        }
+    }
+    cutoff_ = cost;
+    found_ = true;
+    edges_ = candidate_;
+    legs_[0].assign(first.begin(), first.end());
+    legs_[1].assign(second.begin(), second.end());
+    return true;
+}
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/residual_graph.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Small graphs around a lane graph, each to be searched for a better one. Such a window has the arcs among
+/// the cones that are fewest arcs on from a centre; elsewhere the legs stay as they are. Centres go along
+/// the legs from their ends back, so that legs which end too early grow first.
+class IncumbentWindow {
+  public:
+    /// What windows are cut from. `usable` by arc of the arc graph: those that a better lane graph may have.
+    /// Precondition: the legs of the system are alike.
+    void assign(const ArcGraph& graph, const LegSystem& system, const ResidualGraph& whole,
+                std::span<const char> usable);
+    /// Windows of about so many arcs, all cones as centres.
+    void restart(std::size_t most_arcs);
+
+    /// The next window: `arcs` are those of the whole graph, in ascending order. False where no cone of the
+    /// legs is left as a centre. Legs: arcs of the arc graph, from start to end.
+    bool next(const std::array<std::vector<int>, 2>& legs, std::vector<int>& arcs);
+    /// Of the last window: kind k is leg k, with its start or end where that is not in the window.
+    [[nodiscard]] const LegSystem& system() const { return system_; }
+    /// Whether the last window held a better lane graph. If not, the cones around its centre are done with.
+    void report(bool improved);
+
+  private:
+    enum class Place : char { outside, reached, inside };
+
+    [[nodiscard]] int next_centre(const std::array<std::vector<int>, 2>& legs) const;
+    void spread(int centre);
+    void fix_outside(std::span<const int> leg, LegSystem::Kind& kind);
+    [[nodiscard]] bool is_inside(int arc) const {
+        return place_[at(graph_->tail(arc))] == Place::inside &&
+               place_[at(graph_->head(arc))] == Place::inside;
+    }
+
+    const ArcGraph* graph_ = nullptr;
+    const LegSystem* whole_system_ = nullptr;
+    const ResidualGraph* whole_ = nullptr;
+    std::vector<char> usable_;
+    std::vector<int> next_start_;  ///< by cone
+    std::vector<int> next_;        ///< cones that usable arcs lead to from a cone
+    std::size_t most_arcs_ = 0;
+    bool holds_all_ = false;     ///< that can be reached from the centre
+    std::vector<char> settled_;  ///< by cone: no window around it improves the legs
+    std::vector<Place> place_;   ///< by cone
+    std::vector<int> cones_;     ///< of the window, nearest first
+    LegSystem system_;
+    std::vector<char> of_legs_;           ///< by arc of the arc graph
+    std::vector<std::uint64_t> blocked_;  ///< edges that the fixed ones exclude
+    std::vector<int> fixed_cones_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Incumbents without a relaxation: a beam search over beginnings of both legs, one arc at a time. Of the
+/// beginnings with equally many arcs the cheapest go on. Neither leg gets far ahead of the other, and few
+/// beginnings end at the same cone: those that lead nowhere would else crowd out the rest.
+class PairBeam {
+  public:
+    struct Limits {
+        std::size_t width;  ///< beginnings that go on
+        int most_at_cone;   ///< of these, legs that end at the same cone
+    };
+    /// Offers the incumbent the best pair that is met. Precondition: the legs of the system are alike.
+    void run(const ArcGraph& graph, const LegSystem& system, const Limits& limits, Incumbent& incumbent,
+             SearchClock& clock);
+
+  private:
+    struct Label {
+        int before;                 ///< the label that it continues, -1 for the first of a chain
+        std::array<int, 2> last;    ///< arcs
+        std::array<int, 2> length;  ///< arcs of each leg
+        int along_heading;          ///< edges, at most 2
+        double cost;
+    };
+    struct Step {
+        int label;  ///< that is continued, -1 for a pair of first arcs
+        int leg;
+        std::array<int, 2> last;
+        double cost;
+    };
+
+    [[nodiscard]] bool starts(int arc) const { return system_->kinds[0].start[at(graph_->tail(arc))] != 0; }
+    [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
+    void add_first_steps(SearchClock& clock);
+    void add_steps(int label, const std::uint64_t* lost);
+    void take_cheapest_steps(SearchClock& clock);
+    void add_label(const Step& step);
+    [[nodiscard]] bool is_lane(const Label& label) const;
+    [[nodiscard]] bool allows(const std::uint64_t* lost, int arc) const;
+    void take_edge(int arc, std::uint64_t* lost) const;
+    void take_cone(int cone, std::uint64_t* lost) const;
+    void offer(int label, Incumbent& incumbent);
+
+    const ArcGraph* graph_ = nullptr;
+    const LegSystem* system_ = nullptr;
+    Limits limits_{};
+    std::size_t edge_words_ = 0;
+    std::size_t words_ = 0;
+    std::vector<Label> labels_;
+    std::size_t level_ = 0;  ///< first label of those that go on
+    std::size_t next_ = 0;   ///< first label with one arc more
+    std::vector<Step> steps_;
+    std::vector<int> at_cone_;  ///< legs of the new labels that end there
+    std::vector<std::uint64_t>
+        lost_;  ///< by label from level_ on: edges that are excluded, cones that are taken
+    std::vector<std::uint64_t> lost_next_;  ///< by label from next_ on
+    std::array<std::vector<int>, 2> legs_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,210 @@
+// Memory that runs out, at any allocation of a call: std::bad_alloc comes out, nothing is lost, and the next
+// call answers as if nothing had been.
+
+#include "conelane/core_solvers.hpp"
+#include "conelane/detectors.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "evaluation/scenes/scene_set.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/failing_allocations.hpp"
+#include "tests/support/no_time_limit.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using tests::allocations;
+
+/// Of a scene that has a lane, of as many cones as exhaustive takes too.
+constexpr std::uint64_t kSeed = 0;
+
+/// The first ones, the last ones, and some between.
+std::vector<std::int64_t> places(std::int64_t count) {
+    constexpr std::int64_t kAtEachEnd = 20;
+    constexpr int kBetween = 40;
+    std::vector<std::int64_t> chosen;
+    boost::random::mt19937_64 random(20);
+    for (std::int64_t i = 0; i < std::min(count, kAtEachEnd); ++i) {
+        chosen.push_back(i);
+        chosen.push_back(count - 1 - i);
+    }
+    for (int i = 0; i < kBetween; ++i) {
+        chosen.push_back(boost::random::uniform_int_distribution<std::int64_t>(0, count - 1)(random));
+    }
+    return chosen;
+}
+
+/// How many allocations a call makes.
+std::int64_t count_allocations(const std::function<void()>& call) {
+    allocations.made = 0;
+    call();
+    return allocations.made;
+}
+
+/// Runs the call with one allocation that fails. Returns whether std::bad_alloc came out: what can do without
+/// the memory (std::stable_sort) goes on.
+bool runs_out(const std::function<void()>& call, std::int64_t place) {
+    allocations.until_failure = place;
+    bool failed = false;
+    try {
+        call();
+    } catch (const std::bad_alloc&) {
+        failed = true;
+    }
+    allocations.until_failure = -1;
+    return failed;
+}
+
+/// A lane among false positives, the cones seen from two poses.
+const std::vector<Scene>& lap() {
+    static const std::vector<Scene> kLap = [] {
+        SceneOptions options;
+        options.false_positive_rates = {0.3};
+        options.ranges_m = {20.0};
+        options.every_m = 60.0;
+        options.noise_sigma_m = 0.05;
+        std::vector<Scene> scenes;
+        for (AnnotatedScene& made : make_scene_set({"generated:kidney"}, options).scenes) {
+            scenes.push_back(std::move(made.scene));
+        }
+        scenes.resize(2);
+        return scenes;
+    }();
+    return kLap;
+}
+
+class DetectorMemory : public testing::TestWithParam<std::string> {
+  protected:
+    /// Both scenes of the lap, the second one warm.
+    static std::vector<LaneAnswer> drive(LaneDetector& detector) {
+        std::vector<LaneAnswer> answers;
+        answers.reserve(lap().size());
+        for (const Scene& scene : lap()) answers.push_back(detector.detect(scene, tests::kNoTimeLimit));
+        return answers;
+    }
+    static void expect_same(const std::vector<LaneAnswer>& answers, const std::vector<LaneAnswer>& expected) {
+        ASSERT_EQ(answers.size(), expected.size());
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            EXPECT_EQ(answers[i].status, expected[i].status) << answers[i].message;
+            EXPECT_EQ(answers[i].lane, expected[i].lane);
+            EXPECT_EQ(answers[i].confidence, expected[i].confidence);
+        }
+    }
+};
+
+TEST_P(DetectorMemory, MayRunOutAnywhereInACall) {
+    const std::vector<LaneAnswer> expected = drive(*make_detector(GetParam()));  // shared weights are loaded
+    ASSERT_EQ(expected.back().status, LaneStatus::found);
+    const std::int64_t count = [&] {
+        const auto detector = make_detector(GetParam());
+        return count_allocations([&] { (void)drive(*detector); });
+    }();
+    ASSERT_GT(count, 10);
+    int failures = 0;
+    for (const std::int64_t place : places(count)) {
+        SCOPED_TRACE(testing::Message() << "allocation " << place << " of " << count);
+        const std::int64_t living = allocations.living;
+        {
+            const auto detector = make_detector(GetParam());
+            if (runs_out([&] { (void)drive(*detector); }, place)) ++failures;
+            detector->reset();
+            expect_same(drive(*detector), expected);
+        }
+        EXPECT_EQ(allocations.living, living) << "memory is lost";
+    }
+    EXPECT_GT(failures, 20);
+}
+
+TEST_P(DetectorMemory, MayRunOutWhereADetectorIsMade) {
+    (void)make_detector(GetParam());
+    const std::int64_t count = count_allocations([] { (void)make_detector(GetParam()); });
+    ASSERT_GT(count, 0);
+    for (const std::int64_t place : places(count)) {
+        SCOPED_TRACE(place);
+        const std::int64_t living = allocations.living;
+        EXPECT_TRUE(runs_out([] { (void)make_detector(GetParam()); }, place));
+        EXPECT_EQ(allocations.living, living) << "memory is lost";
+    }
+}
+
+std::vector<std::string> detector_names() {
+    std::vector<std::string> names;
+    for (const DetectorInfo& info : detectors()) names.emplace_back(info.name);
+    return names;
+}
+
+std::string test_name(std::string name) {
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMemory, testing::ValuesIn(detector_names()),
+                         [](const auto& test) { return test_name(test.param); });
+
+class SolverMemory : public testing::TestWithParam<const RldSolverEntry*> {};
+
+TEST_P(SolverMemory, MayRunOutAnywhereInASolve) {
+    const std::size_t cones = GetParam()->most_cones.value_or(40);
+    const LaneGraphProblem problem = make_problem(tests::random_scene(kSeed, cones), {});
+    const auto make = [] { return GetParam()->make(Formulation::tight); };
+    const RldReport expected = make()->solve(problem, {});
+    if (GetParam()->exact) {
+        ASSERT_EQ(expected.status, SolveStatus::optimal);
+    }
+    const LaneGraph start = make_path_pair_solver()->solve(problem, {}).lane_graph.value();
+    const std::int64_t count = [&] {
+        const auto solver = make();
+        return count_allocations([&] { (void)solver->solve(problem, {}, &start); });
+    }();
+    int failures = 0;
+    for (const std::int64_t place : places(count)) {
+        SCOPED_TRACE(testing::Message() << "allocation " << place << " of " << count);
+        const std::int64_t living = allocations.living;
+        {
+            const auto solver = make();
+            if (runs_out([&] { (void)solver->solve(problem, {}, &start); }, place)) ++failures;
+            const RldReport report = solver->solve(problem, {});
+            EXPECT_EQ(report.status, expected.status) << report.message;
+            EXPECT_EQ(report.lane_graph, expected.lane_graph);
+            EXPECT_EQ(report.objective, expected.objective);
+        }
+        EXPECT_EQ(allocations.living, living) << "memory is lost";
+    }
+    EXPECT_GT(failures, 10);
+}
+
+TEST_P(SolverMemory, MayRunOutWhereAProblemIsMade) {
+    const Scene scene = tests::random_scene(kSeed, 24);
+    const auto make = [&] { (void)make_problem(scene, with_shape_costs({})); };
+    const std::int64_t count = count_allocations(make);
+    for (const std::int64_t place : places(count)) {
+        SCOPED_TRACE(place);
+        const std::int64_t living = allocations.living;
+        EXPECT_TRUE(runs_out(make, place));
+        EXPECT_EQ(allocations.living, living) << "memory is lost";
+    }
+}
+
+std::vector<const RldSolverEntry*> solvers() {
+    std::vector<const RldSolverEntry*> all;
+    for (const RldSolverEntry& entry : core_solvers()) all.push_back(&entry);
+    return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Core, SolverMemory, testing::ValuesIn(solvers()),
+                         [](const auto& test) { return test_name(std::string(test.param->name)); });
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,78 @@
+// path-pair keeps its workspace: what a solve allocates does not grow with its nodes.
+
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+std::int64_t allocations = 0;
+
+}  // namespace
+
+// Counts what the program allocates. The other forms of new and delete call these.
+void* operator new(std::size_t size) {
+    ++allocations;
+    if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+
+namespace conelane {
+namespace {
+
+struct Count {
+    std::int64_t nodes;
+    std::int64_t allocations;
+};
+
+Count solve(RldSolver& solver, const LaneGraphProblem& problem) {
+    const std::int64_t before = allocations;
+    const RldReport report = solver.solve(problem, {});
+    return {report.nodes, allocations - before};
+}
+
+TEST(PathPairAllocation, DoesNotGrowWithTheNodes) {
+    PathPairOptions options;
+    // To have many nodes.
+    options.search_fronts = false;
+    options.root_steps = 1;
+    options.node_steps = 1;
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver(options);
+    std::int64_t most_nodes = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 20), {});
+        solve(*solver, problem);  // the workspace grows to its size
+        const Count again = solve(*solver, problem);
+        most_nodes = std::max(most_nodes, again.nodes);
+        EXPECT_LT(again.allocations, 40) << again.nodes << " nodes";
+    }
+    EXPECT_GT(most_nodes, 400);
+}
+
+TEST(PathPairAllocation, DoesNotGrowWithTheLabelsOfTheTandemSearch) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 40), {});
+        solve(*solver, problem);
+        EXPECT_LT(solve(*solver, problem).allocations, 40);
+    }
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,95 @@
+// What an RLD detector makes of a scene: its cone set, and the context beyond it.
+
+#include "conelane/rld_detector.hpp"
+
+#include "solvers/registry.hpp"
+#include "tests/support/no_time_limit.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using testing::ElementsAre;
+
+/// A straight lane along +x, cones every 3.2 m: left 1 to 8, right 101 to 108; the car is 1 m before it.
+Scene straight() {
+    Scene scene;
+    scene.pose.position = {-1, 0};
+    for (int i = 0; i < 8; ++i) {
+        scene.cones.push_back({.id = 1 + i, .position = {3.2 * i, 1.6}});
+        scene.cones.push_back({.id = 101 + i, .position = {3.2 * i, -1.6}});
+    }
+    return scene;
+}
+
+LaneAnswer detect(const Scene& scene, std::optional<std::size_t> nearest,
+                  std::optional<std::size_t> context) {
+    return make_rld_detector(find_rld_solver("path-pair")->make(Formulation::tight),
+                             {.parameters = {}, .cones = {nearest, context}})
+        ->detect(scene, tests::kNoTimeLimit);
+}
+
+/// Left of the sixth gap's end a false cone, nearer to the car than the true cones 4 and 104 at x = 9.6.
+Scene with_false_cone() {
+    Scene scene = straight();
+    scene.cones.push_back({.id = 200, .position = {8.6, 2.9}});
+    return scene;
+}
+
+TEST(RldDetector, WithoutContextTakesAFalseConeAtTheEndOfItsConeSet) {
+    const LaneAnswer answer = detect(with_false_cone(), 7, std::nullopt);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(1, 2, 3, 200));
+    EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103));
+    EXPECT_TRUE(answer.optimality);
+    EXPECT_FALSE(answer.uncut);
+}
+
+TEST(RldDetector, WithContextFindsTheLaneThatGoesOnAndCutsIt) {
+    const LaneAnswer answer = detect(with_false_cone(), 7, 17);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(1, 2, 3));
+    EXPECT_THAT(answer.lane.right, ElementsAre(101, 102, 103));
+    EXPECT_FALSE(answer.optimality) << "what was proven is about the lane before the cut";
+    ASSERT_TRUE(answer.uncut);
+    EXPECT_THAT(answer.uncut->lane.left, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+    ASSERT_TRUE(answer.uncut->optimality);
+    EXPECT_TRUE(answer.uncut->optimality->optimal);
+}
+
+TEST(RldDetector, ContextNoLargerThanTheConeSetChangesNothing) {
+    const Scene scene = with_false_cone();
+    for (const std::size_t context : {3U, 7U}) {
+        const LaneAnswer answer = detect(scene, 7, context);
+        EXPECT_EQ(answer.lane, detect(scene, 7, std::nullopt).lane);
+        EXPECT_FALSE(answer.uncut);
+    }
+    EXPECT_EQ(detect(scene, std::nullopt, 5).lane, detect(scene, std::nullopt, std::nullopt).lane);
+}
+
+TEST(RldDetector, AnswersNoLaneWhereTheCutLeavesASideEmpty) {
+    Scene scene = straight();
+    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id == 1; });
+    const LaneAnswer answer = detect(scene, 1, 20);  // cone 101 alone
+    EXPECT_EQ(answer.status, LaneStatus::none);
+    EXPECT_EQ(answer.lane, Lane{});
+}
+
+TEST(CutToNearest, EvensFarEndsAndOpensWhatItCuts) {
+    // The five nearest are 1, 101, 2, 102 and of the two at x = 6.4 the left one, whose id is smaller.
+    EXPECT_EQ(cut_to_nearest({{1, 2, 3, 4}, {101, 102, 103, 104}, true}, straight(), 5),
+              (Lane{{1, 2, 3}, {101, 102}, false}));
+    // Cone 3 at x = 6.4 is 7.2 m from cone 101 alone, so it goes; cone 2 is within 6.5 m.
+    EXPECT_EQ(cut_to_nearest({{1, 2, 3}, {101}}, straight(), 16), (Lane{{1, 2}, {101}}));
+    const Lane circuit{{1, 2, 3}, {101, 102, 103}, true};
+    EXPECT_EQ(cut_to_nearest(circuit, straight(), 16), circuit);
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,119 @@
+// The checker's own search against the exact solvers, and its verdicts on claims of infeasibility.
+
+#include "evaluation/checking/lane_graph_search.hpp"
+
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "evaluation/checking/infeasibility.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/random_scenes.hpp"
+#include "tests/support/straight_scene.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+/// Some of these scenes have a lane graph, some have none.
+void expect_agreement(RldSolver& solver, const RldParameters& parameters, std::size_t cones) {
+    int with_lane = 0;
+    constexpr int kScenes = 60;
+    for (int seed = 0; seed < kScenes; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = tests::random_scene(static_cast<std::uint64_t>(seed), cones);
+        const LaneGraphSearchResult result = search_lane_graph(scene, parameters, kNoLimit);
+        EXPECT_TRUE(result.complete);
+        const RldReport report = solver.solve(make_problem(scene, parameters, solver.extent()), {});
+        EXPECT_EQ(result.witness.has_value(), report.lane_graph.has_value());
+        if (!result.witness) continue;
+        ++with_lane;
+        EXPECT_TRUE(check(scene, parameters, *result.witness).violations.empty());
+    }
+    EXPECT_GT(with_lane, kScenes / 10);
+    EXPECT_LT(with_lane, kScenes);
+}
+
+TEST(LaneGraphSearch, AgreesWithEveryPairOfPaths) {
+    RldParameters parameters;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+    parameters.pairing = Pairing::paper;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+    parameters.forbid_crossing = true;
+    parameters.d_max = 4.0;
+    expect_agreement(*make_exhaustive_solver(), parameters, 7);
+}
+
+TEST(LaneGraphSearch, AgreesWithThePairSearch) {
+    expect_agreement(*make_path_pair_solver(), {}, 12);
+}
+
+/// One path joins the near cones 2 and 3, the other one the far cones 0 and 1, which come first:
+///     2 ----- 3
+/// car >                        0 ----- 1
+TEST(LaneGraphSearch, WithThePairingOfThePaperAPathOfFarConesMayComeFirst) {
+    Scene scene;
+    for (const Point& position : {Point(11.0, -1.75), Point(14.2, -1.75), Point(1.0, 1.75), Point(4.2, 1.75)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    RldParameters parameters;
+    parameters.d_h = 20.0;  // all edges are along the heading
+    EXPECT_FALSE(search_lane_graph(scene, parameters, kNoLimit).witness);
+    parameters.pairing = Pairing::paper;
+    const LaneGraphSearchResult result = search_lane_graph(scene, parameters, kNoLimit);
+    ASSERT_TRUE(result.witness);
+    EXPECT_EQ(result.witness->edges, (std::vector<Edge>{{0, 1}, {2, 3}}));
+}
+
+TEST(LaneGraphSearch, SaysWhereTheTimeRanOut) {
+    const LaneGraphSearchResult result = search_lane_graph(tests::random_scene(3, 60), {}, 0.0);
+    EXPECT_FALSE(result.complete);
+    EXPECT_FALSE(result.witness);
+
+    // Few enough edges that the time runs out among the paths only. None of them ends at a far cone.
+    Scene grid;
+    for (int i = 0; i < 16; ++i) grid.cones.push_back({i, {3.2 * (i / 4), 3.2 * (i % 4)}});
+    RldParameters parameters;
+    parameters.d_near = 100.0;
+    parameters.d_h = 100.0;
+    parameters.s_crit = 0.1;  // no diagonals, but turns by a right angle
+    parameters.t_crit = 10.0;
+    EXPECT_TRUE(search_lane_graph(grid, parameters, kNoLimit).complete);
+    const LaneGraphSearchResult stopped = search_lane_graph(grid, parameters, 0.0);
+    EXPECT_FALSE(stopped.complete);
+    EXPECT_FALSE(stopped.witness);
+}
+
+/// Beyond the lane there is no near endpoint.
+TEST(Infeasibility, IsJudgedWithoutTheClaimant) {
+    using Kind = InfeasibilityVerdict::Kind;
+    const Scene straight = straight_scene().scene;
+    for (const char* claimant : {"cbc", "path-pair", "exhaustive"}) {
+        const InfeasibilityVerdict refuted = judge_infeasible(straight, {}, claimant, kNoLimit);
+        EXPECT_EQ(refuted.kind, Kind::refuted);
+        EXPECT_NE(refuted.by, claimant);
+        ASSERT_TRUE(refuted.witness);
+        EXPECT_TRUE(check(straight, {}, *refuted.witness).violations.empty());
+        Scene passed = straight;
+        passed.pose.position.x() = 200.0;
+        EXPECT_EQ(judge_infeasible(passed, {}, claimant, kNoLimit).kind, Kind::confirmed);
+    }
+    EXPECT_EQ(judge_infeasible(straight, {}, "cbc", 0.0).kind, Kind::open);
+}
+
+/// Without time neither the own search nor multipliers decide, so another solver is asked.
+TEST(Infeasibility, AsksAnotherSolverThanTheClaimant) {
+    const Scene scene = tests::random_scene(3, 60);
+    EXPECT_EQ(judge_infeasible(scene, {}, "cbc", 0.0).by, "path-pair");
+    const std::string other = judge_infeasible(scene, {}, "path-pair", 0.0).by;
+    EXPECT_NE(other, "path-pair");
+    EXPECT_NE(other, "");
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,216 @@
+// Programs as MPS and LP files: what other people's programs make of them is what our backends find.
+
+#include "evaluation/files/program_files.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "model/lane_graph_model.hpp"
+#include "solvers/milp/cbc_solver.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace conelane {
+namespace {
+
+/// minimise x - 2 y, x + y <= 1, 0 <= y - z <= 0.5 with x, y binary and z in [0, 0.75].
+BinaryProgram small_program() {
+    BinaryProgram program;
+    const int x = program.add_column({"x"}, 1.0, true);
+    const int y = program.add_column({"y", {1}}, -2.0, true);
+    const int z = program.add_column({"z", {1, 2}}, 0.0, false, 0.0, 0.75);
+    RowWriter rows(program);
+    rows.begin({"one_of"}, -kInfinity, 1.0);
+    rows.add(x, 1.0);
+    rows.add(y, 1.0);
+    rows.end();
+    rows.begin({"close", {0}}, 0.0, 0.5);
+    rows.add(y, 1.0);
+    rows.add(z, -1.0);
+    rows.end();
+    return program;
+}
+
+TEST(ProgramFiles, MpsMarksIntegersAndWritesRanges) {
+    std::ostringstream out;
+    write_mps(out, small_program(), "small");
+    EXPECT_EQ(out.str(), R"(NAME small FREE
+ROWS
+ N cost
+ L one_of
+ L close_0
+COLUMNS
+ MARKER 'MARKER' 'INTORG'
+ x cost 1
+ x one_of 1
+ y_1 cost -2
+ y_1 one_of 1
+ y_1 close_0 1
+ MARKER 'MARKER' 'INTEND'
+ z_1_2 cost 0
+ z_1_2 close_0 -1
+RHS
+ rhs one_of 1
+ rhs close_0 0.5
+RANGES
+ range close_0 0.5
+BOUNDS
+ LO bound x 0
+ UP bound x 1
+ LO bound y_1 0
+ UP bound y_1 1
+ LO bound z_1_2 0
+ UP bound z_1_2 0.75
+ENDATA
+)");
+}
+
+TEST(ProgramFiles, LpListsBinaries) {
+    std::ostringstream out;
+    write_lp(out, small_program(), "small");
+    EXPECT_EQ(out.str(), R"(\ small
+Minimize
+ cost: + 1 x - 2 y_1 + 0 z_1_2
+Subject To
+ one_of: + 1 x + 1 y_1 <= 1
+ close_0_low: + 1 y_1 - 1 z_1_2 >= 0
+ close_0_high: + 1 y_1 - 1 z_1_2 <= 0.5
+Bounds
+ 0 <= z_1_2 <= 0.75
+Binaries
+ x
+ y_1
+End
+)");
+}
+
+TEST(ProgramFiles, NamesMustTellColumnsApart) {
+    BinaryProgram program = small_program();
+    program.add_column({"y", {1}}, 0.0, true);
+    std::ostringstream out;
+    EXPECT_THROW(write_mps(out, program, "twice"), InvalidInput);
+    EXPECT_THROW(write_lp(out, {}, "empty"), InvalidInput);
+}
+
+SolutionFile read(const std::string& text) {
+    std::istringstream in(text);
+    return read_solution_file(in, small_program());
+}
+
+TEST(SolutionFiles, ByCbc) {
+    const SolutionFile solution =
+        read("Optimal - objective value -2.00000000\n      1 y_1    1    -2\n**    2 z_1_2    0.5    0\n");
+    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
+    EXPECT_EQ(*solution.objective, -2.0);
+    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
+    EXPECT_EQ(read("Infeasible - objective value 0\n").status, SolutionFile::Status::infeasible);
+}
+
+TEST(SolutionFiles, ByGlpsol) {
+    const SolutionFile solution =
+        read("c Problem: small\nc\ns mip 2 3 o -2\ni 1 1\ni 2 0.5\nj 1 0\nj 2 1\nj 3 0.5\ne o f\n");
+    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
+    EXPECT_EQ(*solution.objective, -2.0);
+    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
+    EXPECT_EQ(read("s mip 2 3 n 0\ne o f\n").status, SolutionFile::Status::infeasible);
+}
+
+TEST(SolutionFiles, BadOnesNameTheirLine) {
+    const auto complaint = [](const std::string& text) -> std::string {
+        try {
+            (void)read(text);
+        } catch (const InvalidInput& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    EXPECT_EQ(complaint(""), "line 1: the file is empty");
+    EXPECT_EQ(complaint("Optimal - objective value 1\n 0 q 1 1\n"), "line 2: the program has no column q");
+    EXPECT_EQ(complaint("Optimal - objective value 1\n 0 x\n"), "line 2: must be INDEX NAME VALUE");
+    EXPECT_EQ(complaint("c\ns mip 2 9 o 1\n"), "line 2: has 9 columns, the program 3");
+    EXPECT_EQ(complaint("s mip 2 3 o 1\nj 4 1\n"),
+              "line 2: must be 'j COLUMN VALUE' after the line of the status");
+    EXPECT_EQ(complaint("s mip 2 3 o 1\nj 1 1\n"), "line 3: the file ends before its line 'e o f'");
+}
+
+struct RoundTrip {
+    std::string program;  ///< that must be installed
+    std::string ending;
+    std::string command;  ///< IN and OUT stand for the files
+    friend void PrintTo(const RoundTrip& trip, std::ostream* out) { *out << trip.program << trip.ending; }
+};
+
+class RoundTrips : public testing::TestWithParam<RoundTrip> {};
+
+bool is_installed(const std::string& program) {
+    return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+}
+
+/// Rows added on demand are not in a file, so what is compared are programs, not lanes.
+TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
+    if (!is_installed(GetParam().program)) GTEST_SKIP() << GetParam().program << " is not installed";
+    const std::filesystem::path stem =
+        std::filesystem::temp_directory_path() /
+        ("conelane_program_" + GetParam().program + GetParam().ending + std::to_string(getpid()));
+    const std::string file = stem.string() + "." + GetParam().ending;
+    const std::string solution_file = stem.string() + ".sol";
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 16; ++seed) {
+        for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << to_string(formulation));
+            const Scene scene = tests::random_scene(seed, 7);
+            const LaneGraphProblem problem = make_problem(scene, {}, parts(formulation).extent);
+            const LaneGraphModel model(problem, formulation);
+            const MilpReport ours = make_cbc_solver()->load(model.program())->solve({});
+            {
+                std::ofstream out(file);
+                GetParam().ending == "mps" ? write_mps(out, model.program(), "round_trip")
+                                           : write_lp(out, model.program(), "round_trip");
+            }
+            std::filesystem::remove(solution_file);
+            std::string command = GetParam().command;
+            replace(command, "IN", "'" + file + "'");
+            replace(command, "OUT", "'" + solution_file + "'");
+            ASSERT_EQ(std::system((command + " >/dev/null 2>&1").c_str()), 0) << command;
+            std::ifstream in(solution_file);
+            const SolutionFile theirs = read_solution_file(in, model.program());
+            if (ours.status != SolveStatus::optimal) {
+                EXPECT_EQ(ours.status, SolveStatus::infeasible);
+                EXPECT_NE(theirs.status, SolutionFile::Status::optimal);
+                continue;
+            }
+            ++feasible;
+            ASSERT_EQ(theirs.status, SolutionFile::Status::optimal);
+            EXPECT_NEAR(*theirs.objective, *ours.bound, 1e-6);
+            double recomputed = 0.0;
+            for (std::size_t c = 0; c < theirs.point.size(); ++c) {
+                recomputed += theirs.point[c] * model.program().columns[c].objective;
+            }
+            EXPECT_NEAR(recomputed, *ours.bound, 1e-5);
+        }
+    }
+    std::filesystem::remove(file);
+    std::filesystem::remove(solution_file);
+    EXPECT_GT(feasible, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Programs, RoundTrips,
+                         testing::Values(RoundTrip{"cbc", "mps", "cbc IN solve solution OUT"},
+                                         RoundTrip{"cbc", "lp", "cbc IN solve solution OUT"},
+                                         RoundTrip{"glpsol", "mps", "glpsol --freemps IN --write OUT"},
+                                         RoundTrip{"glpsol", "lp", "glpsol --lp IN --write OUT"}),
+                         [](const auto& test) { return test.param.program + "_" + test.param.ending; });
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,201 @@
+// What a scene shows that is not so: false positives, noise, wrong colours, confidences.
+
+#include "evaluation/scenes/scene_generation.hpp"
+#include "tests/support/toy_track_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using testing::ElementsAre;
+using testing::SizeIs;
+
+TEST(SceneGeneration, RatesGiveTheNumberOfFalsePositives) {
+    // Seven points are seen: k / (7 + k) = rate.
+    const std::vector<std::pair<double, std::size_t>> expected{{0.0, 0}, {0.1, 1}, {1.0 / 6.0, 1},
+                                                               {0.3, 3}, {0.5, 7}, {0.99, 693}};
+    for (const auto& [rate, count] : expected) {
+        const auto scenes = generate(straight(), {{{7.0, 0.0}, 0.0}}, options({rate}, {15.0}));
+        ASSERT_THAT(scenes, SizeIs(1));
+        EXPECT_THAT(scenes[0].scene.cones, SizeIs(7 + count)) << rate;
+        EXPECT_THAT(xs(scenes[0], scenes[0].ground_truth->left), ElementsAre(10, 15, 20)) << rate;
+    }
+}
+
+TEST(SceneGeneration, FalsePositivesFillTheHalfDiscAndOnlyIt) {
+    int scenes_made = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        SceneOptions wanted = options({0.99}, {15.0});
+        wanted.seed = seed;
+        const double yaw_rad = 0.3 * static_cast<double>(seed) - 3.0;
+        const Track track = circle();
+        const auto scenes = generate(track, {{{0.5, 0.25}, yaw_rad}}, wanted);
+        if (scenes.empty()) continue;  // fewer than two cones of a side are ahead
+        ++scenes_made;
+        const Scene& scene = scenes[0].scene;
+        double ahead_m = 0.0;
+        double left_m = 0.0;
+        std::size_t count = 0;
+        for (const Cone& cone : scene.cones) {
+            const bool of_track = std::ranges::any_of(
+                track.cones, [&](const Cone& other) { return other.position == cone.position; });
+            EXPECT_GE(scene.pose.ahead_m(cone.position), 0.0);
+            EXPECT_LE((cone.position - scene.pose.position).norm(), 15.0 + 1e-12);
+            if (of_track) continue;
+            ++count;
+            ahead_m += scene.pose.ahead_m(cone.position);
+            left_m += scene.pose.left_m(cone.position);
+        }
+        // Centroid of a half disc: 4 r / (3 pi) ahead, on the axis. About 1200 points: 5 standard errors.
+        ASSERT_GT(count, 900u);
+        EXPECT_NEAR(ahead_m / static_cast<double>(count), 4.0 * 15.0 / (3.0 * std::numbers::pi), 0.7);
+        EXPECT_NEAR(left_m / static_cast<double>(count), 0.0, 1.2);
+    }
+    EXPECT_GE(scenes_made, 10);
+}
+
+TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.0}, {15.0});
+    wanted.pose_noise_lateral_m = 0.3;
+    wanted.pose_noise_yaw_rad = 0.05;
+    double squared_lateral = 0.0;
+    double squared_yaw = 0.0;
+    const auto displaced = generate(straight(), poses, wanted);
+    ASSERT_THAT(displaced, SizeIs(1000));
+    for (const auto& scene : displaced) {
+        EXPECT_EQ(scene.scene.pose.position.x(), 7.0);
+        squared_lateral += std::pow(scene.scene.pose.position.y(), 2);
+        squared_yaw += std::pow(scene.scene.pose.yaw_rad, 2);
+    }
+    EXPECT_NEAR(std::sqrt(squared_lateral / 1000), 0.3, 0.03);
+    EXPECT_NEAR(std::sqrt(squared_yaw / 1000), 0.05, 0.005);
+
+    wanted = options({0.0}, {15.0});
+    wanted.noise_sigma_m = 0.1;
+    double squared = 0.0;
+    for (const auto& scene : generate(straight(), poses, wanted)) {
+        EXPECT_THAT(scene.scene.cones, SizeIs(7)) << "which cones are visible does not depend on the noise";
+        squared += (cone_of(scene, scene.ground_truth->left[0]).position - Point(10.0, 1.5)).squaredNorm();
+    }
+    EXPECT_NEAR(std::sqrt(squared / 2000), 0.1, 0.01);
+
+    wanted = options({0.0}, {40.0});
+    wanted.miss_rate = 0.2;
+    std::size_t seen = 0;
+    for (const auto& scene : generate(straight(), poses, wanted)) seen += scene.scene.cones.size();
+    // From x = 7 to x = 47: eight cones a side and the stray point.
+    EXPECT_NEAR(static_cast<double>(seen) / 17000.0, 0.8, 0.01);
+}
+
+TEST(SceneGeneration, ColoursShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem) {
+    Track track = straight();
+    track.cones[track.left[2]].color = ConeColor::orange;
+    track.cones[track.left[3]].color = ConeColor::yellow;  // the recording was wrong
+    SceneOptions wanted = options({0.9}, {15.0});
+    const auto colorless = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
+    for (const Cone& cone : colorless[0].scene.cones) {
+        EXPECT_EQ(cone.color, ConeColor::unknown);
+    }
+    wanted.with_color = true;
+    const auto scenes = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
+    const Lane& lane = *scenes[0].ground_truth;
+    EXPECT_EQ(cone_of(scenes[0], lane.left[0]).color, ConeColor::orange);
+    EXPECT_EQ(cone_of(scenes[0], lane.left[1]).color, ConeColor::blue);
+    EXPECT_EQ(cone_of(scenes[0], lane.right[0]).color, ConeColor::yellow);
+    std::map<ConeColor, int> count;
+    for (const Cone& cone : scenes[0].scene.cones) ++count[cone.color];
+    EXPECT_EQ(count[ConeColor::orange], 1);
+    for (const ConeColor color : {ConeColor::blue, ConeColor::yellow, ConeColor::unknown}) {
+        EXPECT_GT(count[color], 10);  // of 63 false positives
+    }
+}
+
+TEST(SceneGeneration, ColourErrorsPaintConesOfABoundaryLikeTheOtherOne) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.3}, {15.0});
+    wanted.with_color = true;
+    const auto right = generate(straight(), poses, wanted);
+    wanted.color_error_rate = 0.2;
+    const auto scenes = generate(straight(), poses, wanted);
+    ASSERT_THAT(scenes, SizeIs(1000));
+    EXPECT_EQ(scenes[3].scene.id, "toy/pose_0003/fp_0.30/range_15/color_error_0.2");
+    int wrong = 0;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const auto count = [&](const std::vector<ConeId>& run, ConeColor own, ConeColor other) {
+            for (const ConeId id : run) {
+                const ConeColor color = cone_of(scenes[i], id).color;
+                EXPECT_TRUE(color == own || color == other);
+                if (color == other) ++wrong;
+            }
+        };
+        count(scenes[i].ground_truth->left, ConeColor::blue, ConeColor::yellow);
+        count(scenes[i].ground_truth->right, ConeColor::yellow, ConeColor::blue);
+        // Nothing else has moved: the same false positives in the same order.
+        ASSERT_EQ(scenes[i].scene.cones.size(), right[i].scene.cones.size());
+        for (std::size_t c = 0; c < right[i].scene.cones.size(); ++c) {
+            EXPECT_EQ(scenes[i].scene.cones[c].position, right[i].scene.cones[c].position);
+        }
+    }
+    EXPECT_NEAR(wrong / 6000.0, 0.2, 0.02);  // three cones a side in each scene
+}
+
+/// Means and spreads of the two distributions by the Beta's formulas, and the share of pairs in which the
+/// real cone has the higher confidence.
+TEST(SceneGeneration, ConfidencesOfConesAndFalsePositivesOverlap) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.5}, {15.0});
+    const auto plain = generate(straight(), poses, wanted);
+    wanted.with_confidence = true;
+    const auto scenes = generate(straight(), poses, wanted);
+    std::vector<double> real;
+    std::vector<double> others;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const Lane& lane = *scenes[i].ground_truth;
+        for (std::size_t c = 0; c < scenes[i].scene.cones.size(); ++c) {
+            const Cone& cone = scenes[i].scene.cones[c];
+            EXPECT_EQ(plain[i].scene.cones[c].confidence, 1.0);
+            EXPECT_EQ(plain[i].scene.cones[c].position, cone.position);
+            ASSERT_TRUE(cone.confidence >= 0.0 && cone.confidence <= 1.0);
+            const bool on_lane =
+                std::ranges::count(lane.left, cone.id) + std::ranges::count(lane.right, cone.id) > 0;
+            (on_lane ? real : others).push_back(cone.confidence);
+        }
+    }
+    const auto expect_beta = [](const std::vector<double>& values, double a, double b) {
+        const auto count = static_cast<double>(values.size());
+        double sum = 0.0;
+        double squares = 0.0;
+        for (const double value : values) {
+            sum += value;
+            squares += value * value;
+        }
+        const double mean = sum / count;
+        EXPECT_NEAR(mean, a / (a + b), 0.01);
+        EXPECT_NEAR(squares / count - mean * mean, a * b / ((a + b) * (a + b) * (a + b + 1.0)), 0.002);
+    };
+    ASSERT_THAT(real, SizeIs(6000));
+    ASSERT_THAT(others, SizeIs(8000));  // the stray point of the map and seven false positives
+    expect_beta(real, 5.0, 2.0);
+    expect_beta(others, 2.0, 4.0);
+    int higher = 0;
+    for (std::size_t i = 0; i < real.size(); ++i) {
+        if (real[i] > others[i]) ++higher;
+    }
+    EXPECT_NEAR(higher / 6000.0, 0.93, 0.01);
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,142 @@
+// What the independent checker makes of the answers of RLD methods.
+
+#include "experiments/comparison/answer_check.hpp"
+
+#include "evaluation/scenes/scene_set.hpp"
+#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/runner.hpp"
+#include "tests/support/no_time_limit.hpp"
+#include "tests/support/straight_scene.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::ElementsAre;
+using testing::StartsWith;
+
+/// What rld-pair answers on the straight lane, unchecked.
+LaneRecord answer_on(const AnnotatedScene& scene) {
+    LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
+    record.answer = make_detector(find_method("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
+    return record;
+}
+
+void expect_rejected(LaneRecord record, const AnnotatedScene& scene) {
+    check_answer(record, scene.scene, {});
+    EXPECT_FALSE(record.checked);
+    EXPECT_EQ(record.answer.status, LaneStatus::error);
+    EXPECT_THAT(record.answer.message, StartsWith("rejected by the checker: "));
+    EXPECT_EQ(record.answer.lane, Lane{});
+    EXPECT_FALSE(record.answer.optimality);
+}
+
+TEST(LaneGraphOf, JoinsNeighboursOfEachBoundary) {
+    const AnnotatedScene scene = straight_scene();  // cones: 1, 101, 2, 102, 3, 103, ...
+    const auto open = lane_graph_of({{1, 2, 3}, {101, 103}}, scene.scene);
+    ASSERT_TRUE(open);
+    EXPECT_THAT(open->edges, ElementsAre(Edge{0, 2}, Edge{1, 5}, Edge{2, 4}));
+    const auto closed = lane_graph_of({{1, 2, 3}, {}, true}, scene.scene);
+    ASSERT_TRUE(closed);
+    EXPECT_THAT(closed->edges, ElementsAre(Edge{0, 2}, Edge{0, 4}, Edge{2, 4}));
+    EXPECT_FALSE(lane_graph_of({{1, 77}, {101, 102}}, scene.scene));
+    EXPECT_FALSE(lane_graph_of({{1, 1}, {101, 102}}, scene.scene));
+}
+
+TEST(CheckAnswer, MarksWhatItAccepts) {
+    const AnnotatedScene scene = straight_scene();
+    LaneRecord record = answer_on(scene);
+    const Lane lane = record.answer.lane;
+    check_answer(record, scene.scene, {});
+    EXPECT_TRUE(record.checked);
+    EXPECT_EQ(record.answer.status, LaneStatus::found);
+    EXPECT_EQ(record.answer.lane, lane);
+}
+
+TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
+    const AnnotatedScene scene = straight_scene();
+    const LaneRecord right = answer_on(scene);
+    ASSERT_TRUE(right.answer.optimality);
+
+    LaneRecord cheaper = right;
+    cheaper.answer.optimality->objective -= 1.0;
+    cheaper.answer.optimality->bound -= 1.0;
+    expect_rejected(cheaper, scene);
+
+    LaneRecord unproven = right;  // optimal, and yet the bound is far below
+    unproven.answer.optimality->bound -= 1.0;
+    expect_rejected(unproven, scene);
+
+    LaneRecord leaping = right;  // a cone left out: a segment of 8 m
+    leaping.answer.lane.left.erase(leaping.answer.lane.left.begin() + 2);
+    leaping.answer.optimality.reset();
+    expect_rejected(leaping, scene);
+
+    LaneRecord unseen = right;
+    unseen.answer.lane.left.back() = 77;
+    expect_rejected(unseen, scene);
+}
+
+TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
+    const AnnotatedScene scene = straight_scene();
+    const Method& method = find_method("rld-context");
+    LaneRecord right{scene.scene.id, "rld-context",
+                     make_detector(method)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
+                     cone_set(method, {}).nearest};
+    ASSERT_TRUE(right.answer.uncut);
+    LaneRecord record = right;
+    check_answer(record, cone_set(method, {}).seen(scene.scene), {});
+    EXPECT_TRUE(record.checked) << record.answer.message;
+
+    LaneRecord longer = right;  // not what the cut leaves
+    longer.answer.lane = longer.answer.uncut->lane;
+    expect_rejected(longer, scene);
+
+    LaneRecord cheaper = right;
+    cheaper.answer.uncut->optimality->objective -= 1.0;
+    cheaper.answer.uncut->optimality->bound -= 1.0;
+    expect_rejected(cheaper, scene);
+
+    LaneRecord leaping = right;  // a cone left out beyond the cut, so the cut leaves the same
+    leaping.answer.uncut->lane.left.erase(leaping.answer.uncut->lane.left.begin() + 8);
+    leaping.answer.uncut->optimality.reset();
+    expect_rejected(leaping, scene);
+}
+
+TEST(CheckAnswer, LeavesWhatHasNoLane) {
+    const AnnotatedScene scene = straight_scene();
+    LaneRecord none{"a", "rld-pair", {}, 1.0, {}};
+    none.answer.status = LaneStatus::none;
+    check_answer(none, scene.scene, {});
+    EXPECT_EQ(none.answer.status, LaneStatus::none);
+    EXPECT_FALSE(none.checked);
+}
+
+TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
+    SceneOptions options;
+    options.false_positive_rates = {0.3};
+    options.ranges_m = {30.0};
+    options.every_m = 15.0;
+    const SceneSet set = make_scene_set({"generated:kidney"}, options);
+    for (const char* method :
+         {"rld-cbc", "rld-pair", "rld-context", "rld-shape", "rld-shape-context", "clc"}) {
+        SCOPED_TRACE(method);
+        const Method& entry = find_method(method);
+        std::size_t found = 0;
+        for (const LaneRecord& record : run(std::string(method), maker_of(entry, {}), set.scenes, {})) {
+            EXPECT_NE(record.answer.status, LaneStatus::error) << record.answer.message;
+            EXPECT_EQ(record.checked, entry.is_rld() && record.answer.status == LaneStatus::found);
+            if (record.answer.status == LaneStatus::found) ++found;
+        }
+        EXPECT_GT(found, set.scenes.size() / 2);
+    }
+}
+
+}  // namespace
+}  // namespace conelane::experiments

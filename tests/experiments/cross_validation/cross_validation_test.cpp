@@ -1,0 +1,117 @@
+#include "experiments/cross_validation/cross_validation.hpp"
+
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/training_courses.hpp"
+#include "tests/support/program_fixture.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two families of a course each, and one that is always learned from; as little work as shows the way.
+const std::string kFolds =
+    "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
+    "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
+    "--range 30 --every 40 --front-steps 0.002 --out cv --methods ";
+
+std::vector<std::string> courses_learned(const std::string& weights) {
+    return nlohmann::json::parse(weights).at("training").at("tracks").get<std::vector<std::string>>();
+}
+
+class CrossValidation : public ProgramFixture {};
+
+TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
+    const Outcome outcome = run(kFolds + "front,clc,delaunay-beam,rld-pair");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/step_scores.json"))),
+                testing::ElementsAre("curvy", "straight"));
+    EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rank_net_extended.json"))),
+                testing::ElementsAre("curvy", "straight"));
+    EXPECT_THAT(courses_learned(text_of(path("cv/folds/b/rank_net_extended.json"))),
+                testing::ElementsAre("circle", "straight"));
+    EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/front.json"))),
+                testing::UnorderedElementsAre("curvy", "straight"));
+    EXPECT_THAT(outcome.output, Not(HasSubstr("learned from"))) << "nothing in the table was learned from";
+
+    // Each course is driven by the weights of the fold that holds it out, and by no others.
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
+    RunOptions options;
+    options.limits.time_limit_ms = 400.0;
+    for (const std::string method : {"clc", "front"}) {
+        const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + method + ".lanes.jsonl"));
+        ASSERT_EQ(lanes.size(), scenes.size());
+        for (std::size_t i = 0; i < scenes.size(); ++i) {
+            const std::string fold = scenes[i].track == "circle" ? "a" : "b";
+            const MethodMaker maker = find_learner(method)->maker(path("cv/folds/" + fold), options);
+            EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
+                << scenes[i].scene.id;
+        }
+    }
+}
+
+TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
+    ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam").exit_code, 0);
+    const std::string net = text_of(path("cv/folds/a/rank_net_paper.json"));
+    const std::string lanes = text_of(path("cv/delaunay-beam.lanes.jsonl"));
+    const auto learned = std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json"));
+    std::filesystem::remove(path("cv/folds/b/rank_net_paper.json"));
+    std::filesystem::remove(path("cv/clc-paper.lanes.jsonl"));
+    std::filesystem::remove(path("cv/results.jsonl"));
+    const Outcome again = run(kFolds + "clc-paper,delaunay-beam");
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_EQ(std::filesystem::last_write_time(path("cv/folds/a/rank_net_paper.json")), learned);
+    EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net);
+    EXPECT_EQ(text_of(path("cv/delaunay-beam.lanes.jsonl")), lanes) << "not driven again";
+    EXPECT_TRUE(std::filesystem::exists(path("cv/folds/b/rank_net_paper.json")));
+    EXPECT_TRUE(std::filesystem::exists(path("cv/results.jsonl")));
+
+    const Outcome other = run(kFolds + "clc-paper,delaunay-beam --seed 3");
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.errors, HasSubstr("--overwrite"));
+    EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "nothing was touched";
+    ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam --seed 3 --overwrite").exit_code, 0);
+    EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "learned anew";
+}
+
+TEST_F(CrossValidation, RefusesFoldsThatAreNone) {
+    const auto errors = [&](const std::string& options) {
+        const Outcome outcome = run("cross-validate --every 40 --methods rld-pair --out cv " + options);
+        EXPECT_EQ(outcome.exit_code, 2) << options;
+        EXPECT_FALSE(std::filesystem::exists(path("cv"))) << options;
+        return outcome.errors;
+    };
+    EXPECT_THAT(errors("--family a=generated:circle"), HasSubstr("two"));
+    EXPECT_THAT(errors("--family a=generated:circle --family b=generated:circle"), HasSubstr("'circle'"));
+    EXPECT_THAT(errors("--family a=generated:circle --family b=generated:curvy --always generated:curvy"),
+                HasSubstr("'curvy'"));
+    EXPECT_THAT(errors("--family generated:circle --family b=generated:curvy"), HasSubstr("NAME=SPEC"));
+    EXPECT_THAT(errors("--family ../a=generated:circle --family b=generated:curvy"), HasSubstr("NAME=SPEC"));
+}
+
+TEST_F(CrossValidation, AComparisonMarksTheCoursesThatAMethodHasLearnedFrom) {
+    ASSERT_TRUE(training_courses("clc").contains("curvy@1"));
+    ASSERT_FALSE(training_courses("clc").contains("circle"));
+    EXPECT_TRUE(training_courses("delaunay-beam").contains("fsd_1"));
+    EXPECT_TRUE(training_courses("astar-lane").contains("fsd_2"));
+    EXPECT_TRUE(training_courses("rld-pair").empty());
+    const std::string common = "compare --methods rld-pair,clc --every 60 --fp 0 --out ";
+    const Outcome seen = run(common + "seen --tracks generated:curvy@1 generated:circle");
+    ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+    EXPECT_THAT(seen.output, HasSubstr("* with courses that the method has learned from"));
+    const Outcome unseen = run(common + "unseen --tracks generated:circle");
+    EXPECT_THAT(unseen.output, Not(HasSubstr("learned from")));
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,248 @@
+// `conelane instances`: files that other solvers read, and optima that do not come from one engine alone.
+
+#include "conelane/solve_scene.hpp"
+#include "experiments/instances/instance_library.hpp"
+#include "solvers/milp/clp_bb_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/contestants.hpp"
+#include "tests/support/program_fixture.hpp"
+#include "tests/support/slowness.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kSameObjective = 1e-6;
+
+/// The lines of a .solu file by name: `=opt=` and so on, and the value.
+struct Known {
+    std::string mark;
+    double value = 0.0;
+};
+std::map<std::string, Known> read_solu(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    EXPECT_TRUE(in) << file;
+    std::map<std::string, Known> all;
+    Known known;
+    for (std::string name; in >> known.mark >> name;) {
+        if (known.mark != "=inf=") in >> known.value;
+        if (known.mark != "=bestdual=") all[name] = known;
+    }
+    return all;
+}
+
+std::set<std::string> lines_of(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    EXPECT_TRUE(in) << file;
+    std::set<std::string> all;
+    for (std::string line; std::getline(in, line);) all.insert(line);
+    return all;
+}
+
+std::string unpacked(const std::filesystem::path& file) {
+    gzFile in = gzopen(file.c_str(), "rb");
+    EXPECT_NE(in, nullptr) << file;
+    std::string text;
+    std::array<char, 4096> block{};
+    for (int read = 0; (read = gzread(in, block.data(), block.size())) > 0;) {
+        text.append(block.data(), static_cast<std::size_t>(read));
+    }
+    EXPECT_EQ(gzclose(in), Z_OK);
+    return text;
+}
+
+const std::filesystem::path kStored = CONELANE_SOURCE_DIR "/tests/experiments/instances/library";
+
+/// The options that tests/experiments/instances/library/ were made with, see README.md there, but for the
+/// slice of it.
+InstanceOptions slice_of_stored() {
+    InstanceOptions options;
+    options.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
+    options.scenes.false_positive_rates = {0.1667, 0.5};
+    options.scenes.ranges_m = {30.0};
+    options.scenes.every_m = 120.0;
+    options.scenes.seed = 7;
+    options.nearest = {12};
+    return options;
+}
+
+class Instances : public ProgramFixture {};
+
+TEST_F(Instances, ASliceOfTheStoredLibraryIsTheSameAgain) {
+    const InstanceOptions options = slice_of_stored();
+    const std::vector<InstanceScene> scenes = instance_scenes(options);
+    const InstanceCounts counts = write_instances(path("made"), scenes, options);
+    EXPECT_EQ(counts.written, 2 * scenes.size());
+    EXPECT_EQ(counts.optimal, counts.written) << "twelve cones take milliseconds";
+    const std::set<std::string> stored_list = lines_of(kStored / "conelane.test");
+    for (const std::string& file : lines_of(path("made") / "conelane.test")) {
+        EXPECT_TRUE(stored_list.contains(file)) << file;
+        EXPECT_TRUE(std::filesystem::exists(path("made") / file)) << file;
+    }
+    std::map<std::string, Known> stored = read_solu(kStored / "conelane.solu");
+    const std::map<std::string, Known> made = read_solu(path("made") / "conelane.solu");
+    ASSERT_EQ(made.size(), counts.written);
+    for (const auto& [name, known] : made) {
+        EXPECT_EQ(known.mark, "=opt=") << name;
+        EXPECT_EQ(stored[name].mark, "=opt=") << name;
+        EXPECT_NEAR(known.value, stored[name].value, kSameObjective) << name;
+    }
+}
+
+/// What is stored as open cannot be beaten by a bound: no search may prove that there is nothing so good.
+TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
+    InstanceOptions options;
+    options.tracks = {"generated:legs", "generated:infield"};
+    options.scenes.false_positive_rates = {0.5};
+    options.scenes.ranges_m = {30.0};
+    options.scenes.every_m = 60.0;
+    options.scenes.seed = 7;
+    options.nearest = {std::nullopt};
+    const std::map<std::string, Known> stored = read_solu(kStored / "hard.solu");
+    const auto solver = make_path_pair_solver();
+    int compared = 0;
+    for (const InstanceScene& set : instance_scenes(options)) {
+        const auto known = stored.find(set.name + std::string(ending_of(Formulation::tight)));
+        if (known == stored.end()) continue;
+        SCOPED_TRACE(set.name);
+        EXPECT_EQ(known->second.mark, "=best=");
+        const RldReport report =
+            solve_scene(*solver, set.scene, options.parameters, {50.0 * tests::kSlowness}).report;
+        ASSERT_NE(report.status, SolveStatus::error) << report.message;
+        ASSERT_NE(report.status, SolveStatus::infeasible);
+        EXPECT_LE(report.bound.value(), known->second.value + kSameObjective);
+        ++compared;
+    }
+    EXPECT_EQ(compared, 4);
+}
+
+TEST_F(Instances, EverySolverFindsTheStoredOptima) {
+    std::map<std::string, Known> stored = read_solu(kStored / "conelane.solu");
+    InstanceOptions options = slice_of_stored();
+    int compared = 0;
+    for (const InstanceScene& set : instance_scenes(options)) {
+        for (const tests::Contestant& contestant : tests::contestants()) {
+            const RldSolverEntry& entry = *contestant.entry;
+            if (!entry.exact || entry.most_cones.value_or(12) < 12) continue;
+            SCOPED_TRACE(set.name + " " + std::string(entry.name));
+            // The printed program takes seconds without CBC's full machinery.
+            if (contestant.formulation == Formulation::paper && entry.name != "cbc-main") continue;
+            const auto solver = entry.make(contestant.formulation);
+            const RldReport report = solve_scene(*solver, set.scene, options.parameters, {}).report;
+            ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+            const std::string name = set.name + std::string(ending_of(contestant.formulation));
+            EXPECT_NEAR(*report.objective, stored[name].value, kSameObjective);
+            ++compared;
+        }
+    }
+    EXPECT_GE(compared, 36);
+}
+
+/// Four gates ahead of the car, and far to the left ten cones in a ring.
+Scene lane_and_ring() {
+    Scene scene;
+    for (int i = 0; i < 4; ++i) {
+        scene.cones.push_back({i, {1.0 + 3.2 * i, 1.8}});
+        scene.cones.push_back({10 + i, {1.2 + 3.2 * i, -1.8}});
+    }
+    for (int i = 0; i < 10; ++i) {
+        const double angle_rad = 0.2 * std::numbers::pi * i;
+        scene.cones.push_back({20 + i, {6.0 + 5.2 * std::cos(angle_rad), 25.0 + 5.2 * std::sin(angle_rad)}});
+    }
+    return scene;
+}
+
+// Without the rows of (5) the program of a scene earns the ring's edges as well, which are no lane.
+TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
+    const std::optional<Instance> instance =
+        make_instance(lane_and_ring(), "ring", Formulation::tight, InstanceOptions{});
+    ASSERT_TRUE(instance);
+    ASSERT_EQ(instance->optimum.status, KnownOptimum::Status::optimal);
+    const MilpReport report = make_clp_bb_solver()->load(instance->program)->solve({});
+    ASSERT_EQ(report.status, SolveStatus::optimal);
+    EXPECT_NEAR(*report.bound, *instance->optimum.best, kSameObjective);
+    BinaryProgram bare = instance->program;
+    std::size_t rows = bare.rows.size();
+    while (bare.rows[rows - 1].label.family == "separated") --rows;
+    ASSERT_LT(rows, bare.rows.size());
+    bare.truncate_rows(rows);
+    const MilpReport relaxed = make_clp_bb_solver()->load(bare)->solve({});
+    ASSERT_EQ(relaxed.status, SolveStatus::optimal);
+    EXPECT_LT(*relaxed.bound, *instance->optimum.best - 1.0);
+}
+
+TEST_F(Instances, WhatNoEngineCanFinishIsOpen) {
+    InstanceOptions options = slice_of_stored();
+    options.time_limit_ms = 1e-6;
+    std::vector<InstanceScene> scenes = instance_scenes(options);
+    scenes.resize(1);
+    const InstanceCounts counts = write_instances(path("made"), scenes, options);
+    EXPECT_EQ(counts.written, 2u);
+    EXPECT_EQ(counts.optimal + counts.infeasible, 0u);
+    for (const auto& [name, known] : read_solu(path("made") / "conelane.solu")) {
+        EXPECT_NE(known.mark, "=opt=") << name;
+    }
+}
+
+TEST_F(Instances, TheProgramWritesFilesThatUnpack) {
+    const std::string arguments =
+        " --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12,16 --seed 3 --out ";
+    const Outcome outcome = run("instances" + arguments + "made");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("4 programs in made: "));
+    const std::string name = "curvy_pose_0000_fp_0.50_range_30_n12.tight";
+    const std::string text = unpacked(path("made") / (name + ".mps.gz"));
+    EXPECT_THAT(text, HasSubstr("NAME " + name + " FREE\nROWS\n"));
+    EXPECT_TRUE(text.ends_with("ENDATA\n"));
+    EXPECT_EQ(lines_of(path("made") / "conelane.test").size(), 4u);
+}
+
+TEST_F(Instances, OfAnotherSolverHaveTheSameOptima) {
+    if (std::system("command -v cbc >/dev/null") != 0) GTEST_SKIP() << "there is no program cbc";
+    ASSERT_EQ(
+        run("instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --out made").exit_code,
+        0);
+    const std::map<std::string, Known> known = read_solu(path("made") / "conelane.solu");
+    ASSERT_EQ(known.size(), 2u);
+    for (const auto& [name, optimum] : known) {
+        SCOPED_TRACE(name);
+        ASSERT_EQ(optimum.mark, "=opt=");
+        const std::string command = "cd " + (path("made")).string() + " && cbc " + name +
+                                    ".mps.gz solve solution by_cbc.txt >by_cbc.log 2>&1";
+        ASSERT_EQ(std::system(command.c_str()), 0);
+        std::ifstream in(path("made") / "by_cbc.txt");
+        std::string head;
+        std::getline(in, head);
+        ASSERT_THAT(head, HasSubstr("Optimal - objective value"));
+        EXPECT_NEAR(std::stod(head.substr(head.rfind(' '))), optimum.value, 1e-5) << "as cbc prints it";
+    }
+}
+
+TEST_F(Instances, BadOptionsAreRefused) {
+    expect_refused("instances --nearest twelve --out made", {"--nearest", "twelve"});
+    expect_refused("instances --nearest 12,12 --out made", {"--nearest", "12"});
+    expect_refused("instances --tracks generated:nowhere --out made", {"nowhere"});
+    std::ofstream(path("file")) << "x";
+    expect_refused("instances --out file", {"file"});
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,397 @@
+// How the weights of `front` are learned: gradients, scenes, the loop and its files.
+
+#include "experiments/training/front_training.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/front_weights_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/tracks/centre_line.hpp"
+#include "evaluation/tracks/generated_tracks.hpp"
+#include "experiments/training/front_gradient.hpp"
+#include "experiments/training/front_training_run.hpp"
+#include "graph_search/weights/shipped_weights.hpp"
+#include "tests/support/front_fixture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using tests::random_front_weights;
+
+std::vector<Track> courses() {
+    return {generate_track("hairpins", 1), generate_track("kidney", 2)};
+}
+
+FrontNetworkWeights random_network(std::size_t inputs, std::uint64_t seed) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::normal_distribution<float> any(0.0F, 0.3F);
+    FrontNetworkWeights network = FrontNetworkWeights::zero(inputs);
+    for (std::vector<float>* numbers :
+         {&network.hidden, &network.hidden_bias, &network.output, &network.linear})
+        for (float& number : *numbers) number = any(random);
+    return network;
+}
+
+FrontTrainingOptions quick() {
+    FrontTrainingOptions options;
+    options.draws_per_step = 3;
+    options.scenes.scenes_per_draw = 2;
+    options.imitation_steps = 6;
+    options.search_steps = 6;
+    options.judge_steps = 4;
+    options.trust_draws = 5;
+    options.figures_every = 6;
+    options.loss.search.beam_width = 6;
+    return options;
+}
+
+TEST(FrontGradient, AgreesWithFiniteDifferences) {
+    FrontNetworkWeights network = random_front_weights(1).stop;
+    const std::vector<float> inputs = [] {
+        std::vector<float> x(kStopInputs);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            x[i] = static_cast<float>(std::sin(1.0 + static_cast<double>(i)));
+        return x;
+    }();
+    FrontNetworkWeights derivatives = FrontNetworkWeights::zero(kStopInputs);
+    add_derivatives(network, inputs, 2.0F, derivatives);
+    // Beyond a kink of max(0, x) a difference is no derivative; so small a step seldom meets one.
+    constexpr float kStep = 1e-3F;
+    const auto check = [&](float& weight, float derivative) {
+        const float kept = weight;
+        weight = kept + kStep;
+        const float above = FrontNetwork(network).score(inputs);
+        weight = kept - kStep;
+        const float below = FrontNetwork(network).score(inputs);
+        weight = kept;
+        EXPECT_NEAR(2.0F * (above - below) / (2.0F * kStep), derivative, 0.02F);
+    };
+    for (std::size_t i = 0; i < network.hidden.size(); i += 7)
+        check(network.hidden[i], derivatives.hidden[i]);
+    for (std::size_t i = 0; i < kFrontUnits; ++i) {
+        check(network.hidden_bias[i], derivatives.hidden_bias[i]);
+        check(network.output[i], derivatives.output[i]);
+    }
+    for (std::size_t i = 0; i < kStopInputs; ++i) check(network.linear[i], derivatives.linear[i]);
+    check(network.output_bias, derivatives.output_bias);
+}
+
+/// The loss of a scene falls along its gradient as fast as the gradient says.
+TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
+    const FrontScenes scenes(courses(), {}, 3);
+    const FrontScenes::Drawn drawn = scenes.draw(5);
+    ASSERT_FALSE(drawn.scenes.empty());
+    FrontWeights weights = random_front_weights(2);
+    for_each_block(weights, [](std::span<float> block) {
+        for (float& number : block) number *= 0.3F;
+    });
+    FrontLearner learner;
+    const auto loss_of = [&](const FrontWeights& at, FrontWeights& derivatives) {
+        FrontCost cost(at);
+        return learner.imitate(drawn.scenes.front(), at, cost, {}, derivatives).sum;
+    };
+    FrontWeights derivatives = FrontWeights::zero();
+    (void)loss_of(weights, derivatives);
+    double squared = 0.0;
+    for_each_block(std::as_const(derivatives), [&](std::span<const float> block) {
+        for (const float number : block) squared += static_cast<double>(number) * static_cast<double>(number);
+    });
+    ASSERT_GT(squared, 0.0);
+    const auto step_by = [&](double step) {
+        FrontWeights moved = derivatives;
+        for_each_block(moved, [&](std::span<float> block) {
+            for (float& number : block) number *= static_cast<float>(step / std::sqrt(squared));
+        });
+        add(moved, weights);
+        FrontWeights ignored = FrontWeights::zero();
+        return loss_of(moved, ignored);
+    };
+    constexpr double kStep = 1e-3;
+    const double slope = (step_by(kStep) - step_by(-kStep)) / (2.0 * kStep);
+    EXPECT_NEAR(slope / std::sqrt(squared), 1.0, 0.02);
+}
+
+/// So does that of the judge, by each network alone; `right` is an input of the others.
+TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
+    const FrontScenes scenes(courses(), {}, 3);
+    const FrontScenes::Drawn drawn = scenes.draw(5);
+    ASSERT_FALSE(drawn.scenes.empty());
+    FrontWeights weights = random_front_weights(2);
+    for_each_block(weights, [](std::span<float> block) {
+        for (float& number : block) number *= 0.3F;
+    });
+    weights.rank = weights.usable = random_network(kWholeLaneFeatures, 7);
+    weights.right = random_network(kRightInputs, 8);
+    FrontJudgeLossOptions options;
+    options.listwise = 0.0;  // is no part of the sum
+    FrontJudgeLearner learner;
+    const auto loss_of = [&](const FrontWeights& at, FrontWeights* derivatives) {
+        FrontCost cost(at);
+        FrontJudge judge(at);
+        return learner.judge(drawn.scenes.front(), drawn.boundaries, at, cost, judge, options, derivatives)
+            .sum;
+    };
+    FrontWeights derivatives = FrontWeights::zero();
+    ASSERT_GT(loss_of(weights, &derivatives), 0.0);
+    for (auto network : {&FrontWeights::rank, &FrontWeights::usable}) {
+        const FrontNetworkWeights& slopes = derivatives.*network;
+        const auto step_by = [&](float step) {
+            FrontWeights moved = weights;
+            for (std::size_t i = 0; i < slopes.linear.size(); ++i)
+                (moved.*network).linear[i] += step * slopes.linear[i];
+            return loss_of(moved, nullptr);
+        };
+        double squared = 0.0;
+        for (const float slope : slopes.linear)
+            squared += static_cast<double>(slope) * static_cast<double>(slope);
+        ASSERT_GT(squared, 0.0);
+        const auto step = static_cast<float>(0.01 / std::sqrt(squared));
+        const double slope = (step_by(step) - step_by(-step)) / (2.0 * static_cast<double>(step));
+        EXPECT_NEAR(slope / squared, 1.0, 0.02);
+    }
+}
+
+TEST(FrontTraining, TrustsNoFartherThanItsShareOfScenesAllows) {
+    FrontTrainingOptions options = quick();
+    const auto least_trust = [&](double trusted) {
+        options.trusted = trusted;
+        return train_front(courses(), {}, options, {}).least_trust;
+    };
+    EXPECT_EQ(least_trust(0.01), 0.0) << "nearly all lanes may be wrong";
+    const double strict = least_trust(1.0);
+    EXPECT_GT(strict, 0.0);
+    EXPECT_LE(strict, 1.0);
+    EXPECT_LE(least_trust(0.7), strict);
+}
+
+TEST(FrontScenes, DrawTheSameForTheSameNumber) {
+    const FrontScenes scenes(courses(), {}, 1);
+    std::size_t drawn_scenes = 0;
+    for (std::uint64_t number = 0; number < 6; ++number) {
+        const FrontScenes::Drawn first = scenes.draw(number);
+        const FrontScenes::Drawn again = scenes.draw(number);
+        ASSERT_EQ(first.scenes.size(), again.scenes.size());
+        for (std::size_t i = 0; i < first.scenes.size(); ++i) {
+            const AnnotatedScene& a = first.scenes[i];
+            const AnnotatedScene& b = again.scenes[i];
+            EXPECT_EQ(a.ground_truth, b.ground_truth);
+            ASSERT_EQ(a.scene.cones.size(), b.scene.cones.size());
+            for (std::size_t k = 0; k < a.scene.cones.size(); ++k)
+                EXPECT_EQ(a.scene.cones[k].position, b.scene.cones[k].position);
+            EXPECT_NO_THROW(validate(a.scene));
+            ++drawn_scenes;
+        }
+    }
+    EXPECT_GT(drawn_scenes, 12U);
+}
+
+// Whatever is done to a course, its ground truth stays a lane that scores as one.
+TEST(FrontScenes, TheirGroundTruthsAreUsable) {
+    const FrontScenes scenes(courses(), {}, 2);
+    std::size_t usable = 0;
+    std::size_t all = 0;
+    for (std::uint64_t number = 0; number < 40; ++number) {
+        const FrontScenes::Drawn drawn = scenes.draw(number);
+        for (const AnnotatedScene& scene : drawn.scenes) {
+            LaneAnswer answer;
+            answer.status = LaneStatus::found;
+            answer.lane = *scene.ground_truth;
+            const SceneScore scored = score(scene, answer, 0.0, std::nullopt, &drawn.boundaries);
+            EXPECT_GT(scored.iou.value_or(0.0), 0.999);
+            ++all;
+            if (scored.usable().value_or(false)) ++usable;
+        }
+    }
+    EXPECT_GT(all, 100U);
+    EXPECT_EQ(usable, all);
+}
+
+TEST(FrontTraining, GivesTheSameWeightsOnAnyNumberOfThreadsAndOthersFromAnotherSeed) {
+    FrontTrainingOptions options = quick();
+    const FrontWeights weights = train_front(courses(), {}, options, {});
+    options.threads = 2;
+    EXPECT_TRUE(train_front(courses(), {}, options, {}) == weights);
+    options.seed = 1;
+    EXPECT_FALSE(train_front(courses(), {}, options, {}) == weights);
+}
+
+TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
+    const auto folder = std::filesystem::temp_directory_path() / "conelane_front_training_test";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    FrontTrainingOptions options = quick();
+    const FrontWeights whole = train_front(courses(), {}, options, {});
+    options.checkpoint = (folder / "front.checkpoint").string();
+    options.checkpoint_every = 5;
+    // Ended by what a report throws, in the middle of the second part.
+    struct Ended {};
+    options.figures_every = 8;
+    EXPECT_THROW((void)train_front(courses(), {}, options, [](const FrontProgress&) { throw Ended{}; }),
+                 Ended);
+    std::size_t first_report = 0;
+    const FrontWeights resumed = train_front(courses(), {}, options, [&](const FrontProgress& progress) {
+        if (first_report == 0) first_report = progress.step;
+    });
+    EXPECT_EQ(first_report, 8U) << "gone on from step 5";
+    EXPECT_TRUE(resumed == whole);
+    options.seed = 9;
+    EXPECT_THROW((void)train_front(courses(), {}, options, {}), InputError) << "another training";
+    std::ofstream(options.checkpoint) << "{}";
+    EXPECT_THROW((void)train_front(courses(), {}, options, {}), InputError);
+    std::filesystem::remove_all(folder);
+}
+
+// `turn` is an input of the extensions, behind those of the state, and `width` of the state, the extensions
+// and the start.
+TEST(FrontTraining, AnInputThatIsLeftOutKeepsNoWeight) {
+    FrontTrainingOptions options = quick();
+    options.without = {"turn", "width"};
+    const FrontWeights weights = train_front(courses(), {}, options, {});
+    const auto weights_of = [](const FrontNetworkWeights& network, std::size_t input) {
+        float sum = std::abs(network.linear[input]);
+        for (std::size_t unit = 0; unit < kFrontUnits; ++unit)
+            sum += std::abs(network.hidden[input * kFrontUnits + unit]);
+        return sum;
+    };
+    const auto place = [](std::string_view name, auto table) {
+        return static_cast<std::size_t>(std::ranges::find(table, name, &FrontFeature::name) - table.begin());
+    };
+    const std::size_t turn = kStateFeatures + place("turn", extend_feature_table());
+    EXPECT_EQ(weights_of(weights.extend, turn), 0.0F);
+    EXPECT_GT(weights_of(weights.extend, turn + 1), 0.0F);
+    const std::size_t width = place("width", state_feature_table());
+    EXPECT_EQ(weights_of(weights.extend, width), 0.0F);
+    EXPECT_EQ(weights_of(weights.stop, width), 0.0F);
+    EXPECT_EQ(weights_of(weights.start, place("width", start_feature_table())), 0.0F);
+}
+
+TEST(FrontTraining, LearnsToFindLanesOnACourseItHasNotSeen) {
+    SceneOptions scenes;
+    scenes.false_positive_rates = {0.2};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 12.0;
+    const SceneSet other = make_scene_set({"generated:slalom@5"}, scenes);
+    FrontTrainingOptions options = quick();
+    options.draws_per_step = 4;
+    options.imitation_steps = 60;
+    options.search_steps = 40;
+    options.threads = 2;
+    const FrontFigures before = front_figures(other, FrontWeights::zero(), options.loss.search, 1);
+    const FrontFigures after =
+        front_figures(other, train_front(courses(), {}, options, {}), options.loss.search, 1);
+    EXPECT_GT(after.scenes, 10U);
+    EXPECT_LT(before.iou, 0.5);
+    EXPECT_GT(after.iou, 0.8);
+}
+
+TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
+    SceneOptions scenes;
+    scenes.false_positive_rates = {0.0};
+    scenes.ranges_m = {30.0};
+    scenes.every_m = 12.0;
+    SceneSet run = make_scene_set({"generated:slalom@5"}, scenes);
+    ASSERT_GT(run.scenes.size(), 5U);
+    TrackBoundaries& course = run.tracks.begin()->second;
+    for (const Pose& pose : centre_line_poses(course, 1.0)) course.driven.push_back(pose.position);
+    course.left.clear();
+    course.right.clear();
+    for (AnnotatedScene& scene : run.scenes) scene.ground_truth.reset();
+    run.scenes.front().scene.cones.clear();  // nothing shows that a lane goes on
+
+    const FrontFigures figures = front_figures(run, shipped_front_weights(), {}, 1);
+    EXPECT_EQ(figures.scenes, run.scenes.size() - 1);
+    EXPECT_GT(figures.usable, 0.8);
+    EXPECT_EQ(figures.iou, 0.0);
+    EXPECT_EQ(figures.exact, 0.0);
+}
+
+TEST(FrontTraining, OptionsOutOfRangeAreNamed) {
+    const auto key_of = [&](auto change) -> std::string {
+        FrontTrainingOptions options = quick();
+        change(options);
+        try {
+            validate(options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](auto&) {}), "accepted");
+    EXPECT_EQ(key_of([](auto& o) { o.draws_per_step = 0; }), "draws_per_step");
+    EXPECT_EQ(key_of([](auto& o) { o.scenes.scenes_per_draw = 0; }), "scenes_per_draw");
+    EXPECT_EQ(key_of([](auto& o) { o.without = {"turn", "colour"}; }), "without");
+    EXPECT_EQ(key_of([](auto& o) { o.imitation_rate = -1.0; }), "imitation_rate");
+    EXPECT_EQ(key_of([](auto& o) { o.search_rate = 0.0; }), "search_rate");
+    EXPECT_EQ(key_of([](auto& o) { o.threads = 0; }), "threads");
+    EXPECT_EQ(key_of([](auto& o) { o.loss.search.beam_width = 0; }), "beam_width");
+    EXPECT_THROW((void)train_front({}, {}, quick(), {}), InvalidInput);
+}
+
+TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
+    FrontTrainingRunOptions options;
+    options.tracks = {"generated:slalom@1"};
+    options.hold_out = {"generated:kidney@2"};
+    options.hold_out_every_m = 60.0;
+    options.rates = {0.3};
+    options.training = quick();
+    std::size_t reports = 0;
+    const FrontTrainingRun run = run_front_training(options, [&](const FrontProgress& progress) {
+        ++reports;
+        EXPECT_EQ(progress.held_out.size(), 2U);
+    });
+    EXPECT_EQ(reports, 3U);  // after 6, 12 and all 16 steps
+    EXPECT_THAT(run.record, testing::HasSubstr(R"("tracks":["slalom@1"])"));
+    EXPECT_THAT(run.record, testing::HasSubstr(R"("hold_out_tracks":["kidney@2"])"));
+    EXPECT_THAT(run.record, testing::HasSubstr(R"("beam":6)"));
+    options.hold_out = options.tracks;
+    EXPECT_THROW((void)run_front_training(options, {}), InputError);
+}
+
+TEST(FrontWeightsFile, GivesTheSameWeightsBack) {
+    const FrontWeights weights = random_front_weights(8);
+    EXPECT_TRUE(parse_front_weights(front_weights_json(weights, R"({"seed": 1})")) == weights);
+}
+
+TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
+    std::ifstream file(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/front.json");
+    std::ostringstream text;
+    text << file.rdbuf();
+    EXPECT_TRUE(parse_front_weights(text.str()) == shipped_front_weights());
+}
+
+TEST(FrontWeightsFile, ErrorsNameTheKey) {
+    const std::string good = front_weights_json(random_front_weights(8), "{}");
+    const auto key_of = [&](const std::string& from, const std::string& to) -> std::string {
+        std::string text = good;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        text.replace(at, from.size(), to);
+        try {
+            (void)parse_front_weights(text);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of("\"version\": 1", "\"version\": 2"), "version");
+    EXPECT_EQ(key_of("own_segment_known", "unknown"), "features");
+    EXPECT_EQ(key_of("\"stop_linear\"", "\"stop_lines\""), "stop_linear");
+    EXPECT_EQ(key_of("\"start_hidden\": [", "\"start_hidden\": [1,"), "start_hidden");
+    EXPECT_EQ(key_of("\"extend_output\": [", "\"extend_output\": [\"a\","), "extend_output");
+    EXPECT_THROW((void)parse_front_weights("[]"), InvalidInput);
+    EXPECT_THROW((void)front_weights_json(random_front_weights(8), "no JSON"), InvalidInput);
+}
+
+}  // namespace
+}  // namespace conelane::experiments

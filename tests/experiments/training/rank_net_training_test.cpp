@@ -1,0 +1,477 @@
+#include "experiments/training/rank_net_training.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/rank_net_file.hpp"
+#include "evaluation/scoring/score.hpp"
+#include "evaluation/tracks/track_spec.hpp"
+#include "experiments/training/adam.hpp"
+#include "experiments/training/track_variant.hpp"
+#include "experiments/training/training_run.hpp"
+#include "graph_search/clc/clc_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Scenes of ten candidates whose IoU falls with their fourth feature, whatever the others are.
+std::vector<CandidateList> lists_by_fourth_feature(std::size_t count, std::uint64_t seed) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::uniform_01<double> uniform;
+    std::vector<CandidateList> lists(count);
+    for (CandidateList& list : lists) {
+        for (int i = 0; i < 10; ++i) {
+            LaneFeatures lane{};
+            for (double& feature : lane) feature = 100.0 + 20.0 * uniform(random);
+            list.iou.push_back(1.0 - (lane[3] - 100.0) / 20.0);
+            list.divergence_m.push_back(std::numeric_limits<double>::infinity());
+            list.usable.push_back(true);
+            list.lanes.push_back(lane);
+        }
+    }
+    return lists;
+}
+
+RankNetTrainingOptions quick() {
+    RankNetTrainingOptions options;
+    options.units = 8;
+    options.epochs = 20;
+    options.pairs_a_step = 64;
+    options.show_progress = false;
+    return options;
+}
+
+TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
+    Adam adam(3, 1e-8);
+    adam.add(Eigen::Array3d(4.0, -0.01, 0.0));
+    // After one step both means are unbiased: the derivative over its own size.
+    EXPECT_NEAR((adam.mean() / adam.deviation())(0), 1.0, 1e-6);
+    EXPECT_NEAR((adam.mean() / adam.deviation())(1), -1.0, 1e-5);
+    EXPECT_EQ((adam.mean() / adam.deviation())(2), 0.0);
+    adam.add(Eigen::Array3d(-4.0, 0.01, 1.0));
+    // 0.9 and 0.999 of the first with 0.1 and 0.001 of the second, over 1 - 0.9^2 and 1 - 0.999^2.
+    EXPECT_NEAR((adam.mean() / adam.deviation())(0), (0.9 * 0.4 - 0.4) / 0.19 / 4.0, 1e-6);
+    EXPECT_NEAR((adam.mean() / adam.deviation())(2), 0.1 / 0.19 / std::sqrt(0.001 / 0.001999), 1e-6);
+    EXPECT_EQ(cosine_rate(0.5, 0.0), 0.5);
+    EXPECT_NEAR(cosine_rate(0.5, 0.5), 0.25, 1e-12);
+    EXPECT_NEAR(cosine_rate(0.5, 1.0), 0.0, 1e-12);
+}
+
+TEST(PairLoss, OfOnePairByHand) {
+    // One unit that passes the only input on: scores 3 and 1.
+    const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
+                                       Eigen::VectorXd::Ones(1)};
+    CandidatePairs pairs{Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::MatrixXd::Ones(1, 1),
+                         Eigen::RowVectorXd::Constant(1, 0.8)};
+    const double p = 1.0 / (1.0 + std::exp(-2.0));
+    EXPECT_NEAR(pair_loss(parameters, pairs, nullptr), -0.8 * std::log(p) - 0.2 * std::log(1.0 - p), 1e-12);
+    pairs.first *= 1e6;
+    EXPECT_TRUE(std::isfinite(pair_loss(parameters, pairs, nullptr)));
+}
+
+TEST(PairLoss, GradientEqualsFiniteDifferences) {
+    boost::random::mt19937_64 random(4);
+    const auto fill = [&](auto& values) {
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
+        }
+    };
+    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
+    fill(parameters.hidden);
+    fill(parameters.hidden_bias);
+    fill(parameters.output);
+    CandidatePairs pairs{Eigen::MatrixXd(8, 7), Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7)};
+    fill(pairs.first);
+    fill(pairs.second);
+    fill(pairs.first_is_better);
+    pairs.first_is_better = pairs.first_is_better.cwiseAbs();
+    RankNetParameters gradient;
+    (void)pair_loss(parameters, pairs, &gradient);
+    const auto check = [&](auto& values, const auto& derivatives) {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            const double value = values(i);
+            values(i) = value + kStep;
+            const double above = pair_loss(parameters, pairs, nullptr);
+            values(i) = value - kStep;
+            const double below = pair_loss(parameters, pairs, nullptr);
+            values(i) = value;
+            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
+        }
+    };
+    check(parameters.hidden, gradient.hidden);
+    check(parameters.hidden_bias, gradient.hidden_bias);
+    check(parameters.output, gradient.output);
+}
+
+/// Random parameters and two scenes of three and four candidates with eight inputs.
+struct ChoiceProblem {
+    RankNetParameters parameters{Eigen::MatrixXd(5, 8), Eigen::VectorXd(5), Eigen::VectorXd(5)};
+    CandidateScenes scenes{Eigen::MatrixXd(8, 7), Eigen::RowVectorXd(7), {0, 3, 7}};
+
+    ChoiceProblem() {
+        boost::random::mt19937_64 random(9);
+        const auto fill = [&](auto& values) {
+            for (Eigen::Index i = 0; i < values.size(); ++i) {
+                values(i) = 2.0 * boost::random::uniform_01<double>()(random) - 1.0;
+            }
+        };
+        fill(parameters.hidden);
+        fill(parameters.hidden_bias);
+        fill(parameters.output);
+        fill(scenes.inputs);
+        fill(scenes.quality);
+    }
+};
+
+TEST(ChoiceLoss, OfTwoScenesByHand) {
+    // One unit that passes the only input on: scores 1 and 1 in the first scene, ln 3 and 0 in the second.
+    const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
+                                       Eigen::VectorXd::Ones(1)};
+    CandidateScenes scenes{Eigen::MatrixXd(1, 4), Eigen::RowVectorXd(4), {0, 2, 4}};
+    scenes.inputs << 1.0, 1.0, std::log(3.0), 0.0;
+    scenes.quality << 0.9, 0.5, 1.0, -1.0;
+    EXPECT_NEAR(choice_loss(parameters, scenes, nullptr), -(0.7 + (0.75 - 0.25)) / 2.0, 1e-12);
+    scenes.inputs(0, 0) = 1e6;
+    EXPECT_NEAR(choice_loss(parameters, scenes, nullptr), -(0.9 + 0.5) / 2.0, 1e-12);
+}
+
+TEST(ChoiceLoss, GradientEqualsFiniteDifferences) {
+    ChoiceProblem problem;
+    RankNetParameters gradient;
+    (void)choice_loss(problem.parameters, problem.scenes, &gradient);
+    const auto check = [&](auto& values, const auto& derivatives) {
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < values.size(); ++i) {
+            const double value = values(i);
+            values(i) = value + kStep;
+            const double above = choice_loss(problem.parameters, problem.scenes, nullptr);
+            values(i) = value - kStep;
+            const double below = choice_loss(problem.parameters, problem.scenes, nullptr);
+            values(i) = value;
+            EXPECT_NEAR(derivatives(i), (above - below) / (2.0 * kStep), 1e-8) << "parameter " << i;
+        }
+    };
+    check(problem.parameters.hidden, gradient.hidden);
+    check(problem.parameters.hidden_bias, gradient.hidden_bias);
+    check(problem.parameters.output, gradient.output);
+}
+
+TEST(RankNetTraining, LearnsToChooseFromWholeScenes) {
+    RankNetTrainingOptions options = quick();
+    options.loss = RankLoss::choice;
+    options.scenes_a_step = 10;
+    options.epochs = 60;
+    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+}
+
+TEST(RankNetTraining, LearnsWhatDecides) {
+    const RankNetWeights weights = train_rank_net(lists_by_fourth_feature(100, 1), quick());
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(weights));
+    EXPECT_EQ(figures.scenes, 50u);
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+    EXPECT_EQ(figures.critical_share, 0.0);
+}
+
+TEST(RankNetTraining, DecayKeepsTheWeightsSmall) {
+    RankNetTrainingOptions options = quick();
+    options.epochs = 60;
+    const RankNetWeights without = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    options.weight_decay = 0.3;
+    const RankNetWeights with = train_rank_net(lists_by_fourth_feature(100, 1), options);
+    EXPECT_LT(with.hidden.norm(), 0.8F * without.hidden.norm());
+    EXPECT_LT(with.output.norm(), 0.8F * without.output.norm());
+    // The seven inputs that decide nothing lose more of their weight than the one that does.
+    const auto share = [](const RankNetWeights& weights) {
+        return weights.hidden.col(3).squaredNorm() / weights.hidden.squaredNorm();
+    };
+    EXPECT_GT(share(with), share(without));
+    const RankingFigures figures = ranking_figures(lists_by_fourth_feature(50, 2), *make_rank_net(with));
+    EXPECT_GT(figures.mean_iou, figures.mean_best_iou - 0.02);
+}
+
+TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 3);
+    for (CandidateList& list : lists) {
+        for (LaneFeatures& lane : list.lanes) lane[0] = 7.0;  // does not vary
+    }
+    const RankNetWeights weights = train_rank_net(lists, quick());
+    EXPECT_EQ(weights.mean.size(), 8);
+    EXPECT_DOUBLE_EQ(weights.mean(0), 7.0);
+    EXPECT_DOUBLE_EQ(weights.deviation(0), 1.0);
+    EXPECT_NEAR(weights.mean(3), 110.0, 1.0);
+    EXPECT_NEAR(weights.deviation(3), 20.0 / std::sqrt(12.0), 0.3);
+    EXPECT_NEAR(weights.mean(2), 20.0 / 6.0, 0.3) << "half the distance of left and right";
+}
+
+TEST(RankNetTraining, ThePenaltyMakesDivergingLanesWorse) {
+    // The better half by the fourth feature diverges at 5 m.
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
+    for (CandidateList& list : lists) {
+        for (std::size_t i = 0; i < list.lanes.size(); ++i) {
+            if (list.lanes[i][3] < 110.0) list.divergence_m[i] = 5.0;
+        }
+    }
+    RankNetTrainingOptions options = quick();
+    const auto critical_share = [&] {
+        return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options))).critical_share;
+    };
+    const double without = critical_share();
+    options.divergence_penalty = 1.0;
+    EXPECT_GT(without, 0.9);
+    EXPECT_LT(critical_share(), 0.1);
+}
+
+TEST(RankNetTraining, ThePenaltyMakesLanesThatAreNotUsableWorse) {
+    // The better half by the fourth feature ends too early.
+    std::vector<CandidateList> lists = lists_by_fourth_feature(200, 5);
+    for (CandidateList& list : lists) {
+        for (std::size_t i = 0; i < list.lanes.size(); ++i) list.usable[i] = list.lanes[i][3] >= 110.0;
+    }
+    RankNetTrainingOptions options = quick();
+    const auto figures = [&] {
+        return ranking_figures(lists, *make_rank_net(train_rank_net(lists, options)));
+    };
+    options.divergence_penalty = 1.0;  // none of them diverges
+    const RankingFigures without = figures();
+    EXPECT_LT(without.usable_share, 0.1);
+    EXPECT_GT(without.most_usable_share, 0.9);
+    EXPECT_EQ(without.critical_share, 0.0);
+    options.unusable_penalty = 1.0;
+    EXPECT_GT(figures().usable_share, 0.9);
+}
+
+// One unit passes on the first feature, so the candidate with the largest one is chosen.
+TEST(RankingFigures, OfThreeScenesByHand) {
+    RankNetWeights weights{Eigen::VectorXd::Zero(8), Eigen::VectorXd::Ones(8), Eigen::MatrixXf::Zero(1, 8),
+                           Eigen::VectorXf::Zero(1), Eigen::VectorXf::Ones(1)};
+    weights.hidden(0, 0) = 1.0F;
+    const auto list = [](std::vector<double> iou, std::vector<double> divergence_m,
+                         std::vector<bool> usable) {
+        CandidateList result;
+        for (std::size_t i = 0; i < iou.size(); ++i) {
+            result.lanes.emplace_back();
+            result.lanes.back()[0] = static_cast<double>(i);
+        }
+        result.iou = std::move(iou);
+        result.divergence_m = std::move(divergence_m);
+        result.usable = std::move(usable);
+        return result;
+    };
+    constexpr double kNever_m = std::numeric_limits<double>::infinity();
+    // Chosen are a usable lane, a stub beside a usable one, and nothing.
+    const std::vector<CandidateList> lists{list({0.5, 0.99}, {5.0, kNever_m}, {false, true}),
+                                           list({0.8, 0.2}, {kNever_m, kNever_m}, {true, false}),
+                                           {}};
+    const RankingFigures figures = ranking_figures(lists, *make_rank_net(weights));
+    EXPECT_EQ(figures.scenes, 3u);
+    EXPECT_DOUBLE_EQ(figures.usable_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.most_usable_share, 2.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.mean_iou, (0.99 + 0.2) / 3.0);
+    EXPECT_DOUBLE_EQ(figures.mean_best_iou, (0.99 + 0.8) / 3.0);
+    EXPECT_DOUBLE_EQ(figures.near_best_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.critical_share, 1.0 / 3.0);
+    EXPECT_DOUBLE_EQ(figures.least_critical_share, 1.0 / 3.0);
+}
+
+TEST(RankNetTraining, OptionsOutOfRangeAreNamed) {
+    const auto key_of = [](auto change) -> std::string {
+        RankNetTrainingOptions options = quick();
+        change(options);
+        try {
+            (void)train_rank_net(lists_by_fourth_feature(2, 0), options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](RankNetTrainingOptions&) {}), "accepted");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.inputs = 9; }), "inputs");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.units = 0; }), "units");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.epochs = 0; }), "epochs");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.pairs_a_step = 0; }), "pairs_a_step");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.scenes_a_step = 0; }), "scenes_a_step");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.learning_rate = 0.0; }), "learning_rate");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = -1.0; }), "weight_decay");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.weight_decay = 1.0 / o.learning_rate; }),
+              "weight_decay");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.iou_factor = -1.0; }), "iou_factor");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.divergence_penalty = -1.0; }), "divergence_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.late_divergence_penalty = -1.0; }),
+              "late_divergence_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.unusable_penalty = -1.0; }), "unusable_penalty");
+    EXPECT_EQ(key_of([](RankNetTrainingOptions& o) { o.leader_share = 1.5; }), "leader_share");
+    EXPECT_THROW((void)train_rank_net({}, quick()), InvalidInput);
+}
+
+TEST(CandidateLists, AreBetterWhereABeamSearchLeads) {
+    SceneOptions scenes;
+    scenes.false_positive_rates = {0.5};
+    scenes.ranges_m = {50.0};
+    scenes.every_m = 15.0;
+    scenes.conditions = {"car"};
+    const SceneSet set = make_scene_set({"generated:hairpins@99"}, scenes);
+    CandidateListOptions options;
+    options.search = extended_search_options();
+    options.show_progress = false;
+    const std::vector<CandidateList> with = enumerate_candidates(set, options);
+    options.search.step_scores = nullptr;
+    const std::vector<CandidateList> without = enumerate_candidates(set, options);
+    ASSERT_EQ(with.size(), without.size());
+    ASSERT_FALSE(with.empty());
+    double gained = 0.0;
+    for (std::size_t i = 0; i < with.size(); ++i) {
+        EXPECT_EQ(with[i].iou.size(), with[i].lanes.size());
+        gained += with[i].best_iou() - without[i].best_iou();
+    }
+    EXPECT_GT(gained / static_cast<double>(with.size()), 0.003);
+}
+
+// A straight lane, cones 4 m apart, of which the car sees 32 m; a false positive stands 1.5 m off its left
+// boundary.
+TEST(CandidateLists, SayWhichLanesCanBeDrivenByAsTheScoringDoes) {
+    SceneSet set;
+    TrackBoundaries& boundaries = set.tracks["straight"];
+    boundaries.closed = false;
+    AnnotatedScene scene;
+    scene.track = "straight";
+    scene.ground_truth.emplace();
+    for (int i = 0; i < 9; ++i) {
+        const double x = 1.0 + 4.0 * i;
+        scene.scene.cones.push_back({2 * i, {x, 2.0}});
+        scene.scene.cones.push_back({2 * i + 1, {x + 0.2, -2.0}});
+        scene.ground_truth->left.push_back(2 * i);
+        scene.ground_truth->right.push_back(2 * i + 1);
+        boundaries.left.push_back(scene.scene.cones[static_cast<std::size_t>(2 * i)].position);
+        boundaries.right.push_back(scene.scene.cones[static_cast<std::size_t>(2 * i + 1)].position);
+    }
+    scene.scene.cones.push_back({100, {9.0, 3.5}});  // beside the third left cone
+    set.scenes.push_back(scene);
+    CandidateListOptions options;
+    options.show_progress = false;
+    const std::vector<CandidateList> lists = enumerate_candidates(set, options);
+    ASSERT_EQ(lists.size(), 1u);
+
+    CandidateSearch search(options.search);
+    const CandidateSearch::Request request;
+    (void)search.run(scene.scene, request);
+    const std::vector<PathPair>& pairs = search.pairs().found();
+    ASSERT_EQ(lists.front().usable.size(), pairs.size());
+    const auto usable = [&](const std::vector<ConeId>& left, const std::vector<ConeId>& right) {
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            if (search.lane(pairs[i], scene.scene) == Lane{left, right})
+                return std::optional<bool>(lists.front().usable[i]);
+        }
+        ADD_FAILURE() << "no such candidate";
+        return std::optional<bool>();
+    };
+    EXPECT_EQ(usable({0, 2, 4, 6, 8, 10, 12, 14, 16}, {1, 3, 5, 7, 9, 11, 13, 15, 17}), true);
+    EXPECT_EQ(usable({0, 2, 4, 6, 8, 10}, {1, 3, 5, 7, 9, 11}), true) << "20 m are enough";
+    EXPECT_EQ(usable({0, 2, 4, 6, 8}, {1, 3, 5, 7, 9, 11}), false) << "18 m are not";
+    EXPECT_EQ(usable({0, 2}, {1, 3}), false) << "a stub leaves no track";
+    EXPECT_EQ(usable({0, 2, 100, 6, 8, 10, 12, 14, 16}, {1, 3, 5, 7, 9, 11, 13, 15, 17}), false)
+        << "past the false positive";
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        LaneAnswer answer;
+        answer.status = LaneStatus::found;
+        answer.lane = search.lane(pairs[i], scene.scene);
+        const SceneScore scored = score(scene, answer, 0.0, std::nullopt, &boundaries);
+        EXPECT_EQ(lists.front().usable[i], scored.usable()) << "candidate " << i;
+    }
+}
+
+TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {
+    TrainingRunOptions options;
+    options.tracks = {"generated:circle@1"};
+    options.hold_out = {"generated:curvy@2"};
+    options.scenes.false_positive_rates = {0.0, 0.2};
+    options.scenes.ranges_m = {20.0};
+    options.scenes.every_m = 20.0;
+    options.candidates.most_per_scene = 10;
+    options.candidates.show_progress = false;
+    options.training = quick();
+    const auto file = [&] {
+        const TrainingRun run = run_training(options);
+        EXPECT_GT(run.held_out.scenes, 0u);
+        return rank_net_json(run.weights, run.record);
+    };
+    const std::string first = file();
+    options.candidates.threads = 2;
+    options.scenes.threads = 2;
+    EXPECT_EQ(file(), first);
+    options.training.seed = 1;
+    EXPECT_NE(file(), first);
+}
+
+TEST(TrackVariant, IsStretchedAndEverySecondOneIsDrivenTheOtherWay) {
+    const Track track = load_tracks("generated:hairpins@3").front();
+    for (std::size_t number = 1; number <= 4; ++number) {
+        SCOPED_TRACE(number);
+        const Track variant = track_variant(track, number, 7);
+        EXPECT_EQ(variant.name, track.name + "_variant" + std::to_string(number));
+        EXPECT_EQ(variant.closed, track.closed);
+        if (number % 2 == 1) {
+            EXPECT_EQ(variant.left, track.left);
+            EXPECT_EQ(variant.right, track.right);
+        } else {
+            EXPECT_TRUE(
+                std::ranges::equal(variant.left, std::vector(track.right.rbegin(), track.right.rend())));
+            EXPECT_TRUE(
+                std::ranges::equal(variant.right, std::vector(track.left.rbegin(), track.left.rend())));
+        }
+        ASSERT_EQ(variant.cones.size(), track.cones.size());
+        double shortest = 1.0;
+        double longest = 1.0;
+        for (std::size_t i = 1; i < track.cones.size(); ++i) {
+            EXPECT_EQ(variant.cones[i].id, track.cones[i].id);
+            const double stretch = (variant.cones[i].position - variant.cones[i - 1].position).norm() /
+                                   (track.cones[i].position - track.cones[i - 1].position).norm();
+            shortest = std::min(shortest, stretch);
+            longest = std::max(longest, stretch);
+        }
+        EXPECT_GE(shortest, std::exp(-0.15) - 1e-9);
+        EXPECT_LE(longest, std::exp(0.15) + 1e-9);
+        EXPECT_GT(longest - shortest, 1e-3);
+        EXPECT_EQ(track_variant(track, number, 7).cones[5].position, variant.cones[5].position);
+        EXPECT_NE(track_variant(track, number, 8).cones[5].position, variant.cones[5].position);
+        EXPECT_NE(track_variant(track, number + 1, 7).cones[5].position, variant.cones[5].position);
+    }
+}
+
+TEST(TrainingRun, TrainsOnVariantsTooAndNamesTheTracksAlone) {
+    TrainingRunOptions options;
+    options.tracks = {"generated:circle@1"};
+    options.scenes.false_positive_rates = {0.2};
+    options.scenes.ranges_m = {20.0};
+    options.scenes.every_m = 20.0;
+    options.candidates.show_progress = false;
+    options.training = quick();
+    const TrainingRun alone = run_training(options);
+    options.variants = 2;
+    const TrainingRun varied = run_training(options);
+    EXPECT_GE(varied.trained.scenes, 2 * alone.trained.scenes);
+    EXPECT_NE(varied.record.find(R"("tracks":["circle@1"],"variants":2)"), std::string::npos)
+        << varied.record;
+    EXPECT_EQ(rank_net_json(varied.weights, varied.record), [&] {
+        options.candidates.threads = 2;
+        options.scenes.threads = 2;
+        const TrainingRun again = run_training(options);
+        return rank_net_json(again.weights, again.record);
+    }());
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,107 @@
+// `conelane tune-method`: parameters of the detectors that are no RLD, found by random search.
+
+#include "experiments/tuning/method_tuning.hpp"
+
+#include "detectors/baseline_parameters.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/method_parameter_file.hpp"
+#include "tests/support/program_fixture.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+SceneSet few_scenes() {
+    SceneOptions options;
+    options.false_positive_rates = {0.0, 0.3};
+    options.ranges_m = {30.0};
+    options.every_m = 60.0;
+    options.seed = 1;
+    return make_scene_set({"generated:curvy"}, options);
+}
+
+TEST(MethodTuning, FindsBetterParametersAndTheSameOnesAgain) {
+    const SceneSet set = few_scenes();
+    for (const TunableMethod& known : tunable_methods()) {
+        SCOPED_TRACE(known.name);
+        // A start that finds little: the highest end of each range.
+        TunableMethod method = known;
+        for (TunableParameter& parameter : method.parameters) parameter.start = parameter.highest;
+        const TunedMethod tuned = tune_method(method, set, {.evaluations = 8, .seed = 2, .threads = 2});
+        EXPECT_GE(tuned.figure.value(), tuned.figure_of_start.value());
+        EXPECT_GT(tuned.figure.usable, 0.0);
+        EXPECT_EQ(tuned.figure.scenes, set.scenes.size());
+        const TunedMethod again = tune_method(method, set, {.evaluations = 8, .seed = 2, .threads = 1});
+        EXPECT_EQ(again.values, tuned.values);
+        EXPECT_EQ(again.figure.iou, tuned.figure.iou);
+        for (std::size_t i = 0; i < tuned.values.size(); ++i) {
+            EXPECT_GE(tuned.values[i], method.parameters[i].lowest) << method.parameters[i].key;
+            EXPECT_LE(tuned.values[i], method.parameters[i].highest) << method.parameters[i].key;
+        }
+    }
+}
+
+TEST(MethodTuning, ShippedParametersAreInTheirRanges) {
+    EXPECT_NO_THROW(validate(tuned_delaunay_beam_parameters()));
+    EXPECT_NO_THROW(validate(tuned_astar_lane_parameters()));
+}
+
+TEST(MethodTuning, FilesHoldWhatWasFound) {
+    const TunableMethod& method = find_tunable_method("astar-lane");
+    std::vector<double> values;
+    for (const TunableParameter& parameter : method.parameters) values.push_back(parameter.lowest);
+    const AstarLaneParameters read = parse_astar_lane_parameters(to_json_text(method, values), "p.json");
+    EXPECT_EQ(read.least_radius_m, values[0]);
+    EXPECT_EQ(read.heuristic, values.back());
+    EXPECT_EQ(read.most_steps, AstarLaneParameters{}.most_steps);
+}
+
+TEST(MethodTuning, FilesThatAreWrongAreNamed) {
+    const auto fault = [](const std::string& text) -> std::string {
+        try {
+            (void)parse_delaunay_beam_parameters(text, "p.json");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const TunableMethod& method = find_tunable_method("delaunay-beam");
+    std::vector<double> values;
+    for (const TunableParameter& parameter : method.parameters) values.push_back(parameter.start);
+    EXPECT_EQ(fault(to_json_text(method, values)), "");
+    EXPECT_THAT(fault("{}"), HasSubstr("p.json: w_turn"));
+    values[0] = -1.0;
+    EXPECT_THAT(fault(to_json_text(method, values)), HasSubstr("p.json: w_turn"));
+    EXPECT_THAT(fault("nonsense"), HasSubstr("p.json"));
+}
+
+class TuneMethod : public ProgramFixture {};
+
+TEST_F(TuneMethod, WritesParametersAndTheirRecord) {
+    const Outcome outcome = run(
+        "tune-method --method delaunay-beam --tracks generated:circle --fp 0.3 --every 60 --evaluations 3 "
+        "--seed 4 --out p.json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("delaunay-beam on "));
+    EXPECT_NO_THROW((void)parse_delaunay_beam_parameters(text_of(path("p.json")), path("p.json")));
+    const std::string record = text_of(path("p.record.json"));
+    for (const char* key : {R"("method": "delaunay-beam")", "generated:circle", R"("evaluations": 3)"}) {
+        EXPECT_THAT(record, HasSubstr(key));
+    }
+}
+
+TEST_F(TuneMethod, BadOptionsAreRefused) {
+    expect_refused("tune-method --method clc --tracks generated:circle --out p.json", {"clc", "astar-lane"});
+    expect_refused("tune-method --method astar-lane --tracks generated:nowhere --out p.json", {"nowhere"});
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,149 @@
+#include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <boost/polygon/voronoi.hpp>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using Edges = std::set<std::pair<Vertex, Vertex>>;
+
+Edges sorted(const std::vector<std::pair<Vertex, Vertex>>& edges) {
+    Edges all;
+    for (const auto& [a, b] : edges) all.insert(std::minmax(a, b));
+    return all;
+}
+
+/// The dual of the Voronoi diagram, by Boost. Precondition: distinct points with whole coordinates.
+Edges voronoi_edges(const std::vector<Point>& points) {
+    std::vector<boost::polygon::point_data<std::int32_t>> sites;
+    for (const Point& point : points) {
+        sites.emplace_back(static_cast<std::int32_t>(point.x()), static_cast<std::int32_t>(point.y()));
+    }
+    boost::polygon::voronoi_diagram<double> diagram;
+    boost::polygon::construct_voronoi(sites.begin(), sites.end(), &diagram);
+    Edges all;
+    for (const auto& edge : diagram.edges()) {
+        all.insert(std::minmax(static_cast<Vertex>(edge.cell()->source_index()),
+                               static_cast<Vertex>(edge.twin()->cell()->source_index())));
+    }
+    return all;
+}
+
+/// Distinct whole points in a square of this half side, its corners among them: so each place is one of the
+/// triangulation's grid where the half side is a power of two.
+std::vector<Point> whole_points(std::uint64_t seed, std::size_t count, int half_side) {
+    boost::random::mt19937_64 random(seed);
+    const boost::random::uniform_int_distribution<> coordinate(-half_side, half_side);
+    std::set<std::pair<int, int>> places{{-half_side, -half_side}, {half_side, half_side}};
+    while (places.size() < count) places.emplace(coordinate(random), coordinate(random));
+    std::vector<Point> points;
+    for (const auto& [x, y] : places) points.emplace_back(x, y);
+    return points;
+}
+
+TEST(DelaunayGraph, JoinsWhatTheTriangulationJoins) {
+    // A rhombus: the short diagonal is in it, the long one is not.
+    const std::vector<Point> points{{0, 0}, {2, 1}, {4, 0}, {2, -1}};
+    SearchGraph graph;
+    graph.build(points, 5.0, delaunay_edges);
+    EXPECT_TRUE(graph.adjacent(1, 3));
+    EXPECT_FALSE(graph.adjacent(0, 2));
+    EXPECT_EQ(graph.directed_edge_count(), 10u);
+    graph.build(points, 2.2, delaunay_edges);
+    EXPECT_EQ(graph.directed_edge_count(), 2u) << "nothing beyond d_max: the sides are 2.24 m long";
+    graph.build(points, 5.0);
+    EXPECT_TRUE(graph.adjacent(0, 2));
+}
+
+TEST(DelaunayGraph, OfPointsOnALineOrAtOnePlaceOrNone) {
+    SearchGraph graph;
+    graph.build(std::vector<Point>{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, 5.0, delaunay_edges);
+    EXPECT_EQ(graph.directed_edge_count(), 6u);
+    graph.build(std::vector<Point>{{1, 1}, {1, 1}, {1, 1}}, 5.0, delaunay_edges);
+    EXPECT_EQ(graph.directed_edge_count(), 0u);
+    graph.build(std::vector<Point>{}, 5.0, delaunay_edges);
+    EXPECT_EQ(graph.vertex_count(), 0u);
+}
+
+TEST(DelaunayTriangulation, ASquareHasNoDiagonalButTwoTriangles) {
+    const std::vector<Point> square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+    DelaunayTriangulation triangulation;
+    SearchBudget budget;
+    ASSERT_TRUE(triangulation.build(square, budget));
+    EXPECT_EQ(triangulation.half_edge_count(), 6u);
+    EXPECT_EQ(sorted(triangulation.edges()), (Edges{{0, 1}, {1, 2}, {2, 3}, {0, 3}}));
+}
+
+TEST(DelaunayTriangulation, PointsAtOnePlaceCountOnceAndFarOnesDoNoHarm) {
+    EXPECT_EQ(sorted(delaunay_edges(std::vector<Point>{{0, 0}, {4, 0}, {0, 3}, {4, 0}, {0, 0}})),
+              (Edges{{0, 1}, {1, 2}, {0, 2}}));
+    const double huge = std::numeric_limits<double>::max();
+    EXPECT_EQ(sorted(delaunay_edges(std::vector<Point>{{-huge, 0}, {huge, 0}, {0, huge}})),
+              (Edges{{0, 1}, {1, 2}, {0, 2}}));
+}
+
+// Few places, so that many points are on one line or on one circle.
+TEST(DelaunayTriangulation, IsTheDualOfTheVoronoiDiagram) {
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = whole_points(seed, 3 + seed % 40, seed % 3 == 0 ? 4 : 16);
+        EXPECT_EQ(sorted(delaunay_edges(points)), voronoi_edges(points));
+    }
+    const std::vector<Point> many = whole_points(1, 2000, 1 << 20);
+    EXPECT_EQ(sorted(delaunay_edges(many)), voronoi_edges(many));
+}
+
+TEST(DelaunayTriangulation, TwinsAreOneEdgeAndTheHullIsConvex) {
+    boost::random::mt19937_64 random(3);
+    const boost::random::uniform_real_distribution<> coordinate(-30.0, 30.0);
+    std::vector<Point> points;
+    for (int i = 0; i < 200; ++i) {
+        const double x_m = coordinate(random);
+        points.emplace_back(x_m, coordinate(random));
+    }
+    DelaunayTriangulation triangulation;
+    SearchBudget budget;
+    ASSERT_TRUE(triangulation.build(points, budget));
+    std::size_t hull = 0;
+    for (DelaunayTriangulation::HalfEdge side = 0; side < triangulation.half_edge_count(); ++side) {
+        const Point& from = points[triangulation.origin(side)];
+        const Point& to = points[triangulation.target(side)];
+        const Point& third = points[triangulation.target(DelaunayTriangulation::next(side))];
+        EXPECT_GT(cross(to - from, third - from), 0.0) << "counter-clockwise";
+        const DelaunayTriangulation::HalfEdge twin = triangulation.twin(side);
+        if (twin == DelaunayTriangulation::kNone) {
+            ++hull;
+            for (const Point& point : points) EXPECT_GE(cross(to - from, point - from), -1e-6);
+        } else {
+            EXPECT_EQ(triangulation.twin(twin), side);
+            EXPECT_EQ(triangulation.origin(twin), triangulation.target(side));
+            EXPECT_EQ(triangulation.target(twin), triangulation.origin(side));
+        }
+    }
+    EXPECT_EQ(triangulation.half_edge_count() / 3, 2 * points.size() - 2 - hull) << "Euler";
+}
+
+TEST(DelaunayTriangulation, EndsWithItsBudget) {
+    std::vector<Point> points = whole_points(2, 3000, 1 << 10);
+    DelaunayTriangulation triangulation;
+    SearchBudget budget;
+    budget.deadline = Deadline(0.0);
+    EXPECT_FALSE(triangulation.build(points, budget));
+    EXPECT_EQ(budget.stopped_by, StopReason::time);
+    EXPECT_EQ(triangulation.half_edge_count(), 0u);
+}
+
+}  // namespace
+}  // namespace conelane

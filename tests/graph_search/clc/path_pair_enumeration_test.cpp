@@ -1,0 +1,313 @@
+#include "graph_search/clc/path_pair_enumeration.hpp"
+
+#include "model/deadline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using ::testing::ElementsAre;
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+const Point kHeading(1.0, 0.0);
+
+struct Result {
+    bool complete;
+    std::int64_t iterations;
+    std::vector<PathPair> found;
+    std::vector<PathPairVertices> vertices;
+};
+
+Result enumerate(const std::vector<Point>& points, const EnumerationRules& rules,
+                 std::int64_t iteration_limit = kNoLimit) {
+    SearchGraph graph;
+    graph.build(points, rules.d_max_m);
+    SearchBudget budget;
+    budget.iteration_limit = iteration_limit;
+    PathPairs pairs;
+    PathPairEnumeration enumeration;
+    const bool complete = enumeration.run(graph, {0, 1}, kHeading, rules, budget, pairs);
+    Result result{complete, budget.iterations, pairs.found(), {}};
+    for (const PathPair& pair : pairs.found()) result.vertices.push_back(pairs.vertices(pair));
+    return result;
+}
+
+/// Closed pairs left out: the definition of the solution set knows none.
+std::multiset<PathPairVertices> open_pairs(const Result& result) {
+    std::multiset<PathPairVertices> pairs;
+    for (std::size_t i = 0; i < result.found.size(); ++i) {
+        if (!result.found[i].closed) pairs.insert(result.vertices[i]);
+    }
+    return pairs;
+}
+
+// Two cones a side: 0 and 2 on the left, 1 and 3 on the right, too far across to be joined.
+//
+// Iteration 1: both sides are equally advanced, and the tie goes to the smaller next vertex: l = (0, 2).
+// Vertex 2 is now too far from the right boundary, which only the right can help: iteration 2, r = (1, 3), is
+// forced and finds the lane. Iteration 3 sees no vertex left and returns, and so does iteration 4 one call
+// above, where V holds both 2's dead end and 3. Iteration 5, in the first call, has visited 2 from 0; r = (1,
+// 3) with l = (0) is too wide for 3, and the left cannot be extended: BTD. Iteration 6 ends the search.
+TEST(PathPairEnumeration, FollowedByHandOnFourCones) {
+    const Result result = enumerate({{1, 3}, {1, -3}, {5, 3}, {5, -3}}, {});
+    EXPECT_TRUE(result.complete);
+    EXPECT_EQ(result.iterations, 6);
+    ASSERT_EQ(result.found.size(), 1u);
+    EXPECT_THAT(result.vertices[0][kLeft], ElementsAre(0, 2));
+    EXPECT_THAT(result.vertices[0][kRight], ElementsAre(1, 3));
+    EXPECT_EQ(result.found[0].iteration, 2);
+    EXPECT_FALSE(result.found[0].closed);
+    EXPECT_DOUBLE_EQ(result.found[0].length_m, 4.0);
+}
+
+TEST(PathPairEnumeration, StopsAtTheIterationLimit) {
+    const std::vector<Point> points{{1, 3}, {1, -3}, {5, 3}, {5, -3}};
+    const Result stopped = enumerate(points, {}, 5);
+    EXPECT_FALSE(stopped.complete);
+    EXPECT_EQ(stopped.iterations, 5);
+    EXPECT_TRUE(enumerate(points, {}, 6).complete);
+    EXPECT_TRUE(enumerate(points, {}, 1).found.empty());
+}
+
+TEST(PathPairEnumeration, StopsAtTheDeadline) {
+    SearchGraph graph;
+    graph.build(std::vector<Point>{{1, 3}, {1, -3}, {5, 3}, {5, -3}}, 5.5);
+    SearchBudget budget;
+    budget.deadline = Deadline(0.0);
+    PathPairs pairs;
+    EXPECT_FALSE(PathPairEnumeration().run(graph, {0, 1}, kHeading, {}, budget, pairs));
+    EXPECT_EQ(budget.stopped_by, StopReason::time);
+    EXPECT_EQ(budget.iterations, 0);
+}
+
+/// Vertices 0 and 1 start left and right of the car, the others are anywhere ahead.
+std::vector<Point> random_map(unsigned seed, unsigned size) {
+    boost::random::mt19937_64 random(seed);
+    boost::random::uniform_real_distribution<> ahead(-1.0, 11.0);
+    boost::random::uniform_real_distribution<> across(-4.0, 4.0);
+    std::vector<Point> points{{0.5, 1.9}, {0.3, -1.8}};
+    while (points.size() < size) {
+        const double x = ahead(random);
+        points.emplace_back(x, across(random));
+    }
+    return points;
+}
+
+TEST(PathPairEnumeration, AddsWhatIsNotThereYet) {
+    const std::vector<Point> points = random_map(3, 14);
+    SearchGraph graph;
+    graph.build(points, 5.5);
+    PathPairs pairs;
+    PathPairEnumeration enumeration;
+    const auto run = [&](StartPair start, std::uint32_t most_discrepancies) {
+        EnumerationRules rules;
+        rules.most_discrepancies = most_discrepancies;
+        SearchBudget budget;
+        budget.iteration_limit = kNoLimit;
+        EXPECT_TRUE(enumeration.run(graph, start, kHeading, rules, budget, pairs));
+        return pairs.found().size();
+    };
+    const std::size_t few = run({0, 1}, 1);
+    ASSERT_GT(few, 5u);
+    EXPECT_EQ(run({0, 1}, 1), few) << "the same again";
+    const std::size_t all = run({0, 1}, ~std::uint32_t{0});
+    EXPECT_GT(all, few);
+    EXPECT_GT(run({1, 0}, 1), all) << "the sides changed";
+    pairs.clear();
+    EXPECT_EQ(run({0, 1}, 1), few);
+}
+
+TEST(PathPairEnumeration, ClosesARing) {
+    std::vector<Point> points;
+    const auto on_ring = [&](double radius_m, int i) {
+        const double angle = 2.0 * 3.14159265358979 * i / 12.0;
+        return Point(radius_m * std::sin(angle), radius_m * (1.0 - std::cos(angle)) - radius_m + 9.0);
+    };
+    // A left-hand circuit: the inner ring is the left boundary.
+    for (int i = 0; i < 12; ++i) {
+        points.push_back(on_ring(6.0, i));
+        points.push_back(on_ring(9.5, i));
+    }
+    const Result result = enumerate(points, {}, 2500);
+    const auto closed = std::ranges::find_if(result.found, &PathPair::closed);
+    ASSERT_NE(closed, result.found.end());
+    const PathPairVertices& vertices =
+        result.vertices[static_cast<std::size_t>(closed - result.found.begin())];
+    EXPECT_EQ(vertices[kLeft].size(), 12u);
+    EXPECT_EQ(vertices[kRight].size(), 12u);
+    const double inner_m = 12 * 2 * 6.0 * std::sin(3.14159265358979 / 12);
+    EXPECT_NEAR(closed->length_m, inner_m * (6.0 + 9.5) / 12.0, 1e-9);
+}
+
+/// All simple paths from a vertex that keep to d_max and C_seg, by definition.
+void add_paths(const std::vector<Point>& points, const EnumerationRules& rules, std::vector<Vertex>& path,
+               std::vector<std::vector<Vertex>>& paths) {
+    paths.push_back(path);
+    const std::size_t size = path.size();
+    for (Vertex next = 0; next < points.size(); ++next) {
+        if (std::ranges::count(path, next) > 0) continue;
+        const Point segment = points[next] - points[path.back()];
+        if (segment.norm() > rules.d_max_m) continue;
+        // C_seg, which no extension can help, already here: else there are too many paths to pair.
+        if (size > 1 && std::abs(turning_angle(points[path.back()] - points[path[size - 2]], segment)) >=
+                            rules.bounds.phi_max_rad) {
+            continue;
+        }
+        path.push_back(next);
+        add_paths(points, rules, path, paths);
+        path.pop_back();
+    }
+}
+
+/// Definition 1: the feasible ones among all pairs of paths, with at least two vertices a side.
+std::multiset<PathPairVertices> feasible_by_definition(const std::vector<Point>& points,
+                                                       const EnumerationRules& rules) {
+    std::array<std::vector<std::vector<Vertex>>, 2> paths;
+    for (const Side side : {kLeft, kRight}) {
+        std::vector<Vertex> start{static_cast<Vertex>(side)};
+        add_paths(points, rules, start, paths[side]);
+    }
+    const auto positions = [&](const std::vector<Vertex>& path) {
+        std::vector<Point> boundary;
+        for (const Vertex vertex : path) boundary.push_back(points[vertex]);
+        return boundary;
+    };
+    std::multiset<PathPairVertices> feasible;
+    for (const std::vector<Vertex>& left : paths[kLeft]) {
+        if (left.size() < 2) continue;
+        for (const std::vector<Vertex>& right : paths[kRight]) {
+            if (right.size() < 2) continue;
+            if (satisfies_constraints(positions(left), positions(right), rules.bounds)) {
+                feasible.insert({left, right});
+            }
+        }
+    }
+    return feasible;
+}
+
+// Theorem 4, with the backtracking that is proven: the search finds the whole feasible set, each path pair
+// once.
+TEST(PathPairEnumeration, IsCompleteOnRandomMaps) {
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::proven;
+    std::size_t feasible = 0;
+    for (unsigned seed = 0; seed < 150; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 5 + seed % 5);
+        const Result result = enumerate(points, rules);
+        EXPECT_TRUE(result.complete);
+        const std::multiset<PathPairVertices> expected = feasible_by_definition(points, rules);
+        ASSERT_EQ(open_pairs(result), expected);
+        feasible += expected.size();
+    }
+    EXPECT_GT(feasible, 500u);
+}
+
+TEST(PathPairEnumeration, BacktrackingSavesIterationsAndLosesNothing) {
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::proven;
+    EnumerationRules without = rules;
+    without.backtracking = false;
+    std::int64_t saved = 0;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 5 + seed % 2);
+        const Result backtracking = enumerate(points, rules);
+        const Result exhaustive = enumerate(points, without);
+        ASSERT_EQ(open_pairs(backtracking), open_pairs(exhaustive));
+        ASSERT_LE(backtracking.iterations, exhaustive.iterations);
+        saved += exhaustive.iterations - backtracking.iterations;
+    }
+    EXPECT_GT(saved, 10000);
+}
+
+/// By definition: for each step of a side after its start, the vertices not yet on that side that make a
+/// smaller angle with its last segment (the heading at the start).
+std::size_t discrepancies(const std::vector<Point>& points, double d_max_m, const PathPairVertices& lane) {
+    std::size_t sum = 0;
+    for (const std::vector<Vertex>& side : lane) {
+        Point direction = kHeading;
+        for (std::size_t i = 1; i < side.size(); ++i) {
+            const Point& tip = points[side[i - 1]];
+            const auto angle_rad = [&](Vertex next) {
+                return std::abs(turning_angle(direction, points[next] - tip));
+            };
+            for (Vertex other = 0; other < points.size(); ++other) {
+                const bool on_path = std::find(side.begin(), side.begin() + static_cast<std::ptrdiff_t>(i),
+                                               other) != side.begin() + static_cast<std::ptrdiff_t>(i);
+                if (on_path || (points[other] - tip).norm() > d_max_m) continue;
+                if (angle_rad(other) < angle_rad(side[i])) ++sum;
+            }
+            direction = points[side[i]] - tip;
+        }
+    }
+    return sum;
+}
+
+TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
+    EnumerationRules all;
+    all.width_backtracking = WidthBacktracking::proven;
+    std::size_t kept = 0;
+    std::size_t left_out = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 6 + seed % 4);
+        EnumerationRules few = all;
+        few.most_discrepancies = seed % 4;
+        std::multiset<PathPairVertices> expected;
+        for (const PathPairVertices& lane : open_pairs(enumerate(points, all))) {
+            const bool keeps = discrepancies(points, all.d_max_m, lane) <= few.most_discrepancies;
+            if (keeps) expected.insert(lane);
+            ++(keeps ? kept : left_out);
+        }
+        ASSERT_EQ(open_pairs(enumerate(points, few)), expected);
+    }
+    EXPECT_GT(kept, 100u);
+    EXPECT_GT(left_out, 100u);
+}
+
+// Lemma 3, first case, does not hold as printed: the right boundary passes vertex 2 at more than 6.5 m, turns
+// back beyond the end of the left one, and comes within 6.5 m of vertex 2 after all.
+TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
+    const std::vector<Point> points{{0.5, 1.9},    {0.3, -1.8},   {4.11, 3.9},   {7.02, 2.64},
+                                    {2.76, -3.25}, {6.63, -2.21}, {10.58, 0.18}, {9.72, 2.98}};
+    const PathPairVertices lane{{{0, 2, 3}, {1, 4, 5, 6, 7}}};
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::proven;
+    EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 1u);
+    rules.width_backtracking = WidthBacktracking::left_behind;
+    EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 0u);
+}
+
+// Giving up what both boundaries have left behind finds nothing infeasible and rarely misses something.
+TEST(PathPairEnumeration, GivingUpWhatIsLeftBehindMissesLittle) {
+    EnumerationRules rules;
+    rules.width_backtracking = WidthBacktracking::left_behind;
+    std::size_t feasible = 0;
+    std::size_t missed = 0;
+    for (unsigned seed = 0; seed < 150; ++seed) {
+        SCOPED_TRACE(seed);
+        const std::vector<Point> points = random_map(seed, 5 + seed % 5);
+        const std::multiset<PathPairVertices> found = open_pairs(enumerate(points, rules));
+        const std::multiset<PathPairVertices> expected = feasible_by_definition(points, rules);
+        ASSERT_TRUE(std::ranges::includes(expected, found));
+        feasible += expected.size();
+        missed += expected.size() - found.size();
+    }
+    EXPECT_LT(static_cast<double>(missed), 0.02 * static_cast<double>(feasible))
+        << missed << " of " << feasible;
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,607 @@
+// The search of `front`: how a lane is put together, and that what the beam finds is the best of all lanes.
+
+#include "graph_search/front/front_search.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "graph_search/front/front_detector.hpp"
+#include "tests/support/front_fixture.hpp"
+#include "tests/support/no_time_limit.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using testing::ElementsAre;
+using tests::random_front_weights;
+using tests::straight_front_scene;
+using Cones = std::array<std::vector<Vertex>, 2>;
+
+/// All states are followed.
+FrontSearchOptions exhaustive() {
+    FrontSearchOptions options;
+    options.beam_width = std::numeric_limits<std::size_t>::max();
+    options.drop = std::numeric_limits<double>::infinity();
+    options.finished_drop = std::numeric_limits<double>::infinity();
+    options.merge = false;
+    return options;
+}
+
+/// Every lane of a scene with its score, met by plain recursion. The rules of the whole lane are looked at
+/// anew, segment by segment.
+class Enumeration {
+  public:
+    Enumeration(const Scene& scene, const FrontWeights& weights, const FrontRules& rules)
+        : cost_(weights), rules_(rules) {
+        map_.build(scene);
+        FrontStarts starts;
+        starts.list(map_, rules_);
+        const auto scores = cost_.score_starts(map_, starts);
+        const std::vector<float> of_starts(scores.begin(), scores.end());
+        for (std::size_t i = 0; i < starts.pairs.size(); ++i) {
+            const Vertex left = starts.cones[kLeft][starts.pairs[i].left];
+            const Vertex right = starts.cones[kRight][starts.pairs[i].right];
+            cones_ = {std::vector{left}, std::vector{right}};
+            go_on(start_state(map_, left, right), of_starts[i]);
+        }
+    }
+
+    std::map<Cones, double> lanes;
+    std::size_t met = 0;  ///< lanes, each as often as it was reached
+
+  private:
+    bool is_free(Side side, Vertex to) const {
+        for (const std::vector<Vertex>& boundary : cones_) {
+            if (std::ranges::count(boundary, to) > 0) return false;
+        }
+        const Segment added{map_.position(cones_[side].back()), map_.position(to)};
+        const std::vector<Vertex>& own = cones_[side];
+        for (std::size_t i = 2; i < own.size(); ++i) {
+            if (segments_intersect(added, {map_.position(own[i - 2]), map_.position(own[i - 1])}))
+                return false;
+        }
+        const std::vector<Vertex>& other = cones_[opposite(side)];
+        for (std::size_t i = 0; i < other.size(); ++i) {
+            const Segment facing{map_.position(other[i]), map_.position(other[i == 0 ? 0 : i - 1])};
+            if (segment_distance(added, facing).distance_m < rules_.narrowest_m) return false;
+        }
+        return true;
+    }
+
+    void go_on(const FrontState& state, double score) {
+        if (state.finished()) {
+            ++met;
+            lanes.emplace(cones_, score);
+            return;
+        }
+        const Side side = moving_side(map_, state);
+        FrontMoves moves;
+        moves.list(map_, state, side, rules_);
+        const auto scores = cost_.score_moves(map_, state, side, moves);
+        const std::vector<float> of_moves(scores.begin(), scores.end());
+        for (std::size_t i = 0; i < moves.extensions.size(); ++i) {
+            if (!is_free(side, moves.extensions[i].to)) continue;
+            cones_[side].push_back(moves.extensions[i].to);
+            go_on(moved(map_, state, side, moves.extensions[i]), score + of_moves[i]);
+            cones_[side].pop_back();
+        }
+        if (moves.stops) go_on(moved(map_, state, side, {}), score + of_moves.back());
+    }
+
+    FrontCost cost_;
+    FrontRules rules_;
+    FrontMap map_;
+    Cones cones_;
+};
+
+TEST(FrontSearch, MeetsEveryLaneOnceAndFindsTheBest) {
+    std::size_t lanes = 0;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = tests::random_scene(seed, 7 + seed % 3);
+        const FrontWeights weights = random_front_weights(seed);
+        const Enumeration all(scene, weights, {});
+        EXPECT_EQ(all.met, all.lanes.size()) << "a lane has one derivation";
+
+        FrontCost cost(weights);
+        FrontSearch search;
+        search.begin(scene, cost, exhaustive());
+        SearchBudget unlimited;
+        search.run(unlimited);
+        EXPECT_FALSE(search.left_out());
+        ASSERT_EQ(search.finished().size(), all.lanes.size());
+        std::set<Cones> met;
+        for (const FrontSearch::Finished& lane : search.finished()) {
+            Cones cones;
+            search.cones(lane.parent, cones);
+            const auto known = all.lanes.find(cones);
+            ASSERT_NE(known, all.lanes.end());
+            EXPECT_NEAR(lane.score, known->second, 1e-4);
+            EXPECT_TRUE(met.insert(cones).second);
+        }
+        lanes += met.size();
+    }
+    EXPECT_GT(lanes, 1000U) << "scenes without lanes show little";
+}
+
+TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontSearchOptions options = exhaustive();
+    options.beam_width = 2;
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(4), cost, options);
+    SearchBudget unlimited;
+    std::size_t full = 0;
+    while (search.advance(unlimited)) {
+        EXPECT_LE(search.level().size(), 2U);
+        if (search.level().size() == 2) ++full;
+    }
+    EXPECT_GT(full, 3U);
+    EXPECT_TRUE(search.left_out());
+}
+
+// Far along the lane a third of the beam goes on. Both boundaries together advance 2.5 m a level, so 5 m
+// along the lane are four levels.
+TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontSearchOptions options = exhaustive();
+    options.beam_width = 4;
+    options.far_m = 5.0;
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(5), cost, options);
+    SearchBudget unlimited;
+    std::size_t near = 0;
+    std::size_t far = 0;
+    while (search.advance(unlimited)) {
+        std::size_t& widest = search.level_number() < 4 ? near : far;
+        widest = std::max(widest, search.level().size());
+    }
+    EXPECT_EQ(near, 4U);
+    EXPECT_EQ(far, 2U);
+}
+
+/// The margin of the best move is over the second one, that of any other under the best.
+TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
+    const FrontWeights weights = random_front_weights(3);
+    FrontCost cost(weights);
+    FrontSearch search;
+    search.begin(straight_front_scene(3), cost, exhaustive());
+    SearchBudget unlimited;
+    search.run(unlimited);
+    std::map<std::size_t, int> best_moves;
+    for (std::size_t n = 0; n < search.nodes(); ++n) {
+        const FrontSearch::Node& node = search.node(n);
+        if (node.parent != FrontSearch::kNone && node.margin > 0.0F) ++best_moves[node.parent];
+    }
+    EXPECT_GT(best_moves.size(), 10U);
+    for (const auto& [state, moves] : best_moves) EXPECT_EQ(moves, 1) << state;
+}
+
+// States with the same front are merged although their pasts differ, and a beam drops what lies behind: so it
+// may miss the best lane, but never finds a better one.
+TEST(FrontSearch, TheBeamIsNeverBetterAndMostlyAsGood) {
+    std::size_t as_good = 0;
+    std::size_t scenes = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const Scene scene = tests::random_scene(seed, 10);
+        const FrontOptions shipped = shipped_front_options();
+        const auto best = [&](const FrontSearchOptions& options) {
+            FrontCost cost(shipped.weights);
+            FrontSearch search;
+            search.begin(scene, cost, options);
+            SearchBudget unlimited;
+            search.run(unlimited);
+            search.sort_finished(1);
+            return search.finished().empty() ? -1e9 : search.finished().front().score;
+        };
+        const double of_all = best(exhaustive());
+        if (of_all == -1e9) continue;
+        const double of_beam = best(shipped.search);
+        EXPECT_LE(of_beam, of_all + 1e-9);
+        ++scenes;
+        if (of_beam > of_all - 1e-9) ++as_good;
+    }
+    EXPECT_GT(scenes, 20U);
+    EXPECT_GT(10 * as_good, 8 * scenes);
+}
+
+TEST(FrontState, TheSideThatLiesBehindMoves) {
+    FrontMap map;
+    map.build(straight_front_scene(3));  // the left cones are 0.2 m behind the right ones
+    ASSERT_EQ(map.position(0).y(), 1.8);
+    FrontState state = start_state(map, 0, 1);
+    EXPECT_EQ(moving_side(map, state), kLeft);
+    FrontMoves moves;
+    moves.list(map, state, kLeft, {});
+    EXPECT_FALSE(moves.stops) << "a lane has two cones a side";
+    const auto next = std::ranges::find(moves.extensions, Vertex{2}, &FrontMove::to);
+    ASSERT_NE(next, moves.extensions.end());
+    state = moved(map, state, kLeft, *next);
+    EXPECT_EQ(moving_side(map, state), kRight);
+    EXPECT_THAT(state.ends[kLeft].cones, ElementsAre(2, 0, kNoCone));
+    EXPECT_NEAR(state.ends[kLeft].length_m, 6.0, 1e-6) << "2 m ahead, 4 m on";
+    state = moved(map, moved(map, state, kLeft, {}), kRight, {});
+    EXPECT_TRUE(state.finished());
+}
+
+TEST(FrontState, AStoppedSideLetsTheOtherGoOn) {
+    FrontMap map;
+    map.build(straight_front_scene(3));
+    FrontState state = start_state(map, 0, 1);
+    state.ends[kLeft].stopped = true;
+    EXPECT_EQ(moving_side(map, state), kRight);
+    state.ends[kLeft].stopped = false;
+    state.ends[kRight].stopped = true;
+    EXPECT_EQ(moving_side(map, state), kLeft);
+}
+
+/// Both cones are near enough to the heading to begin either boundary, yet the left one is to the left. A
+/// third one, on the right, is too far off to be the partner of the left one.
+TEST(FrontStarts, PairsStandOnTheirSidesAndNotTooFarApart) {
+    Scene scene;
+    scene.cones = {{0, {2.0, 1.5}}, {1, {2.0, -1.5}}, {2, {2.0, -8.9}}};
+    FrontMap map;
+    map.build(scene);
+    FrontStarts starts;
+    starts.list(map, {});
+    EXPECT_EQ(starts.cones[kLeft].size(), 2U);
+    EXPECT_EQ(starts.cones[kRight].size(), 3U);
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    for (const auto& [left, right] : starts.pairs) {
+        pairs.emplace(map.scene_index(starts.cones[kLeft][left]),
+                      map.scene_index(starts.cones[kRight][right]));
+    }
+    EXPECT_THAT(pairs, ElementsAre(std::pair(0U, 1U), std::pair(1U, 2U)));
+}
+
+TEST(FrontMoves, LongSegmentsBridgeAMissedConeButNotOneThatIsThere) {
+    Scene scene = straight_front_scene(4);
+    const auto leads_on = [&](double to_x_m) {
+        FrontMap map;
+        map.build(scene);
+        const FrontState state = start_state(map, 0, 1);
+        FrontMoves moves;
+        moves.list(map, state, kLeft, {});
+        return std::ranges::any_of(moves.extensions, [&](const FrontMove& move) {
+            return map.position(move.to).isApprox(Point(to_x_m, 1.8));
+        });
+    };
+    EXPECT_TRUE(leads_on(6.0));
+    EXPECT_FALSE(leads_on(10.0)) << "the cone between stands on the way";
+    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id == 1; });
+    EXPECT_TRUE(leads_on(10.0));
+    EXPECT_FALSE(leads_on(14.0)) << "12 m are too far";
+}
+
+TEST(FrontMoves, TheOtherBoundaryKeepsItsRoom) {
+    Scene scene = straight_front_scene(3);
+    scene.cones.push_back({7, {6.0, 0.1}});   // 1.9 m off the right boundary
+    scene.cones.push_back({8, {6.0, 0.35}});  // 2.15 m
+    FrontMap map;
+    map.build(scene);
+    FrontState state = start_state(map, 0, 1);
+    state.ends[kRight].cones = {map.ahead_between(6.1, 6.3).first, 1, kNoCone};
+    state.ends[kRight].count = 2;
+    FrontMoves moves;
+    moves.list(map, state, kLeft, {});
+    std::set<ConeId> to;
+    for (const FrontMove& move : moves.extensions) to.insert(scene.cones[map.scene_index(move.to)].id);
+    EXPECT_TRUE(to.contains(8));
+    EXPECT_FALSE(to.contains(7));
+}
+
+TEST(FrontMap, AnglesAreExactToTwentyMillionths) {
+    for (int i = -1800; i <= 1800; ++i) {
+        const double angle_rad = i / 10.0 * std::numbers::pi / 180.0;
+        EXPECT_NEAR(std::remainder(front_angle(std::sin(angle_rad), std::cos(angle_rad)) - angle_rad,
+                                   2.0 * std::numbers::pi),
+                    0.0, 2e-5);
+    }
+    EXPECT_EQ(front_angle(0.0, 0.0), 0.0);
+}
+
+TEST(FrontMap, KnowsWhatLiesAboutAWay) {
+    Scene scene;
+    scene.cones = {{0, {0.0, 0.0}}, {1, {4.0, 0.0}}, {2, {2.0, 0.5}}, {3, {2.0, -1.0}}, {4, {8.0, 0.0}}};
+    FrontMap map;
+    map.build(scene);
+    const auto edges = map.edges(0);
+    const auto to =
+        std::ranges::find_if(edges, [&](const FrontEdge& edge) { return map.position(edge.to).x() == 4.0; });
+    ASSERT_NE(to, edges.end());
+    const EdgeNeighbourhood about = map.neighbourhood(0, static_cast<std::size_t>(to - edges.begin()));
+    EXPECT_FLOAT_EQ(about.nearest_beside[kLeft], 0.75F);
+    EXPECT_FLOAT_EQ(about.nearest_beside[kRight], 0.5F);
+    EXPECT_FLOAT_EQ(about.beside, 1.25F);
+    EXPECT_EQ(about.within_disc, 2.0F);
+    EXPECT_FALSE(about.blocked);
+    EXPECT_NEAR(about.continuation, 0.0, 1e-5) << "4 m straight on";
+}
+
+TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
+    Scene scene;
+    scene.cones = {{0, {0.0, 0.0}}, {1, {14.0, 0.0}}, {2, {15.0, 0.0}}, {3, {15.6, 0.0}}};
+    const auto farthest_m = [&] {
+        FrontMap map;
+        map.build(scene);
+        return map.edges(0).back().length_m;  // of the cone at the origin, which is the first one
+    };
+    EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
+    // Ten near ones, and two beyond: twelve ways in all.
+    for (ConeId id = 4; id < 14; ++id) scene.cones.push_back({id, {static_cast<double>(id - 3), 1.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 15.0F);
+    scene.cones.push_back({14, {5.0, -1.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 14.0F);
+    // Twelve are within 11.5 m now; a thirteenth there counts too.
+    scene.cones.push_back({15, {6.0, -1.0}});
+    EXPECT_LT(farthest_m(), 11.5F);
+    scene.cones.push_back({16, {11.4, 0.0}});
+    EXPECT_FLOAT_EQ(farthest_m(), 11.4F);
+}
+
+TEST(FrontNetwork, IsWhatItsFormulaSays) {
+    const FrontWeights weights = random_front_weights(3);
+    const FrontNetworkWeights& w = weights.stop;
+    const FrontNetwork network(w);
+    boost::random::mt19937_64 random(5);
+    boost::random::uniform_real_distribution<float> any(-1.0F, 1.0F);
+    for (const std::size_t count : {1U, 2U, 5U}) {
+        std::vector<float> first(7);
+        std::vector<float> rest(count * (w.inputs - 7));
+        for (float& x : first) x = any(random);
+        for (float& x : rest) x = any(random);
+        FrontSums sums{};
+        network.begin(first, sums);
+        std::vector<float> scores(count);
+        network.score(sums, 7, rest, scores);
+        for (std::size_t row = 0; row < count; ++row) {
+            std::vector<float> inputs = first;
+            const auto from = rest.begin() + static_cast<std::ptrdiff_t>(row * (w.inputs - 7));
+            inputs.insert(inputs.end(), from, from + static_cast<std::ptrdiff_t>(w.inputs - 7));
+            double expected = w.output_bias;
+            for (std::size_t i = 0; i < w.inputs; ++i) expected += w.linear[i] * inputs[i];
+            for (std::size_t unit = 0; unit < kFrontUnits; ++unit) {
+                double sum = w.hidden_bias[unit];
+                for (std::size_t i = 0; i < w.inputs; ++i)
+                    sum += w.hidden[i * kFrontUnits + unit] * inputs[i];
+                expected += w.output[unit] * std::max(0.0, sum);
+            }
+            EXPECT_NEAR(scores[row], expected, 1e-4);
+            EXPECT_NEAR(network.score(inputs), scores[row], 1e-4);
+        }
+    }
+}
+
+/// The same numbers one at a time, in the order that the network states: what any processor gives.
+TEST(FrontNetwork, IsPlainArithmeticToTheLastBit) {
+    const FrontNetworkWeights w = random_front_weights(3).extend;
+    const FrontNetwork network(w);
+    boost::random::mt19937_64 random(6);
+    boost::random::uniform_real_distribution<float> any(-3.0F, 3.0F);
+    constexpr std::size_t kUnitsAtOnce = 8;
+    for (int round = 0; round < 200; ++round) {
+        std::vector<float> inputs(w.inputs);
+        for (float& x : inputs) x = any(random);
+        float linear = 0.0F;
+        for (std::size_t i = 0; i < w.inputs; ++i) linear += w.linear[i] * inputs[i];
+        std::vector<float> parts(kUnitsAtOnce, 0.0F);
+        for (std::size_t unit = 0; unit < kFrontUnits; ++unit) {
+            float sum = w.hidden_bias[unit];
+            for (std::size_t i = 0; i < w.inputs; ++i) sum += inputs[i] * w.hidden[i * kFrontUnits + unit];
+            parts[unit % kUnitsAtOnce] += w.output[unit] * (sum > 0.0F ? sum : 0.0F);
+        }
+        float expected = w.output_bias + linear;
+        for (const float part : parts) expected += part;
+        EXPECT_EQ(network.score(inputs), expected);
+    }
+}
+
+LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = tests::kNoTimeLimit) {
+    return make_front_detector(shipped_front_options())->detect(scene, limits);
+}
+
+TEST(FrontDetector, FollowsAStraight) {
+    const LaneAnswer answer = detect(straight_front_scene(6));
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
+}
+
+/// A hairpin to the left: 8 m straight, then half a circle of the radius to the centre line, then back.
+Scene hairpin(double radius_m) {
+    Scene scene;
+    const auto add = [&](ConeId id, double offset_m, double spacing_m) {
+        // offset_m: of the boundary from the centre line, positive to the right
+        const double r = radius_m + offset_m;
+        for (double back_m = spacing_m * std::floor(7.5 / spacing_m); back_m > 0.1; back_m -= spacing_m) {
+            scene.cones.push_back({id++, {8.0 - back_m, -offset_m}});
+        }
+        const int steps = std::max(2, static_cast<int>(r * std::numbers::pi / spacing_m));
+        for (int i = 0; i <= steps; ++i) {
+            const double angle_rad = std::numbers::pi * i / steps;
+            scene.cones.push_back(
+                {id++, {8.0 + r * std::sin(angle_rad), radius_m - r * std::cos(angle_rad)}});
+        }
+        for (double x = 8.0 - spacing_m; x > 0.5; x -= spacing_m)
+            scene.cones.push_back({id++, {x, 2.0 * radius_m + offset_m}});
+    };
+    add(0, -1.7, 2.5);
+    add(100, 1.7, 3.0);
+    return scene;
+}
+
+/// A lane knows its cones by their numbers, which only repeat from 256 on.
+TEST(FrontDetector, FollowsAStraightOfManyCones) {
+    const Scene scene = straight_front_scene(70);
+    const LaneAnswer answer = detect(scene);
+    EXPECT_EQ(answer.lane.left.size(), 70U);
+    EXPECT_EQ(answer.lane.right.size(), 70U);
+}
+
+TEST(FrontDetector, DrivesAHairpin) {
+    const Scene scene = hairpin(5.0);
+    const LaneAnswer answer = detect(scene);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    for (const auto& [side, first] : {std::pair(answer.lane.left, 0), std::pair(answer.lane.right, 100)}) {
+        ASSERT_GE(side.size(), 8U) << "past the apex";
+        for (std::size_t i = 0; i < side.size(); ++i) EXPECT_EQ(side[i], first + static_cast<int>(i));
+    }
+}
+
+TEST(FrontDetector, StepsOverAMissedCone) {
+    Scene scene = straight_front_scene(6);
+    std::erase_if(scene.cones, [](const Cone& cone) { return cone.id == 3; });
+    const LaneAnswer answer = detect(scene);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 4, 5));
+    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
+}
+
+TEST(FrontDetector, LeavesAFalseConeAside) {
+    Scene scene = straight_front_scene(6);
+    scene.cones.push_back({50, {12.0, 3.4}});
+    scene.cones.push_back({51, {8.0, -0.2}});
+    const LaneAnswer answer = detect(scene);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_THAT(answer.lane.left, ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
+}
+
+// Ends are evened where the other side is more than 6.5 m away; of a lane that is wide all along nothing
+// would be left.
+TEST(FrontDetector, AWideLaneIsALane) {
+    Scene scene = straight_front_scene(6);
+    for (Cone& cone : scene.cones) cone.position.y() *= 2.0;  // 7.2 m
+    FrontMap map;
+    map.build(scene);
+    std::array<std::vector<Vertex>, 2> cones;
+    for (Vertex cone = 0; cone < map.size(); ++cone)
+        cones[map.position(cone).y() > 0.0 ? kLeft : kRight].push_back(cone);
+    even_far_ends(map, cones);
+    EXPECT_THAT(cones[kLeft], testing::SizeIs(6));
+    EXPECT_THAT(cones[kRight], testing::SizeIs(6));
+
+    scene.cones.back().position.y() -= 4.0;  // 11 m off: more than a quarter
+    map.build(scene);
+    even_far_ends(map, cones);
+    EXPECT_THAT(cones[kLeft], testing::SizeIs(6));
+    EXPECT_THAT(cones[kRight], testing::SizeIs(5));
+}
+
+TEST(FrontDetector, AMirroredSceneHasTheMirroredLane) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        Scene scene = tests::random_scene(seed, 24);
+        scene.pose.yaw_rad = 0.0;
+        Scene mirrored = scene;
+        for (Cone& cone : mirrored.cones) cone.position.y() = -cone.position.y();
+        const Lane lane = detect(scene).lane;
+        const Lane other = detect(mirrored).lane;
+        EXPECT_EQ(lane.left, other.right);
+        EXPECT_EQ(lane.right, other.left);
+    }
+}
+
+TEST(FrontDetector, NeitherOrderNorIdsOfTheConesMatter) {
+    boost::random::mt19937_64 random(11);
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        SCOPED_TRACE(seed);
+        const Scene scene = tests::random_scene(seed, 30);
+        Scene permuted = scene;
+        std::map<ConeId, ConeId> old_id;
+        for (std::size_t i = permuted.cones.size(); i > 1; --i) {
+            std::swap(permuted.cones[i - 1],
+                      permuted.cones[boost::random::uniform_int_distribution<std::size_t>(0, i - 1)(random)]);
+        }
+        for (std::size_t i = 0; i < permuted.cones.size(); ++i) {
+            const auto id = static_cast<ConeId>(1000 - 7 * static_cast<int>(i));
+            old_id[id] = permuted.cones[i].id;
+            permuted.cones[i].id = id;
+        }
+        Lane lane = detect(permuted).lane;
+        for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
+            for (ConeId& id : *side) id = old_id.at(id);
+        }
+        EXPECT_EQ(lane, detect(scene).lane);
+    }
+}
+
+TEST(FrontDetector, ADeadlineGivesTheBestLaneSoFar) {
+    Scene scene = straight_front_scene(14);
+    boost::random::mt19937_64 random(2);
+    boost::random::uniform_real_distribution<double> ahead(0.0, 50.0);
+    boost::random::uniform_real_distribution<double> left(-25.0, 25.0);
+    for (int i = 0; i < 300; ++i) {
+        const double x = ahead(random);
+        scene.cones.push_back({1000 + i, {x, left(random)}});
+    }
+    const auto detector = make_front_detector(shipped_front_options());
+    bool cut_off = false;
+    for (double limit_ms = 0.1; limit_ms < 400.0; limit_ms *= 1.3) {
+        const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = limit_ms});
+        if (!answer.stopped_by) continue;
+        EXPECT_EQ(answer.stopped_by, StopReason::time);
+        if (answer.status != LaneStatus::found) continue;
+        cut_off = true;
+        EXPECT_GE(answer.lane.left.size(), 2U);
+        EXPECT_GE(answer.lane.right.size(), 2U);
+    }
+    EXPECT_TRUE(cut_off);
+}
+
+/// Found by fuzzing: as float such a segment has no length, and its direction was no number.
+TEST(FrontDetector, TwoConesAllButAtOnePlaceAreNoSegment) {
+    Scene scene{.id = "nearly one place", .pose = {{0.0, 0.0}, 0.6}, .cones = {}};
+    scene.cones = {{1, {0.0, 0.0}},
+                   {2, {6.291347651660108, 2.476074458886653}},
+                   {3, {7.484855347926502e-63, -1.807003929336495e-62}},
+                   {4, {6.199503627892487, 2.697805546689361}}};
+    for (const double yaw : {0.0, 0.6, 1.2, -2.5}) {
+        scene.pose.yaw_rad = yaw;
+        const LaneAnswer answer =
+            make_front_detector(shipped_front_options())->detect(scene, tests::kNoTimeLimit);
+        ASSERT_NE(answer.status, LaneStatus::error) << answer.message;
+        EXPECT_TRUE(std::isfinite(answer.confidence.value_or(0.0))) << yaw;
+    }
+}
+
+TEST(FrontDetector, OptionsOutOfRangeAreNamed) {
+    const auto key_of = [](auto change) -> std::string {
+        FrontOptions options{FrontWeights::zero(), {}};
+        change(options);
+        try {
+            (void)make_front_detector(options);
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    EXPECT_EQ(key_of([](auto&) {}), "accepted");
+    EXPECT_EQ(key_of([](auto& o) { o.search.beam_width = 0; }), "beam_width");
+    EXPECT_EQ(key_of([](auto& o) { o.search.drop = 0.0; }), "drop");
+    EXPECT_EQ(key_of([](auto& o) { o.search.finished_drop = -1.0; }), "finished_drop");
+    EXPECT_EQ(key_of([](auto& o) { o.search.level_m = 0.0; }), "level_m");
+    EXPECT_EQ(key_of([](auto& o) { o.search.far_m = -1.0; }), "far_m");
+    EXPECT_EQ(key_of([](auto& o) { o.search.far_m = std::nan(""); }), "far_m");
+    EXPECT_EQ(key_of([](auto& o) { o.weights.extend.inputs = 3; }), "extend.inputs");
+    EXPECT_EQ(key_of([](auto& o) { o.weights.stop.hidden.pop_back(); }), "stop.hidden");
+    EXPECT_EQ(key_of([](auto& o) { o.weights.start.linear[2] = std::nanf(""); }), "start.linear");
+}
+
+}  // namespace
+}  // namespace conelane

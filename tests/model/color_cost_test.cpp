@@ -1,0 +1,84 @@
+// On which side an edge near the car is, as its colour is judged: ahead of the car on a straight, and in
+// bends, where neither the car's axis nor the line of the edge tells alone.
+
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+constexpr ConeColor kBlue = ConeColor::blue;
+constexpr ConeColor kYellow = ConeColor::yellow;
+
+/// Of the edge between two cones; the car stands in the origin and looks along +x.
+double color_cost(const Point& from, ConeColor from_color, const Point& to, ConeColor to_color) {
+    Scene scene;
+    scene.cones = {{1, from, from_color}, {2, to, to_color}};
+    return make_problem(scene, {}).edges.at(0).color_cost;
+}
+
+/// As a boundary of that colour, from either end.
+double color_cost(ConeColor color, const Point& from, const Point& to) {
+    const double cost = color_cost(from, color, to, color);
+    EXPECT_EQ(color_cost(to, color, from, color), cost);
+    return cost;
+}
+
+TEST(ColorCost, IsOnTheWrongSideOfAStraightOnly) {
+    EXPECT_EQ(color_cost(kBlue, {2, -1.5}, {5, -1.5}), 1.0);
+    EXPECT_EQ(color_cost(kYellow, {2, -1.5}, {5, -1.5}), 0.0);
+    EXPECT_EQ(color_cost(kBlue, {2, 1.5}, {5, 1.5}), 0.0);
+    EXPECT_EQ(color_cost(kYellow, {2, 1.5}, {5, 1.5}), 1.0);
+    for (const ConeColor neutral : {ConeColor::orange, ConeColor::unknown}) {
+        EXPECT_EQ(color_cost(neutral, {2, 1.5}, {5, 1.5}), 0.0);
+        EXPECT_EQ(color_cost(neutral, {2, -1.5}, {5, -1.5}), 0.0);
+    }
+}
+
+TEST(ColorCost, SparesBothBoundariesOfABend) {
+    // The outer boundary of a bend to the right has crossed the axis, yet the car is to the right of its
+    // line.
+    EXPECT_EQ(color_cost(kBlue, {4.5, 1.0}, {6.5, -1.6}), 0.0);
+    // The inner one is right of the axis, and its line has turned so far that the car is to its right too.
+    EXPECT_EQ(color_cost(kYellow, {3.0, -2.0}, {4.4, -4.6}), 0.0);
+    // The same mirrored: a bend to the left.
+    EXPECT_EQ(color_cost(kYellow, {4.5, -1.0}, {6.5, 1.6}), 0.0);
+    EXPECT_EQ(color_cost(kBlue, {3.0, 2.0}, {4.4, 4.6}), 0.0);
+}
+
+TEST(ColorCost, OfAnEdgeOfBothColorsIsOneFarAwayAndTwoBesideTheCar) {
+    EXPECT_EQ(color_cost({20, 0}, kBlue, {23, 0}, kYellow), 1.0);
+    EXPECT_EQ(color_cost({2, 1.5}, kBlue, {5, 1.5}, kYellow), 2.0);
+    EXPECT_EQ(color_cost({20, 1.5}, kYellow, {23, 1.5}, kYellow), 0.0);  // far away no side is known
+}
+
+/// Every edge of a problem, each alone, is as dear to the checker as to the problem.
+TEST(ColorCost, IsThatOfTheIndependentChecker) {
+    std::size_t faults = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        Scene scene = tests::random_scene(seed, 10);
+        for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+            scene.cones[i].color = (i + seed) % 3 == 0 ? kBlue : kYellow;
+        }
+        RldParameters parameters;
+        parameters.w_color = 100.0;
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        for (const ProblemEdge& edge : problem.edges) {
+            const CheckReport report = check(scene, parameters, LaneGraph{{{edge.i, edge.j}}});
+            ASSERT_TRUE(report.objective);
+            ASSERT_NEAR(*report.objective, edge.cost, 1e-9) << "seed " << seed;
+            if (edge.color_cost > 0.0) ++faults;
+        }
+    }
+    EXPECT_GT(faults, 100U);
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,107 @@
+// The program of a problem: an update gives what building anew gives; lane graphs carried from scene to
+// scene.
+
+#include "model/lane_graph_model.hpp"
+
+#include "conelane/check.hpp"
+#include "conelane/lane_graph.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+/// Everything of a program as text, so that a difference shows.
+std::string text_of(const BinaryProgram& program) {
+    std::string text;
+    for (const BinaryProgram::Column& column : program.columns) {
+        text += to_string(column.label) + " " + std::to_string(column.objective) + " " +
+                std::to_string(column.lower) + " " + std::to_string(column.upper) +
+                (column.integer ? " integer\n" : "\n");
+    }
+    for (std::size_t r = 0; r < program.rows.size(); ++r) {
+        text += to_string(program.rows[r].label) + " " + std::to_string(program.rows[r].lower) + " " +
+                std::to_string(program.rows[r].upper) + ":";
+        for (int e = program.row_starts[r]; e < program.row_starts[r + 1]; ++e) {
+            text += " " + std::to_string(program.entry_values[static_cast<std::size_t>(e)]) + "*" +
+                    std::to_string(program.entry_columns[static_cast<std::size_t>(e)]);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+class ModelUpdate : public testing::TestWithParam<Formulation> {};
+
+/// Sizes repeat and change, so that both ways of updating are taken.
+TEST_P(ModelUpdate, EqualsAProgramBuiltAnew) {
+    const EdgeExtent extent = parts(GetParam()).extent;
+    const RldParameters parameters;
+    const LaneGraphProblem first = make_problem(tests::random_scene(0, 8), parameters, extent);
+    LaneGraphModel model(first, GetParam());
+    for (std::uint64_t seed = 1; seed < 60; ++seed) {
+        const Scene scene = tests::random_scene(seed, 6 + (seed / 3) % 4);
+        const LaneGraphProblem problem = make_problem(scene, parameters, extent);
+        model.update(problem);
+        ASSERT_EQ(text_of(model.program()), text_of(LaneGraphModel(problem, GetParam()).program()))
+            << "seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formulations, ModelUpdate, testing::Values(Formulation::tight, Formulation::paper),
+                         [](const auto& test) { return std::string(to_string(test.param)); });
+
+TEST(MapByConeId, FindsConesAgainAndLeavesOutWhatIsGone) {
+    Scene before;
+    before.cones = {{7, {0, 0}}, {3, {3, 0}}, {9, {6, 0}}};
+    Scene after;
+    after.cones = {{9, {6, 0}}, {1, {9, 0}}, {3, {3, 0}}};
+    const LaneGraph graph{{{0, 1}, {1, 2}}};
+    const LaneGraph expected{{{0, 2}}};
+    EXPECT_EQ(map_by_cone_id(before, graph, after), expected);
+    EXPECT_EQ(map_by_cone_id(before, graph, before), graph);
+}
+
+/// Sets of up to six edges at random, many of them lanes but for one thing: the problem's own test and the
+/// checker, which share no code, must agree.
+TEST(IsFeasible, AgreesWithTheChecker) {
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        boost::random::mt19937_64 random(seed);
+        const auto below = [&](std::size_t count) {
+            return boost::random::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+        };
+        const Scene scene = tests::random_scene(seed, 8);
+        RldParameters parameters;
+        parameters.s_crit = 20.0;
+        parameters.t_crit = 30.0;
+        parameters.d_max = 9.0;
+        parameters.pairing = seed % 2 == 0 ? Pairing::paper : Pairing::near_far;
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        for (int trial = 0; trial < 40; ++trial) {
+            // Two chains over cones of even and of odd index, as the lane was made, and a stray edge at
+            // times.
+            LaneGraph graph;
+            for (const std::size_t side : {0u, 1u}) {
+                const std::size_t length = 1 + below(3);
+                for (std::size_t k = 0; k < length; ++k)
+                    graph.edges.push_back(make_edge(side + 2 * k, side + 2 * k + 2));
+            }
+            if (below(4) == 0) graph.edges.push_back(make_edge(below(4), 4 + below(4)));
+            std::ranges::sort(graph.edges);
+            graph.edges.erase(std::unique(graph.edges.begin(), graph.edges.end()), graph.edges.end());
+            const bool valid = check(scene, parameters, graph).violations.empty();
+            ASSERT_EQ(is_feasible(problem, graph), valid) << "seed " << seed << ", trial " << trial;
+            if (valid) ++feasible;
+        }
+    }
+    EXPECT_GT(feasible, 100);
+}
+
+}  // namespace
+}  // namespace conelane

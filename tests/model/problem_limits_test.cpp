@@ -1,0 +1,146 @@
+// The making of a problem, and of its program, within a deadline and a bound of memory.
+
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "model/deadline.hpp"
+#include "model/lane_graph_model.hpp"
+#include "tests/support/processor_time.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <limits>
+#include <string>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+Scene strewn(std::size_t cones, double side_m) {
+    boost::random::mt19937_64 random(cones);
+    boost::random::uniform_real_distribution<double> along(0.0, side_m);
+    Scene scene;
+    for (std::size_t id = 0; id < cones; ++id) {
+        const double x = along(random);
+        scene.cones.push_back({static_cast<ConeId>(id), {x, along(random) - 0.5 * side_m}});
+    }
+    return scene;
+}
+
+RldParameters with_all_costs() {
+    RldParameters parameters;
+    parameters.w_u = 0.3;
+    parameters.w_v = 0.8;
+    parameters.w_n = 0.9;
+    return parameters;
+}
+
+TEST(ProblemLimits, ADeadlineThatDoesNotPassChangesNothing) {
+    for (const EdgeExtent extent : {EdgeExtent::candidates, EdgeExtent::all_pairs}) {
+        const Scene scene = tests::random_scene(3, 20);
+        const LaneGraphProblem plain = make_problem(scene, with_all_costs(), extent);
+        const LimitedProblem limited = make_problem(scene, with_all_costs(), extent, Deadline(1e300));
+        ASSERT_TRUE(limited.problem);
+        EXPECT_FALSE(limited.stopped_by);
+        ASSERT_EQ(limited.problem->edges.size(), plain.edges.size());
+        for (std::size_t e = 0; e < plain.edges.size(); ++e) {
+            EXPECT_EQ(limited.problem->edges[e].cost, plain.edges[e].cost);
+        }
+        ASSERT_EQ(limited.problem->turns.size(), plain.turns.size());
+        for (std::size_t t = 0; t < plain.turns.size(); ++t) {
+            EXPECT_EQ(limited.problem->turns[t].cost, plain.turns[t].cost);
+        }
+        EXPECT_EQ(limited.problem->conflicts, plain.conflicts);
+        EXPECT_EQ(limited.problem->far_apart, plain.far_apart);
+    }
+}
+
+TEST(ProblemLimits, ADeadlineThatHasPassedLeavesNoProblem) {
+    for (const double limit_ms : {0.0, -1.0}) {
+        const LimitedProblem limited =
+            make_problem(tests::random_scene(3, 20), {}, EdgeExtent::candidates, Deadline(limit_ms));
+        EXPECT_FALSE(limited.problem);
+        EXPECT_EQ(limited.stopped_by, StopReason::time);
+    }
+}
+
+/// In each of its parts: edges, facing costs, turns and conflicts take longer than this, one by one. The
+/// whole takes seconds and gigabytes; that it ends at all in the time that the test has is the point.
+TEST(ProblemLimits, LargeScenesEndAtTheDeadlineOrAtTheBoundOfMemory) {
+    for (const double side_m : {8.0, 30.0, 50.0, 2e6}) {
+        for (const std::size_t cones : {800UL, 2000UL, 5000UL}) {
+            for (const RldParameters& parameters : {RldParameters{}, with_all_costs()}) {
+                for (const double limit_ms : {1.0, 20.0, 200.0}) {
+                    SCOPED_TRACE(testing::Message()
+                                 << cones << " cones, " << side_m << " m, " << limit_ms << " ms");
+                    const Scene scene = strewn(cones, side_m);
+                    LimitedProblem limited;
+                    EXPECT_LT(tests::overrun_ms(limit_ms, 1000.0,
+                                                [&] {
+                                                    limited = make_problem(scene, parameters,
+                                                                           EdgeExtent::candidates,
+                                                                           Deadline(limit_ms));
+                                                }),
+                              1000.0);
+                    EXPECT_NE(limited.problem.has_value(), limited.stopped_by.has_value());
+                    if (limited.problem) {
+                        EXPECT_FALSE(is_too_large(*limited.problem));
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(ProblemLimits, AreTheNumbersThatStandThere) {
+    LaneGraphProblem problem;
+    problem.edges.resize(kMostProblemEdges);
+    problem.conflicts.resize(kMostProblemEntries);
+    EXPECT_FALSE(is_too_large(problem));
+    problem.edges.emplace_back();
+    EXPECT_TRUE(is_too_large(problem));
+    problem.edges.pop_back();
+    problem.turns.emplace_back();
+    EXPECT_TRUE(is_too_large(problem));
+}
+
+/// 5000 cones within a few metres: the edges alone would be millions.
+TEST(ProblemLimits, MemoryIsTheReasonWhereThereIsTimeEnough) {
+    const LimitedProblem limited = make_problem(strewn(5000, 8.0), {}, EdgeExtent::candidates, Deadline());
+    EXPECT_FALSE(limited.problem);
+    EXPECT_EQ(limited.stopped_by, StopReason::memory);
+    const LimitedProblem pairs = make_problem(strewn(5000, 8.0), {}, EdgeExtent::all_pairs, Deadline());
+    EXPECT_EQ(pairs.stopped_by, StopReason::memory);
+}
+
+TEST(ProblemLimits, InvalidInputIsThrownWhateverTheDeadline) {
+    Scene scene = tests::random_scene(3, 6);
+    scene.cones[2].position.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW((void)make_problem(scene, {}, EdgeExtent::candidates, Deadline(0.0)), InvalidInput);
+}
+
+TEST(ProgramLimits, AStoppedUpdateLeavesTheModelFitForTheNext) {
+    const auto update_after_a_stop = [](Formulation formulation, std::size_t cones) {
+        const EdgeExtent extent = parts(formulation).extent;
+        const LaneGraphProblem first = make_problem(tests::random_scene(1, 12), {}, extent);
+        const LaneGraphProblem second = make_problem(tests::random_scene(2, cones), {}, extent);
+        LaneGraphModel model(formulation);
+        EXPECT_FALSE(model.update(first, Deadline()));
+        EXPECT_EQ(model.update(second, Deadline(0.0)), StopReason::time);
+        EXPECT_FALSE(model.update(second, Deadline()));
+        const LaneGraphModel anew(second, formulation);
+        EXPECT_EQ(model.program().rows.size(), anew.program().rows.size());
+        EXPECT_EQ(model.program().row_starts, anew.program().row_starts);
+        EXPECT_EQ(model.program().entry_columns, anew.program().entry_columns);
+        EXPECT_EQ(model.program().entry_values, anew.program().entry_values);
+    };
+    // With other columns the program is built anew, and then by a model that was stopped on the way.
+    for (const std::size_t cones : {12, 13}) {
+        for (const Formulation formulation : {Formulation::tight, Formulation::paper})
+            update_after_a_stop(formulation, cones);
+    }
+}
+
+}  // namespace
+}  // namespace conelane

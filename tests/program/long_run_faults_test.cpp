@@ -1,0 +1,459 @@
+// What a long run must survive: being killed anywhere, another run in its folder, a disk that is full, a
+// folder that cannot be written, files cut short, methods that die. Nothing that was written before is lost,
+// errors name the file, and the next run gives what an undisturbed one gives.
+
+#include "evaluation/files/lane_file.hpp"
+#include "tests/support/program_fixture.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class LongRun : public ProgramFixture {
+  protected:
+    void SetUp() override {
+        ProgramFixture::SetUp();
+        // Pages would take most of the time here. Python ends at once that way, and the run goes on without.
+        ::setenv("PYTHONHOME", "nowhere", 1);
+    }
+
+    /// A program that was started and not yet ended.
+    struct Started {
+        pid_t process = -1;
+        fs::path errors;
+    };
+
+    Started start(const std::string& arguments, const std::string& errors = "stderr") {
+        const std::string command =
+            "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + arguments + " >stdout 2>" + errors;
+        Started started{::fork(), path(errors)};
+        if (started.process == 0) {
+            ::setpgid(0, 0);
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            ::_exit(127);
+        }
+        ::setpgid(started.process, started.process);
+        return started;
+    }
+
+    /// Its exit code; -1 where a signal ended it.
+    static int wait_for(const Started& started) {
+        int status = 0;
+        EXPECT_EQ(::waitpid(started.process, &status, 0), started.process);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+    /// Whether the program was still at work when the signal came.
+    static bool end_by(const Started& started, int signal) {
+        ::kill(-started.process, signal);
+        int status = 0;
+        EXPECT_EQ(::waitpid(started.process, &status, 0), started.process);
+        return WIFSIGNALED(status) && WTERMSIG(status) == signal;
+    }
+
+    /// Waits until the condition holds or the program ends; whether it holds.
+    static bool wait_until(const Started& started, const std::function<bool()>& holds) {
+        for (int wait = 0; wait < 60'000; ++wait) {
+            if (holds()) return true;
+            siginfo_t state{};
+            if (::waitid(P_PID, static_cast<id_t>(started.process), &state, WEXITED | WNOHANG | WNOWAIT) !=
+                    0 ||
+                state.si_pid != 0) {
+                return holds();
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    }
+
+    /// Every file of a folder by its name.
+    [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        for (const auto& entry : fs::recursive_directory_iterator(path(folder))) {
+            if (entry.is_regular_file()) files[entry.path().filename().string()] = text_of(entry.path());
+        }
+        return files;
+    }
+
+    /// Answers but for their times, and the status of each.
+    [[nodiscard]] std::vector<std::pair<Lane, LaneStatus>> answers(const std::string& file) const {
+        std::vector<std::pair<Lane, LaneStatus>> all;
+        for (const LaneRecord& record : read_lanes(path(file)))
+            all.emplace_back(record.answer.lane, record.answer.status);
+        return all;
+    }
+
+    /// The rows of results.jsonl but for what depends on the clock.
+    [[nodiscard]] std::vector<nlohmann::json> results(const std::string& folder) const {
+        std::vector<nlohmann::json> rows;
+        std::ifstream lines(path(folder) / "results.jsonl");
+        for (std::string line; std::getline(lines, line);) {
+            rows.push_back(nlohmann::json::parse(line));
+            for (const char* key :
+                 {"latency_ms", "within_budget_share", "solved_share", "self_timed_ms", "echo_floor_ms"})
+                rows.back().erase(key);
+        }
+        return rows;
+    }
+
+    /// No file under a temporary name.
+    void expect_no_temporary_file() const {
+        for (const auto& entry : fs::recursive_directory_iterator(path("")))
+            EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".tmp")));
+    }
+};
+
+/// Four laps of a few scenes each; a limit that no solve hits, so that answers depend on the scenes alone.
+std::string compare(const std::string& method, const std::string& folder, int every_m = 12) {
+    return "compare --tracks generated:circle generated:kidney --condition paper --fp 0,0.3 "
+           "--nearest 14 --time-limit 60000 --every " +
+           std::to_string(every_m) + " --methods " + method + " --out " + folder;
+}
+
+/// The beginning of a file of lanes that holds whole laps only. `whole`: the same file of a run that ended.
+std::string whole_laps(const std::string& lanes, const std::string& whole) {
+    const auto lap_at = [&](std::size_t line) {
+        const std::size_t track = whole.find("\"scene\":\"", line);
+        const std::size_t pose = whole.find("/pose_", line);
+        return whole.substr(track, pose - track) + whole.substr(whole.find('/', pose + 1), 8);
+    };
+    std::size_t laps_end = 0;
+    std::size_t line_of_whole = 0;
+    for (std::size_t line = 0; line < lanes.size();) {
+        const std::size_t end = lanes.find('\n', line);
+        if (end == std::string::npos) break;
+        const std::size_t next = whole.find('\n', line_of_whole) + 1;
+        if (next >= whole.size() || lap_at(next) != lap_at(line_of_whole)) laps_end = end + 1;
+        line_of_whole = next;
+        line = end + 1;
+    }
+    return lanes.substr(0, laps_end);
+}
+
+class KilledRun : public LongRun, public testing::WithParamInterface<const char*> {};
+
+// Killed again and again inside each solver, by a signal that nobody can catch and by Ctrl-C; each run goes
+// on where the one before was. In the end everything is as if nothing had happened.
+TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
+    const std::string method = GetParam();
+    constexpr int kEvery_m = 3;
+    ASSERT_EQ(run(compare(method, "whole", kEvery_m)).exit_code, 0);
+    const std::string lanes = method + ".n014.lanes.jsonl";
+    const fs::path part = path("killed") / (lanes + ".part");
+    int killed = 0;
+    for (std::size_t attempt = 0; attempt < 6; ++attempt) {
+        const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
+        const Started started = start(compare(method, "killed", kEvery_m));
+        // Some milliseconds after the answers of a further lap: in the middle of the next one.
+        wait_until(started, [&] {
+            return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
+                   fs::exists(path("killed") / lanes);
+        });
+        std::this_thread::sleep_for(std::chrono::milliseconds(3 * attempt));
+        if (end_by(started, attempt % 2 == 0 ? SIGKILL : SIGINT)) ++killed;
+        if (fs::exists(part)) {
+            EXPECT_TRUE(text_of(part).starts_with(before)) << "answers of before are lost";
+        } else {
+            break;
+        }
+    }
+    EXPECT_GT(killed, 0) << "it was always done too early";
+    // What was being written when the signal came.
+    std::ofstream(path("killed/scores.jsonl.tmp4711_0")) << "half of a";
+    const Outcome resumed = run(compare(method, "killed", kEvery_m));
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+    EXPECT_EQ(answers("killed/" + lanes), answers("whole/" + lanes));
+    EXPECT_EQ(results("killed"), results("whole"));
+    EXPECT_EQ(text_of(path("killed/scenes.scenes.jsonl")), text_of(path("whole/scenes.scenes.jsonl")));
+    EXPECT_FALSE(fs::exists(part));
+    expect_no_temporary_file();
+}
+INSTANTIATE_TEST_SUITE_P(Methods, KilledRun,
+                         testing::Values("rld-cbc", "rld-pair", "rld-shape", "clc", "front"),
+                         [](const auto& tested) {
+                             std::string name = tested.param;
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+class KilledSolve : public LongRun, public testing::WithParamInterface<const char*> {};
+
+// In the middle of a solver: the old solutions stay until the new ones are whole.
+TEST_P(KilledSolve, LeavesTheOldSolutions) {
+    // Enough of them that the fastest is at work for longer than a program takes to start.
+    const std::string every_m = GetParam() == std::string("path-pair") ? "0.2" : "2";
+    ASSERT_EQ(
+        run("scenes --tracks generated:kidney --fp 0.3 --out s.scenes.jsonl --every " + every_m).exit_code,
+        0);
+    const std::string solve = "solve --scenes s.scenes.jsonl --nearest 24 --time-limit 60000 --solver " +
+                              std::string(GetParam()) + " --out s.solutions.jsonl";
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(run(solve).exit_code, 0);
+    const auto whole = std::chrono::steady_clock::now() - begin;
+    int killed = 0;
+    for (const int signal : {SIGKILL, SIGINT}) {
+        for (const int part : {1, 3, 5}) {
+            file_with("old\n", "s.solutions.jsonl");
+            const Started started = start(solve);
+            std::this_thread::sleep_for(whole * part / 10);
+            if (!end_by(started, signal)) continue;
+            ++killed;
+            EXPECT_EQ(text_of(path("s.solutions.jsonl")), "old\n");
+        }
+    }
+    EXPECT_GT(killed, 0) << "it was always done too early";
+    const Outcome again = run("solve --scenes s.scenes.jsonl --nearest 10 --solver " +
+                              std::string(GetParam()) + " --out s.solutions.jsonl");
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_EQ(run("check --scenes s.scenes.jsonl --solutions s.solutions.jsonl").exit_code, 0);
+}
+INSTANTIATE_TEST_SUITE_P(Solvers, KilledSolve, testing::Values("path-pair", "cbc", "cbc-main", "clp-bb"),
+                         [](const auto& tested) {
+                             std::string name = tested.param;
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+// One at any moment: while scenes are made, while answers, scores and tables are written.
+TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
+    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    for (int after_ms = 1; after_ms < 200; after_ms += 13) {
+        const Started started = start(compare("clc", "killed"));
+        std::this_thread::sleep_for(std::chrono::milliseconds(after_ms));
+        (void)end_by(started, after_ms % 2 == 0 ? SIGINT : SIGKILL);
+    }
+    const Outcome last = run(compare("clc", "killed"));
+    ASSERT_EQ(last.exit_code, 0) << last.errors;
+    EXPECT_EQ(answers("killed/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
+    EXPECT_EQ(results("killed"), results("whole"));
+}
+
+TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
+    ASSERT_EQ(run(compare("rld-cbc", "whole")).exit_code, 0);
+    const fs::path part = path("shared/rld-cbc.n014.lanes.jsonl.part");
+    // The first one is held in the middle of its work; where it was done too early, another one.
+    Started first;
+    siginfo_t state{};
+    for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
+        if (attempt > 0) (void)wait_for(first);
+        first = start(compare("rld-cbc", "shared") + " --overwrite");
+        wait_until(first, [&] { return fs::exists(part); });
+        ::kill(-first.process, SIGSTOP);
+        const auto process = static_cast<id_t>(first.process);
+        ASSERT_EQ(::waitid(P_PID, process, &state, WSTOPPED | WEXITED | WNOWAIT), 0);
+    }
+    ASSERT_EQ(state.si_code, CLD_STOPPED) << "it was always done too early";
+    const Outcome second = run(compare("clc", "shared") + " --overwrite");
+    EXPECT_EQ(second.exit_code, 2);
+    EXPECT_EQ(second.errors, "conelane: shared: another conelane is writing there\n");
+    ::kill(-first.process, SIGCONT);
+    EXPECT_EQ(wait_for(first), 0) << text_of(first.errors);
+    EXPECT_EQ(answers("shared/rld-cbc.n014.lanes.jsonl"), answers("whole/rld-cbc.n014.lanes.jsonl"));
+    EXPECT_EQ(results("shared"), results("whole"));
+}
+
+/// A disk of its own that is soon full; gone with the test.
+class SmallDisk {
+  public:
+    SmallDisk(fs::path folder, const std::string& size) : folder_(std::move(folder)) {
+        fs::create_directories(folder_);
+        mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+    }
+    ~SmallDisk() {
+        if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    [[nodiscard]] bool is_mounted() const { return mounted_; }
+    void grow(const std::string& size) const {
+        ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()), 0);
+    }
+    void make_read_only(bool read_only) const {
+        ASSERT_EQ(
+            ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT | (read_only ? MS_RDONLY : 0), nullptr), 0);
+    }
+
+  private:
+    fs::path folder_;
+    bool mounted_ = false;
+};
+
+// The disk is full after the scenes, after half of the answers, or in the scores. What fits stays, and with
+// room the run goes on.
+TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
+    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    std::uintmax_t scenes = 0;
+    for (const auto& [name, text] : contents("whole"))
+        if (name.starts_with("scenes.")) scenes += text.size();
+    int full = 0;
+    for (const std::uintmax_t more : {0, 4096, 8192, 16384, 32768, 65536}) {
+        const SmallDisk disk(path("disk"), std::to_string(scenes + 8192 + more));
+        if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+        const Outcome outcome = run(compare("clc", "disk/results"));
+        if (outcome.exit_code == 0) break;
+        ++full;
+        EXPECT_EQ(outcome.exit_code, 2);
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+        EXPECT_THAT(outcome.errors, HasSubstr("disk/results/"));
+        EXPECT_THAT(outcome.errors, HasSubstr("cannot be written"));
+        const std::map<std::string, std::string> kept = contents("disk/results");
+        for (const auto& [name, text] : kept) EXPECT_THAT(name, testing::Not(HasSubstr(".tmp")));
+        disk.grow("64m");
+        const Outcome resumed = run(compare("clc", "disk/results"));
+        ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+        EXPECT_EQ(answers("disk/results/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
+        EXPECT_EQ(results("disk/results"), results("whole"));
+        // Whole laps of before are kept with their times.
+        for (const char* lanes : {"clc.n014.lanes.jsonl", "clc.n014.lanes.jsonl.part"}) {
+            const auto before = kept.find(lanes);
+            if (before == kept.end() || before->second.empty()) continue;
+            const std::string now = text_of(path("disk/results/clc.n014.lanes.jsonl"));
+            EXPECT_EQ(now.substr(0, 100), before->second.substr(0, 100));
+        }
+    }
+    EXPECT_GE(full, 2);
+}
+
+TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
+    file_with("mine\n", "file");
+    expect_refused(compare("clc", "file"), {"file"});
+    expect_refused(compare("clc", "file/below"), {"file/below"});
+    expect_refused(compare("clc", "/proc/results"), {"/proc/results"});
+    EXPECT_EQ(text_of(path("file")), "mine\n");
+    const SmallDisk disk(path("disk"), "16m");
+    if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+    ASSERT_EQ(run(compare("clc", "disk/results")).exit_code, 0);
+    const auto before = contents("disk/results");
+    disk.make_read_only(true);
+    for (const char* folder : {"disk/results", "disk/others"}) {
+        const Outcome outcome = run(compare("clc", folder) + " --overwrite");
+        EXPECT_EQ(outcome.exit_code, 2);
+        EXPECT_THAT(outcome.errors, HasSubstr(folder));
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+    }
+    EXPECT_EQ(contents("disk/results"), before);
+    disk.make_read_only(false);
+}
+
+/// Each file of a finished comparison, cut short in the middle of a line, as after a power failure.
+TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
+    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    const auto cut = [&](const std::string& name, std::size_t length) {
+        fs::remove_all(path("cut"));
+        fs::copy(path("whole"), path("cut"), fs::copy_options::recursive);
+        fs::resize_file(path("cut/" + name), length);
+    };
+    // Made from what is there.
+    for (const char* name :
+         {"results.jsonl", "scores.jsonl", "table.txt", "scenes.scenes.jsonl", "scenes.tracks.json"}) {
+        SCOPED_TRACE(name);
+        cut(name, text_of(path("whole") / name).size() / 2);
+        const Outcome outcome = run(compare("clc", "cut"));
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        EXPECT_EQ(text_of(path("cut") / name), text_of(path("whole") / name));
+    }
+    // Answers under their final name are trusted, so a line that is cut is an error that names it.
+    const std::string lanes = text_of(path("whole/clc.n014.lanes.jsonl"));
+    cut("clc.n014.lanes.jsonl", lanes.size() / 2);
+    const std::string left = text_of(path("cut/clc.n014.lanes.jsonl"));
+    const auto lines = std::ranges::count(left, '\n');
+    expect_refused(compare("clc", "cut"), {"cut/clc.n014.lanes.jsonl:" + std::to_string(lines + 1)});
+    EXPECT_EQ(text_of(path("cut/clc.n014.lanes.jsonl")), left);
+    // Whole lines, but too few of them.
+    cut("clc.n014.lanes.jsonl", left.rfind('\n') + 1);
+    expect_refused(compare("clc", "cut"), {"cut/clc.n014.lanes.jsonl"});
+    // Without its record nobody knows what the answers belong to.
+    for (const std::size_t length : {std::size_t{0}, std::size_t{20}}) {
+        cut("run.json", length);
+        const auto before = contents("cut");
+        expect_refused(compare("clc", "cut"), {"cut/run.json"});
+        EXPECT_EQ(contents("cut"), before);
+        const Outcome told_to = run(compare("clc", "cut") + " --overwrite");
+        EXPECT_EQ(told_to.exit_code, 0) << told_to.errors;
+        EXPECT_EQ(answers("cut/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
+    }
+    for (const char* text : {"5\n", "[1]\n", "null\n", "\"run\"\n"}) {
+        cut("run.json", 0);
+        file_with(text, "cut/run.json");
+        expect_refused(compare("clc", "cut"), {"cut"});
+    }
+}
+
+/// A method from outside that dies, hangs, or prints what is no answer; it is killed with the run, too.
+TEST_F(LongRun, MethodsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
+    const std::string child = CONELANE_OUTSIDE_CHILD;
+    ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
+    for (const char* fault : {"crash", "hang", "nonsense", "half-a-line", "endless-line"}) {
+        SCOPED_TRACE(fault);
+        const std::string folder = std::string("with_") + fault;
+        const std::string method = "'exec:other=" + child + " ids " + fault + " 5 " + fault + ".marker' clc";
+        const Outcome outcome = run(compare(method, folder));
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        EXPECT_THAT(outcome.output, HasSubstr("answers are errors"));
+        const auto others = answers(folder + "/other.n014.lanes.jsonl");
+        const auto expected = answers("whole/clc.n014.lanes.jsonl");
+        ASSERT_EQ(others.size(), expected.size());
+        std::size_t errors = 0;
+        for (std::size_t k = 0; k < others.size(); ++k) {
+            if (others[k].second == LaneStatus::error) ++errors;
+        }
+        EXPECT_EQ(errors, 1U) << "one fault, one scene";
+        EXPECT_EQ(answers(folder + "/clc.n014.lanes.jsonl"), expected);
+    }
+}
+
+/// What holds answers is never replaced by another run unless that is asked for, whatever differs.
+TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
+    ASSERT_EQ(run(compare("rld-pair", "results")).exit_code, 0);
+    const auto before = contents("results");
+    for (const char* other :
+         {"--seed 7", "--every 13", "--fp 0.5", "--fp 0", "--range 25", "--time-limit 70", "--nearest 15",
+          "--methods clc", "--methods rld-pair,front", "--tracks generated:circle", "--condition car",
+          "--noise 0.1", "--candidates", "--threads 2", "--shard 0/2", "--pairing paper", "--full"}) {
+        SCOPED_TRACE(other);
+        // The last one of an option that is given twice would not hold; it takes the place of the first.
+        std::string arguments = compare("rld-pair", "results");
+        const std::string option = std::string(other).substr(0, std::string(other).find(' '));
+        const std::size_t place = arguments.find(option + " ");
+        if (place != std::string::npos) {
+            const std::size_t next = arguments.find(" --", place);
+            arguments.erase(place, next == std::string::npos ? next : next + 1 - place);
+        }
+        const Outcome outcome = run(arguments + " " + other);
+        EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
+        EXPECT_THAT(outcome.errors, HasSubstr("results"));
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+        EXPECT_EQ(contents("results"), before);
+    }
+    // Told to, it does; a wrong option does not even then.
+    expect_refused(compare("rld-pair", "results") + " --overwrite --shard 99/100", {"--shard"});
+    EXPECT_EQ(contents("results"), before);
+    ASSERT_EQ(run(compare("rld-pair", "results") + " --seed 7 --overwrite").exit_code, 0);
+    EXPECT_NE(contents("results"), before);
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,526 @@
+// Methods from outside through the real program: what a program or a file brings in, and that nothing which a
+// program does hurts the run.
+
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "tests/support/program_fixture.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace conelane::experiments {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two laps of 6 scenes.
+constexpr const char* kCompare =
+    "compare --tracks generated:circle --condition paper --every 15 --fp 0,0.3 --time-limit 60000 --out ";
+constexpr const char* kLaps =
+    "compare --tracks generated:circle generated:kidney --every 20 --fp 0,0.3 --out ";
+
+std::string child(const std::string& arguments) {
+    return std::string(CONELANE_OUTSIDE_CHILD) + " " + arguments;
+}
+
+class OutsideMethods : public ProgramFixture {
+  protected:
+    std::string run_well(const std::string& arguments) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        return outcome.output;
+    }
+    [[nodiscard]] std::vector<LaneRecord> lanes(const std::string& name) const {
+        return read_lanes(path(name + ".lanes.jsonl"));
+    }
+    [[nodiscard]] std::vector<json> lines(const std::string& name) const {
+        std::vector<json> all;
+        std::ifstream stream(path(name));
+        for (std::string line; std::getline(stream, line);) all.push_back(json::parse(line));
+        return all;
+    }
+    static std::vector<Lane> only_lanes(const std::vector<LaneRecord>& records) {
+        std::vector<Lane> all;
+        for (const LaneRecord& record : records) all.push_back(record.answer.lane);
+        return all;
+    }
+    /// Whether the process whose number the file holds ends within two seconds. One that nobody has asked how
+    /// it ended (a zombie, where the container has no init) has ended.
+    [[nodiscard]] bool has_ended(const std::string& file) const {
+        for (int wait = 0; wait < 400; ++wait) {
+            const std::string number = text_of(path(file)).substr(0, text_of(path(file)).find('\n'));
+            const std::string state = text_of("/proc/" + number + "/stat");
+            if (state.empty() || state.find(") Z ") != std::string::npos) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return false;
+    }
+};
+
+TEST_F(OutsideMethods, ConeIdsScoreAsTheMethodBehindThemAndTimesAreShown) {
+    const std::string table =
+        run_well(std::string(kCompare) + "r --methods clc 'exec:other=" + child("ids") + "'");
+    EXPECT_EQ(only_lanes(lanes("r/other")), only_lanes(lanes("r/clc")));
+    for (const LaneRecord& record : lanes("r/other")) {
+        EXPECT_EQ(record.method, "other");
+        EXPECT_EQ(record.self_timed_ms, 0.25);
+        EXPECT_GT(record.latency_ms, 0.0);
+    }
+    EXPECT_THAT(table, HasSubstr("  other: latency is the round trip"));
+    EXPECT_THAT(table, HasSubstr("self-timed 0.25 ms (median)"));
+    EXPECT_THAT(table, HasSubstr("that of an echo program is "));
+    EXPECT_EQ(text_of(path("r/table.txt")) + "\n", table.substr(0, table.find("all of it in")));
+    std::map<std::string, std::vector<json>> rows;
+    for (const json& row : lines("r/results.jsonl")) rows[row["method"]].push_back(row);
+    ASSERT_EQ(rows["other"].size(), rows["clc"].size());
+    for (std::size_t i = 0; i < rows["other"].size(); ++i) {
+        const json& row = rows["other"][i];
+        EXPECT_EQ(row["usable_share"], rows["clc"][i]["usable_share"]);
+        EXPECT_EQ(row["outside"], "exec");
+        EXPECT_EQ(row["self_timed_ms"]["median"], 0.25);
+        EXPECT_GT(row["latency_ms"]["median"], 0.0);
+        const double floor_ms = row["echo_floor_ms"]["median"];
+        EXPECT_GT(floor_ms, 0.0);
+        EXPECT_FALSE(rows["clc"][i].contains("outside"));
+    }
+}
+
+/// The child is told what a detector may know, lap by lap, by ids that say nothing.
+TEST_F(OutsideMethods, AProgramSeesScenesWithoutWhatIsForScoring) {
+    run_well(std::string(kLaps) + "r --condition car --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") +
+             "'");
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("r/scenes.scenes.jsonl"));
+    std::vector<json> told = lines("log");
+    ASSERT_GE(told.size(), 3U);
+    const json reset{{"reset", true}};
+    EXPECT_EQ(told[0], reset);
+    EXPECT_EQ(told[1]["cones"], told[3]["cones"]) << "its first answer is not timed";
+    EXPECT_EQ(told[2], reset);
+    told.erase(told.begin(), told.begin() + 2);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const AnnotatedScene& scene = scenes[i];
+        if (i == 0 || scenes[i - 1].track != scene.track ||
+            scenes[i - 1].false_positive_rate != scene.false_positive_rate) {
+            EXPECT_EQ(told.at(next++), reset) << scene.scene.id;
+        }
+        const json& seen = told.at(next++);
+        EXPECT_EQ(seen.size(), 3U) << seen;
+        EXPECT_EQ(seen["id"], std::to_string(i + 2));
+        EXPECT_EQ(seen["pose"]["x"], scene.scene.pose.position.x());
+        ASSERT_EQ(seen["cones"].size(), scene.scene.cones.size());
+        EXPECT_EQ(seen["cones"][0]["id"], scene.scene.cones[0].id);
+    }
+    EXPECT_EQ(next, told.size());
+}
+
+TEST_F(OutsideMethods, PointsAtConesCountAsTheseCones) {
+    run_well(std::string(kCompare) + "r --methods clc 'exec:near=" + child("points") +
+             "' 'exec:beside=" + child("points-beside") + "'");
+    EXPECT_EQ(only_lanes(lanes("r/near")), only_lanes(lanes("r/clc")));
+    const std::vector<LaneRecord> clc = lanes("r/clc");
+    const std::vector<LaneRecord> beside = lanes("r/beside");
+    ASSERT_EQ(beside.size(), clc.size());
+    for (std::size_t i = 0; i < beside.size(); ++i) {
+        EXPECT_TRUE(beside[i].answer.lane.left.empty());
+        ASSERT_TRUE(beside[i].points);
+        EXPECT_EQ(beside[i].points->left.size(), clc[i].answer.lane.left.size());
+        EXPECT_EQ(beside[i].answer.lane.closed, clc[i].answer.lane.closed);
+    }
+    for (const json& row : lines("r/results.jsonl")) {
+        if (row["method"] != "beside") continue;
+        EXPECT_EQ(row["usable_share"], 1.0) << "0.4 m aside it can be driven by";
+        EXPECT_GT(row["mean_iou"], 0.8);
+        EXPECT_LT(row["mean_iou"], 0.99);
+        EXPECT_FALSE(row.contains("accurate_share"));
+    }
+}
+
+TEST_F(OutsideMethods, ACentreLineIsScoredByWhereItLeads) {
+    run_well(std::string(kCompare) + "r --methods clc 'exec:line=" + child("centre-line") + "'");
+    for (const LaneRecord& record : lanes("r/line")) EXPECT_GT(record.centre_line.size(), 10U);
+    for (const json& row : lines("r/results.jsonl")) {
+        if (row["method"] != "line") continue;
+        EXPECT_EQ(row["usable_share"], 1.0);
+        EXPECT_LT(row["lateral_p95_m"], 0.2);
+        EXPECT_FALSE(row.contains("mean_iou"));
+    }
+    const json score = lines("r/scores.jsonl").back();
+    EXPECT_EQ(score["method"], "line");
+    EXPECT_TRUE(score.contains("lateral_median_m"));
+}
+
+struct Fault {
+    std::string name;
+    std::string message;
+    /// Which answer is the error: where the program says too much, the one after.
+    std::size_t place = 2;
+    friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+};
+class OutsideFaults : public OutsideMethods, public testing::WithParamInterface<Fault> {};
+
+/// Its fourth scene is the third of the run, since the first is asked twice.
+TEST_P(OutsideFaults, CostOneAnswerAndTheRunGoesOn) {
+    run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --out s.scenes.jsonl");
+    run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
+    const auto start = std::chrono::steady_clock::now();
+    run_well(
+        "detect --scenes s.scenes.jsonl --out bad.lanes.jsonl --method 'exec:bad=exec env OUTSIDE_PID=pid " +
+        child("ids " + GetParam().name + " 4 marker") + "'");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    ASSERT_TRUE(std::filesystem::exists(path("marker"))) << "the fault was not committed";
+    const std::vector<LaneRecord> clc = lanes("clc");
+    const std::vector<LaneRecord> bad = lanes("bad");
+    ASSERT_GT(clc.size(), 4U);
+    ASSERT_EQ(bad.size(), clc.size());
+    for (std::size_t i = 0; i < bad.size(); ++i) {
+        SCOPED_TRACE(i);
+        EXPECT_EQ(bad[i].scene, clc[i].scene);
+        if (i == GetParam().place) {
+            EXPECT_EQ(bad[i].answer.status, LaneStatus::error);
+            EXPECT_THAT(bad[i].answer.message, HasSubstr(GetParam().message));
+        } else {
+            EXPECT_EQ(bad[i].answer.lane, clc[i].answer.lane) << bad[i].answer.message;
+        }
+    }
+    EXPECT_TRUE(has_ended("pid"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, OutsideFaults,
+    testing::Values(Fault{"crash", "signal 6; it said: what went wrong"}, Fault{"exit", "exit code 3"},
+                    Fault{"hang", "no answer within 2000 ms"},
+                    Fault{"half-a-line", "no answer within 2000 ms"},
+                    Fault{"endless-line", "more than 4194304 bytes without a newline"},
+                    Fault{"endless-errors", "no answer within 2000 ms"},
+                    Fault{"closed-streams", "the program ended"}, Fault{"forked", "no answer within 2000 ms"},
+                    Fault{"nonsense", "not valid JSON at column 1"}, Fault{"array", "must be a JSON object"},
+                    Fault{"nan", "latency_ms: must be a finite number"},
+                    Fault{"wrong-scene", "answers scene \"another\" instead of \"4\""},
+                    Fault{"no-scene", "scene: is missing"},
+                    Fault{"unknown-id", "left: no cone of the scene has id 987654321"},
+                    Fault{"cone-twice", "is there twice"}, Fault{"wrong-type", "left: must be an array"},
+                    Fault{"lane-of-none", "left: must be empty where status is none"},
+                    Fault{"far-point", "left_points: a point is farther"},
+                    Fault{"two-lines", "answers scene \"4\" instead of \"5\"", 3}),
+    [](const auto& param) {
+        std::string name = param.param.name;
+        std::erase(name, '-');
+        return name;
+    });
+
+TEST_F(OutsideMethods, AProgramThatIsNotThereGivesErrorsAtOnce) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string table =
+        run_well(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+    for (const LaneRecord& record : lanes("r/none")) EXPECT_EQ(record.answer.status, LaneStatus::error);
+    const std::string count = std::to_string(lanes("r/none").size());
+    EXPECT_THAT(table,
+                HasSubstr(count + " of " + count + " answers are errors, the first to circle/pose_0000"));
+    EXPECT_THAT(table, HasSubstr("nowhere: not found"));
+}
+
+TEST_F(OutsideMethods, ASignalEndsTheProgramToo) {
+    const std::string command = "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + kCompare +
+                                "r --methods 'exec:bad=OUTSIDE_PID=pid " + child("ids hang 3 marker") +
+                                "' >stdout 2>stderr";
+    const pid_t program = ::fork();
+    if (program == 0) {
+        ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        ::_exit(127);
+    }
+    for (int wait = 0; wait < 6000 && text_of(path("marker")).empty(); ++wait)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ::kill(program, SIGINT);
+    int status = 0;
+    ASSERT_EQ(::waitpid(program, &status, 0), program);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << "status " << status;
+    EXPECT_TRUE(has_ended("pid"));
+}
+
+TEST_F(OutsideMethods, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
+    const std::string methods = " --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") + "'";
+    run_well(kLaps + std::string("whole") + methods);
+    std::filesystem::copy(path("whole"), path("stopped"));
+    const std::string all = text_of(path("whole/other.lanes.jsonl"));
+    for (const char* file : {"other.lanes.jsonl", "scores.jsonl", "results.jsonl", "table.txt"})
+        std::filesystem::remove(path("stopped") / file);
+    file_with(all.substr(0, all.size() / 2), "stopped/other.lanes.jsonl.part");
+    const auto asked = [&] { return lines("log").size(); };
+    const std::size_t asked_for_all = asked();
+    std::filesystem::remove(path("log"));
+    run_well(kLaps + std::string("stopped") + methods);
+    EXPECT_EQ(only_lanes(lanes("stopped/other")), only_lanes(lanes("whole/other")));
+    EXPECT_LT(asked(), asked_for_all);
+    EXPECT_TRUE(text_of(path("stopped/other.lanes.jsonl")).starts_with(all.substr(0, 200)))
+        << "kept with its times";
+    expect_refused(kLaps + std::string("stopped --methods 'exec:other=") + child("points") + "'",
+                   {"differs in methods", "--overwrite"});
+}
+
+TEST_F(OutsideMethods, ShardsAndThreadsGiveTheAnswersOfOneRun) {
+    const std::string card = R"({"name": "A stranger", "licence": "MIT", "colour_used": false})";
+    run_well(kLaps + std::string("first --methods clc"));
+    std::filesystem::copy(path("first/clc.lanes.jsonl"), path("theirs.lanes.jsonl"));
+    file_with(card, "theirs.method.json");
+    const std::string methods = " --methods 'lanes:file=theirs.lanes.jsonl,exec:other=" + child("ids") + "'";
+    run_well(kLaps + std::string("whole") + methods);
+    for (const char* shard : {"0", "1"})
+        run_well(kLaps + std::string("part") + shard + methods + " --shard " + shard + "/2");
+    const std::string table = run_well("merge part1 part0 --out merged");
+    EXPECT_THAT(table, HasSubstr("A stranger; licence MIT; no colour"));
+    EXPECT_THAT(table, HasSubstr("that of an echo program is "));
+    run_well(kLaps + std::string("threads --threads 4") + methods);
+    for (const char* run : {"merged", "threads"}) {
+        for (const char* method : {"file", "other"}) {
+            EXPECT_EQ(only_lanes(lanes(std::string(run) + "/" + method)), only_lanes(lanes("first/clc")))
+                << run << " " << method;
+        }
+    }
+}
+
+/// Answers that were made elsewhere, to some of the scenes and to others.
+class FinishedLanes : public OutsideMethods {
+  protected:
+    void SetUp() override {
+        OutsideMethods::SetUp();
+        run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out s.scenes.jsonl");
+        run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
+        clc_ = lines("clc.lanes.jsonl");
+    }
+    void write_theirs(const std::vector<json>& lines) const {
+        std::string text;
+        for (const json& line : lines) text += line.dump() + "\n";
+        file_with(text, "theirs.lanes.jsonl");
+    }
+    /// Rows of `score` on the lanes of `clc` and theirs.
+    std::vector<json> rows() {
+        table_ = run_well(
+            "score --scenes s.scenes.jsonl --lanes clc.lanes.jsonl --methods lanes:them=theirs.lanes.jsonl "
+            "--json "
+            "rows");
+        return lines("rows");
+    }
+
+    std::vector<json> clc_;
+    std::string table_;
+};
+
+TEST_F(FinishedLanes, AreScoredUnderTheirNameWithTheirTimes) {
+    std::vector<json> theirs(clc_.rbegin(), clc_.rend());
+    for (json& line : theirs) {
+        line["latency_ms"] = 7.5;
+        line.erase("method");
+    }
+    theirs.push_back({{"scene", "of another set"}, {"status", "none"}, {"latency_ms", 1}});
+    write_theirs(theirs);
+    const std::vector<json> both = rows();
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[1]["method"], "them");
+    EXPECT_EQ(both[1]["outside"], "lanes");
+    EXPECT_EQ(both[1]["usable_share"], both[0]["usable_share"]);
+    EXPECT_EQ(both[1]["mean_iou"], both[0]["mean_iou"]);
+    EXPECT_EQ(both[1]["latency_ms"]["max"], 7.5);
+    EXPECT_THAT(table_, HasSubstr("them: latency is self-timed, as the lanes file says"));
+}
+
+TEST_F(FinishedLanes, ThatMissAnAnswerCountItAsAnError) {
+    write_theirs({clc_.begin() + 1, clc_.end()});
+    EXPECT_EQ(rows()[1]["errors"], 1);
+    EXPECT_THAT(table_, HasSubstr("the lanes file has no answer to this scene"));
+}
+
+TEST_F(FinishedLanes, ThatAreWrongAreRefusedBeforeTheWork) {
+    const auto refuse = [&](const std::vector<json>& theirs, const std::vector<std::string>& names) {
+        write_theirs(theirs);
+        expect_refused("score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json rows",
+                       names);
+        expect_refused(
+            "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --methods "
+            "lanes:them=theirs.lanes.jsonl",
+            names);
+    };
+    refuse({clc_[0], clc_[1], clc_[0]}, {"theirs.lanes.jsonl:3: scene", "twice, first on line 1"});
+    json wrong = clc_[1];
+    wrong["left"] = {1234567};
+    refuse({clc_[0], wrong}, {"theirs.lanes.jsonl:2: left", "1234567"});
+    wrong = clc_[1];
+    wrong.erase("latency_ms");
+    refuse({clc_[0], wrong}, {"theirs.lanes.jsonl:2: latency_ms", "is missing"});
+    wrong["scene"] = "of another set";
+    wrong["latency_ms"] = 1;
+    refuse({wrong}, {"theirs.lanes.jsonl", "answers none of the scenes"});
+    refuse({}, {"theirs.lanes.jsonl", "answers none of the scenes"});
+    file_with(R"({"colour_used": "no"})", "theirs.method.json");
+    refuse(clc_, {"theirs.method.json", "colour_used", "must be true or false"});
+    expect_refused("score --scenes s.scenes.jsonl", {"--lanes", "--methods"});
+    expect_refused("score --scenes s.scenes.jsonl --methods clc", {"--methods", "lanes:NAME=FILE"});
+    std::filesystem::remove(path("theirs.method.json"));
+    expect_refused(
+        "score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json theirs.lanes.jsonl",
+        {"--json", "theirs.lanes.jsonl"});
+    EXPECT_EQ(lines("theirs.lanes.jsonl"), clc_);
+}
+
+TEST_F(FinishedLanes, ThatChangeAreAnotherComparison) {
+    const std::string compare =
+        "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --methods "
+        "lanes:them=theirs.lanes.jsonl";
+    write_theirs(clc_);
+    run_well(compare);
+    run_well(compare);
+    clc_[0]["latency_ms"] = 9.0;
+    write_theirs(clc_);
+    expect_refused(compare, {"differs in methods", "--overwrite"});
+    std::filesystem::copy(path("theirs.lanes.jsonl"), path("r/mine.lanes.jsonl"));
+    expect_refused(
+        "compare --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out r --overwrite --methods "
+        "lanes:them=r/mine.lanes.jsonl",
+        {"r/mine.lanes.jsonl", "directory of the results"});
+}
+
+TEST_F(OutsideMethods, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
+    file_with("cat >/dev/null\n", "silent.sh");
+    file_with(
+        R"({"name": "Silence", "address": "https://example.org", "licence": "MIT", "colour_used": true,)"
+        R"( "history_used": false, "training_courses": ["fsd_1", "fsg"]})",
+        "silent.method.json");
+    const std::string table =
+        run_well(std::string(kCompare) + "r --methods 'exec:silent=sh ./silent.sh </dev/null'");
+    EXPECT_THAT(table, HasSubstr("Silence; licence MIT; uses colour; no history; trained on fsd_1, fsg; "
+                                 "https://example.org"));
+    const json card = json::parse(text_of(path("silent.method.json")));
+    const json record = json::parse(text_of(path("r/run.json")));
+    EXPECT_EQ(record["methods"][0]["exec"], "sh ./silent.sh </dev/null");
+    EXPECT_EQ(record["methods"][0]["card"], card);
+    for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["card"], card);
+}
+
+TEST_F(OutsideMethods, WhatIsNoMethodIsRefused) {
+    run_well("scenes --tracks generated:circle --every 30 --out s.scenes.jsonl");
+    const std::string detect = "detect --scenes s.scenes.jsonl --out x.lanes.jsonl --method ";
+    for (const char* method : {"exec:", "exec:name", "exec:=true", "exec:name=", "exec:a/b=true",
+                               "exec:.a=true", "'exec:a b=true'", "lanes:name"})
+        expect_refused(detect + method, {"method"});
+    expect_refused(detect + "exec:clc=true", {"'clc' is the name of a method of this program"});
+    expect_refused(detect + "lanes:a=x.lanes.jsonl", {"--method", "lanes"});
+    expect_refused("compare --out r --methods exec:a=true exec:a=false", {"'a' is named twice"});
+    expect_refused("compare --out r --methods lanes:a=nowhere.lanes.jsonl", {"nowhere.lanes.jsonl"});
+    expect_refused("sweep --out r --methods lanes:a=s.scenes.jsonl", {"'a'", "cone-set size"});
+}
+
+TEST_F(OutsideMethods, DetectAndSweepTakeThemToo) {
+    run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --out s.scenes.jsonl");
+    const std::string method = " --method 'exec:other=" + child("ids") + "' ";
+    run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
+    run_well("detect" + method + "--scenes s.scenes.jsonl --out other.lanes.jsonl");
+    EXPECT_EQ(only_lanes(lanes("other")), only_lanes(lanes("clc")));
+    file_with(run_well("detect" + method + "--scenes - --out - <s.scenes.jsonl"), "stream.lanes.jsonl");
+    EXPECT_EQ(only_lanes(lanes("stream")), only_lanes(lanes("clc")));
+    run_well(
+        "sweep --tracks generated:circle --sizes 8 --every 30 --out r --methods "
+        "'exec:other=OUTSIDE_LOG=log " +
+        child("ids") + "'");
+    for (const LaneRecord& record : lanes("r/other.n008")) EXPECT_EQ(record.nearest, 8U);
+    for (const json& told : lines("log")) {
+        if (told.contains("cones")) {
+            EXPECT_LE(told["cones"].size(), 8U);
+        }
+    }
+}
+
+/// The two programs that stand in docs/methods-from-outside.md.
+TEST_F(OutsideMethods, TheExampleInCppAnswersAsClc) {
+    run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + CONELANE_EXAMPLE);
+    EXPECT_EQ(only_lanes(lanes("r/clc-stream")), only_lanes(lanes("r/clc")));
+}
+
+TEST_F(OutsideMethods, TheExampleInPythonFindsStraightLanes) {
+    if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+    const std::string table = run_well(
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:pairs=python3 " +
+        std::string(CONELANE_SOURCE_DIR) + "/experiments/examples/nearest_pairs.py'");
+    EXPECT_THAT(table, HasSubstr("nearest pairs, an example; "));
+    for (const json& row : lines("r/results.jsonl")) {
+        EXPECT_EQ(row["errors"], 0);
+        EXPECT_EQ(row["usable_share"], 1.0);
+    }
+}
+
+/// The interface of ft-fsd-path-planning that the adapter uses, with a sorting that finds straight lanes:
+/// what is tested is the adapter, not the package.
+constexpr const char* kStandIn = R"(import enum
+import sys
+import types
+import numpy as np
+ConeTypes = enum.IntEnum('ConeTypes', 'UNKNOWN RIGHT LEFT START_FINISH_AREA START_FINISH_LINE', start=0)
+MissionTypes = enum.Enum('MissionTypes', 'trackdrive')
+class ConeSortingInput:
+    def __init__(self, cones, position, direction):
+        self.cones, self.position, self.direction = cones, position, direction
+class ConeSorting:
+    def set_new_input(self, given):
+        self.given = given
+    def run_cone_sorting(self):
+        cones, (x, y) = self.given.cones[ConeTypes.UNKNOWN], self.given.direction
+        ahead = (cones - self.given.position) @ np.array([[x, -y], [y, x]])
+        sides = []
+        for is_side in (ahead[:, 1] > 0, ahead[:, 1] <= 0):
+            sides.append(cones[is_side][np.argsort(ahead[is_side, 0])])
+        return sides
+class PathPlanner:
+    def __init__(self, mission):
+        self.cone_sorting = ConeSorting()
+    def calculate_path_in_global_frame(self, cones, position, direction):
+        return np.array([[s, *(position + s * direction), 0.0] for s in range(30)])
+core = types.ModuleType('fsd_path_planning.sorting_cones.core_cone_sorting')
+core.ConeSortingInput = ConeSortingInput
+sys.modules['fsd_path_planning.sorting_cones'] = types.ModuleType('fsd_path_planning.sorting_cones')
+sys.modules['fsd_path_planning.sorting_cones.core_cone_sorting'] = core
+)";
+
+TEST_F(OutsideMethods, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
+    std::string python;
+    for (const char* candidate : {"python3", "/usr/bin/python3"}) {
+        if (std::system((std::string(candidate) + " -c 'import numpy' 2>/dev/null").c_str()) == 0)
+            python = candidate;
+    }
+    if (python.empty()) GTEST_SKIP() << "no python3 with numpy";
+    std::filesystem::create_directory(path("fsd_path_planning"));
+    file_with(kStandIn, "fsd_path_planning/__init__.py");
+    const std::string adapter = "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=. " + python + " " +
+                                CONELANE_SOURCE_DIR + "/experiments/examples/ft_fsd_adapter.py";
+    const std::string table = run_well(
+        "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
+        "'exec:ft-fsd=" +
+        adapter + "' 'exec:ft-fsd-path=" + adapter + " --path'");
+    EXPECT_THAT(table, HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
+    for (const json& row : lines("r/results.jsonl")) {
+        EXPECT_EQ(row["errors"], 0);
+        EXPECT_EQ(row["usable_share"], 1.0);
+        EXPECT_EQ(row["self_timed_ms"].size(), 2U);
+    }
+    for (const LaneRecord& record : lanes("r/ft-fsd")) EXPECT_GE(record.answer.lane.left.size(), 2U);
+    for (const LaneRecord& record : lanes("r/ft-fsd-path")) EXPECT_EQ(record.centre_line.size(), 30U);
+    EXPECT_EQ(std::system(("cd " + path("").string() + " && " + adapter + " --warm-up >warm").c_str()), 0);
+    EXPECT_EQ(json::parse(text_of(path("warm")))[0]["left_points"].size(), 8U);
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,169 @@
+// Folders of comparisons: written, gone on with, merged.
+
+#include "evaluation/files/folder_lock.hpp"
+#include "evaluation/files/lane_file.hpp"
+#include "tests/support/program_on_scenes.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+/// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a
+/// merged one names no shard.
+std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
+    std::vector<nlohmann::json> rows;
+    std::ifstream lines(directory / "results.jsonl");
+    for (std::string line; std::getline(lines, line);) {
+        rows.push_back(nlohmann::json::parse(line));
+        for (const char* key : {"latency_ms", "within_budget_share", "solved_share", "run"})
+            rows.back().erase(key);
+    }
+    return rows;
+}
+
+constexpr const char* kTwoTracks =
+    "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
+
+TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
+    const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
+    EXPECT_THAT(outcome.output, HasSubstr("CLC paper"));
+    for (const char* file : {"scenes.scenes.jsonl", "scenes.tracks.json", "rld-cbc.lanes.jsonl",
+                             "clc.lanes.jsonl", "results.jsonl", "table.txt"}) {
+        EXPECT_TRUE(std::filesystem::exists(path("results") / file)) << file;
+    }
+    // Scoring the stored lanes again gives the same table.
+    const Outcome again =
+        run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
+            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
+            "results/clc.lanes.jsonl "
+            "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
+    EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+    expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
+}
+
+// Centre lines are 25 m long: of poses that are 40 m apart nobody can say whether they agree.
+TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
+    for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {
+        SCOPED_TRACE(every);
+        const std::string folder = std::string("every_") + every;
+        ASSERT_EQ(run("compare --tracks generated:straight --methods clc --fp 0 --every " +
+                      std::string(every) + " --out " + folder)
+                      .exit_code,
+                  0);
+        const std::vector<nlohmann::json> rows = results_in(path(folder));
+        ASSERT_FALSE(rows.empty());
+        for (const nlohmann::json& row : rows) EXPECT_EQ(row.contains("unsteady_share"), is_known) << row;
+    }
+}
+
+TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
+    ASSERT_EQ(run("compare --tracks generated:circle --every 15 --fp 0.3 --out results").exit_code, 0);
+    for (const char* method : {"rld-cbc", "rld-pair", "rld-shape", "clc"}) {
+        for (const LaneRecord& record :
+             read_lanes(path("results") / (std::string(method) + ".lanes.jsonl"))) {
+            EXPECT_EQ(record.checked,
+                      std::string(method) != "clc" && record.answer.status == LaneStatus::found);
+        }
+    }
+    for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
+}
+
+TEST_F(Program, AStoppedComparisonGoesOn) {
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    // What a run leaves that is killed while it writes: some lines, the last one torn.
+    std::filesystem::copy(path("whole"), path("stopped"));
+    const std::string lines = text_of(path("whole") / "clc.lanes.jsonl");
+    for (const char* file : {"clc.lanes.jsonl", "scores.jsonl", "results.jsonl", "table.txt"}) {
+        std::filesystem::remove(path("stopped") / file);
+    }
+    file_with(lines.substr(0, lines.size() / 2), "stopped/clc.lanes.jsonl.part");
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out stopped").exit_code, 0);
+    EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
+    EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
+    EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
+    EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // methods, conditions, rates
+}
+
+TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
+    const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
+    const std::string record = text_of(path("results") / "run.json");
+    expect_refused(clc + "--fp 0,0.3", {"results", "differs in fp", "--overwrite"});
+    expect_refused(clc + "--fp 0 --time-limit 77", {"results", "time_limit_ms", "--overwrite"});
+    expect_refused("sweep --tracks generated:circle --sizes 8 --out results", {"results", "--overwrite"});
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes);
+    EXPECT_EQ(text_of(path("results") / "run.json"), record);
+    ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
+    EXPECT_EQ(text_of(path("results") / "clc.lanes.jsonl"), lanes)
+        << "times of the first run: it has resumed";
+    const std::size_t before = lanes_in(path("results") / "clc.lanes.jsonl").size();
+    ASSERT_EQ(run(clc + "--fp 0,0.3 --overwrite").exit_code, 0);
+    EXPECT_EQ(lanes_in(path("results") / "clc.lanes.jsonl").size(), 2 * before);
+    std::filesystem::remove(path("results") / "run.json");
+    expect_refused(clc + "--fp 0", {"results", "run.json", "--overwrite"});
+}
+
+TEST_F(Program, OneComparisonAtATimeWritesIntoAFolder) {
+    const std::string clc =
+        "compare --tracks generated:circle --every 15 --methods clc --fp 0 --out results ";
+    std::filesystem::create_directory(path("results"));
+    {
+        const FolderLock lock(path("results"));
+        expect_refused(clc, {"results", "another conelane is writing there"});
+        expect_refused(clc + "--overwrite", {"results", "another conelane is writing there"});
+    }
+    EXPECT_EQ(run(clc).exit_code, 0);
+}
+
+TEST_F(Program, MergedShardsEqualOneRun) {
+    ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
+    for (const char* shard : {"0", "1", "2"}) {
+        ASSERT_EQ(run(std::string(kTwoTracks) + "--shard " + shard + "/3 --out part" + shard).exit_code, 0);
+    }
+    ASSERT_EQ(run("merge part2 part0 part1 --out merged").exit_code, 0);
+    EXPECT_EQ(text_of(path("merged") / "scenes.scenes.jsonl"),
+              text_of(path("whole") / "scenes.scenes.jsonl"));
+    for (const char* method : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
+        EXPECT_EQ(lanes_in(path("merged") / method), lanes_in(path("whole") / method));
+    }
+    EXPECT_EQ(results_in(path("merged")), results_in(path("whole")));
+    expect_refused("merge part0 part1 --out again", {"2/3 is missing"});
+    expect_refused("merge part0 part1 part1 part2 --out again", {"1/3 is there twice"});
+    expect_refused("merge part0 whole part2 --out again", {"whole", "shard"});
+    ASSERT_EQ(
+        run("compare --tracks generated:circle --shard 1/3 --every 15 --fp 0,0.3 --out other").exit_code, 0);
+    expect_refused("merge part0 other part2 --out again", {"other", "tracks"});
+    expect_refused("compare --shard 3/3 --out again", {"--shard"});
+    const std::string part = text_of(path("part1") / "run.json");
+    expect_refused("merge part0 part1 part2 --overwrite --out part1", {"part1", "one of the shards"});
+    EXPECT_EQ(text_of(path("part1") / "run.json"), part);
+    expect_refused("merge part0 part1 part2 --out other", {"other", "--overwrite"});
+}
+
+TEST_F(Program, SweepComparesConeSetSizes) {
+    const Outcome outcome = run("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("clc n=8"));
+    for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
+        EXPECT_EQ(record.nearest, 8U);
+        EXPECT_LE(record.answer.lane.left.size() + record.answer.lane.right.size(), 8U);
+    }
+}
+
+}  // namespace
+}  // namespace conelane::experiments

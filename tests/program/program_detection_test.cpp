@@ -1,0 +1,149 @@
+// Scenes in, lanes out, scores of lanes.
+
+#include "evaluation/files/lane_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "tests/support/program_on_scenes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
+    const std::string options = "--fp 0,0.3 --noise 0.1 --miss 0.05 --pose-noise 0.2,0.05 --color ";
+    make_scenes(options + "--threads 1", "one");
+    make_scenes(options + "--threads 4", "four");
+    make_scenes(options, "again");
+    EXPECT_EQ(text_of(path("one.scenes.jsonl")), text_of(path("four.scenes.jsonl")));
+    EXPECT_EQ(text_of(path("one.scenes.jsonl")), text_of(path("again.scenes.jsonl")));
+    EXPECT_GT(read_scenes(path("one.scenes.jsonl")).size(), 10U);
+}
+
+TEST_F(Program, LanesDoNotDependOnThreads) {
+    make_scenes("--fp 0,0.3");
+    const auto lanes = [&](const std::string& method, const std::string& threads) {
+        EXPECT_EQ(run("detect --method " + method + " --scenes s.scenes.jsonl --threads " + threads +
+                      " --out " + threads + ".lanes.jsonl")
+                      .exit_code,
+                  0);
+        std::vector<Lane> found;
+        for (const LaneRecord& record : read_lanes(path(threads + ".lanes.jsonl")))
+            found.push_back(record.answer.lane);
+        return found;
+    };
+    EXPECT_EQ(lanes("clc", "1"), lanes("clc", "3"));
+    EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
+}
+
+/// 132 cones of which most edges are possible keep an exact search busy for hours.
+TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
+    nlohmann::json scene{{"id", "lattice"}, {"pose", {{"x", 0}, {"y", 0}, {"yaw", 0}}}};
+    for (int id = 0; id < 132; ++id) {
+        const int row = id / 11;
+        const int column = id % 11;
+        scene["cones"].push_back({{"id", id},
+                                  {"x", 1.0 + 2.6 * row + 0.06 * (id * 37 % 11)},
+                                  {"y", -13.0 + 2.6 * column + 0.05 * (id * 53 % 13)}});
+    }
+    file_with(scene.dump() + "\n", "lattice.scenes.jsonl");
+    const auto answer = [&](const std::string& options) {
+        const Outcome outcome =
+            run("detect --method rld-pair --scenes lattice.scenes.jsonl --out l.lanes.jsonl " + options);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        return read_lanes(path("l.lanes.jsonl")).at(0).answer;
+    };
+    EXPECT_FALSE(answer("").optimality.value().optimal);
+    EXPECT_TRUE(answer("--nearest 12 --time-limit inf").optimality.value().optimal);
+    EXPECT_THAT(run("detect --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=400"));
+    EXPECT_THAT(run("solve --help").output, HasSubstr("--time-limit FLOAT:POSITIVE=inf"));
+}
+
+/// Each line is answered before the next one is sent.
+TEST_F(Program, AStreamIsAnsweredLineByLine) {
+    make_scenes("--fp 0.2");
+    const std::vector<Lane> expected = [&] {
+        EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+        return lanes_in(path("l.lanes.jsonl"));
+    }();
+    const std::string in = path("in").string();
+    const std::string out = path("out").string();
+    ASSERT_EQ(std::system(("mkfifo " + in + " " + out).c_str()), 0);
+    ASSERT_EQ(std::system(("(timeout 60 " CONELANE_PROGRAM " detect --method clc --scenes - --out - <" + in +
+                           " >" + out + "; echo $? >" + path("code").string() + ") &")
+                              .c_str()),
+              0);
+    std::ofstream scenes(in);
+    std::ifstream lanes(out);
+    std::ifstream file(path("s.scenes.jsonl"));
+    std::size_t count = 0;
+    for (std::string scene, lane; std::getline(file, scene); ++count) {
+        scenes << "{\"reset\": true}\n" << scene << std::endl;
+        ASSERT_TRUE(std::getline(lanes, lane));
+        const nlohmann::json answer = nlohmann::json::parse(lane);
+        EXPECT_EQ(answer["scene"], nlohmann::json::parse(scene)["id"]);
+        EXPECT_EQ(answer["left"].get<std::vector<ConeId>>(), expected.at(count).left);
+        EXPECT_EQ(answer["right"].get<std::vector<ConeId>>(), expected.at(count).right);
+    }
+    scenes << "{\"id\": 3}" << std::endl;
+    std::string lane;
+    ASSERT_TRUE(std::getline(lanes, lane));
+    const nlohmann::json wrong = nlohmann::json::parse(lane);
+    EXPECT_EQ(wrong["status"], "error");
+    EXPECT_EQ(wrong["scene"], std::to_string(2 * count + 1));
+    EXPECT_THAT(wrong["message"].get<std::string>(), HasSubstr("id"));
+    scenes.close();
+    EXPECT_FALSE(std::getline(lanes, lane)) << "it ends with its input";
+    for (int wait = 0; wait < 200 && text_of(path("code")).empty(); ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_EQ(text_of(path("code")), "0\n");
+    const Outcome whole = run("detect --method clc --scenes s.scenes.jsonl --out -");
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(whole.output, '\n')), expected.size());
+    expect_refused("detect --method clc --scenes - --out - --threads 2", {"--threads", "stream"});
+}
+
+/// The ground truth, handed in as a method's lanes, is the best there can be.
+TEST_F(Program, GroundTruthAsLanesScoresFull) {
+    make_scenes("--fp 0,0.3,0.5 --range 30,50");
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
+    std::vector<LaneRecord> records;
+    for (const AnnotatedScene& scene : scenes) {
+        LaneRecord record{scene.scene.id, "truth", {}, 1.0, {}};
+        record.answer.status = LaneStatus::found;
+        record.answer.lane = *scene.ground_truth;
+        records.push_back(record);
+    }
+    write_lanes(path("truth.lanes.jsonl"), records);
+    const Outcome outcome = run("score --scenes s.scenes.jsonl --lanes truth.lanes.jsonl --json truth.json");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    std::ifstream lines(path("truth.json"));
+    std::size_t rows = 0;
+    for (std::string line; std::getline(lines, line); ++rows) {
+        const auto row = nlohmann::json::parse(line);
+        EXPECT_EQ(row.at("mean_iou"), 1.0);
+        EXPECT_EQ(row.at("success_share"), 1.0);
+        EXPECT_EQ(row.at("usable_share"), 1.0);
+        EXPECT_LT(row.at("lateral_p95_m").get<double>(), 1e-6);
+        EXPECT_LT(row.at("heading_p95_rad").get<double>(), 1e-6);
+        EXPECT_EQ(row.at("share").at("ground_truth"), 1.0) << line;
+        for (const char* key : {"commit", "compiler", "machine", "run"})
+            EXPECT_TRUE(row.contains(key)) << key;
+    }
+    EXPECT_EQ(rows, 6U);
+}
+
+}  // namespace
+}  // namespace conelane::experiments

@@ -1,0 +1,120 @@
+// Where the program writes: tried first, never to what it reads, and an old result stays until there is a new
+// one.
+
+#include "evaluation/files/parameter_file.hpp"
+#include "tests/support/program_on_scenes.hpp"
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Long work is not begun whose result has no place: the scenes would come first, and are bad.
+TEST_F(Program, OutputsAreTriedBeforeTheWork) {
+    file_with("{", "bad.scenes.jsonl");
+    std::filesystem::create_directory(path("folder"));
+    for (const char* command :
+         {"detect --method clc", "solve", "certify", "study formulations", "study backends",
+          "study optimality", "study relaxations", "export --id a", "import-solution --id a --sol a.sol"}) {
+        const std::string begun = std::string(command) + " --scenes bad.scenes.jsonl --out ";
+        expect_refused(begun + "nowhere/x.lp", {"--out", "nowhere/x.lp"});
+        expect_refused(begun + "folder", {"--out", "folder"});
+    }
+    expect_refused("score --scenes bad.scenes.jsonl --lanes x.lanes.jsonl --json nowhere/x",
+                   {"--json", "nowhere/x"});
+    expect_refused("tune --tracks generated:nowhere --out nowhere/p.json", {"--out", "nowhere/p.json"});
+    expect_refused("scenes --tracks generated:circle --every 60 --out folder", {"--out", "folder"});
+}
+
+/// What is tried and not written stays; a pipe is not tried, since that would end it.
+TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
+    file_with("old\n", "x.lanes.jsonl");
+    expect_refused("detect --method clc --scenes nowhere.scenes.jsonl --out x.lanes.jsonl", {"nowhere"});
+    EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+    file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
+    const std::string pipe = path("pipe").string();
+    ASSERT_EQ(
+        std::system(("mkfifo " + pipe + " && (timeout 60 cat " + pipe + " >" + path("read").string() + " &)")
+                        .c_str()),
+        0);
+    EXPECT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out pipe").exit_code, 0);
+    for (int wait = 0; wait < 100 && text_of(path("read")).empty(); ++wait) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    EXPECT_THAT(text_of(path("read")), HasSubstr("\"scene\":\"a\""));
+}
+
+TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
+    file_with("old\n", "x.lanes.jsonl");
+    file_with("{", "bad.scenes.jsonl");
+    EXPECT_EQ(run("detect --method clc --scenes bad.scenes.jsonl --out x.lanes.jsonl").exit_code, 2);
+    EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
+}
+
+/// Under another name, through links, by the companion: nothing that is read is written.
+TEST_F(Program, AnOutputIsNoInput) {
+    make_scenes("--fp 0.2");
+    const std::string scenes = text_of(path("s.scenes.jsonl"));
+    std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));
+    std::filesystem::create_hard_link(path("s.scenes.jsonl"), path("hard"));
+    std::filesystem::create_directory(path("sub"));
+    for (const char* command : {"detect --method clc", "solve", "certify", "export --id a"}) {
+        for (const char* out :
+             {"s.scenes.jsonl", "./sub/../s.scenes.jsonl", "link", "hard", "s.tracks.json"}) {
+            expect_refused(std::string(command) + " --scenes s.scenes.jsonl --out " + out,
+                           {"--out", out, "--scenes"});
+        }
+        expect_refused(std::string(command) + " --scenes link --out s.scenes.jsonl", {"--out", "--scenes"});
+    }
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    expect_refused("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json l.lanes.jsonl",
+                   {"--json", "l.lanes.jsonl", "--lanes"});
+    ASSERT_EQ(run("certify --scenes s.scenes.jsonl --out c.certificates.jsonl").exit_code, 0);
+    write_rld_parameters(path("p.json"), RldParameters{});
+    expect_refused("solve --scenes s.scenes.jsonl --params p.json --out p.json", {"--out", "--params"});
+    file_with("tag,x,y,direction,x_variance,y_variance,xy_covariance\n", "t.csv");
+    expect_refused("scenes --tracks eufs:t.csv --out t.csv", {"--out", "--tracks"});
+    std::filesystem::create_directory(path("r"));
+    file_with("", "r/results.jsonl");
+    expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
+    EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
+    // What is no file may have a file's name.
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+    EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
+}
+
+TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
+    make_scenes("--fp 0.2");
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    const auto exit_code = [&](const std::string& arguments) {
+        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
+                                    " 2>" + path("stderr").string();
+        return WEXITSTATUS(std::system(command.c_str()));
+    };
+    for (const char* command :
+         {"methods", "--version", "--help", "score --scenes s.scenes.jsonl --lanes l.lanes.jsonl"}) {
+        for (const char* stream : {" >/dev/full", " >&-"}) {
+            EXPECT_EQ(exit_code(std::string(command) + stream), 2) << command << stream;
+            EXPECT_EQ(text_of(path("stderr")), "conelane: standard output cannot be written to its end\n");
+        }
+    }
+    // A closed output is not given to the next file that is opened.
+    EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
+    EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));
+    EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out m.lanes.jsonl >&-"), 0)
+        << "it has nothing to say";
+}
+
+}  // namespace
+}  // namespace conelane::experiments

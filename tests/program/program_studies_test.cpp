@@ -1,0 +1,126 @@
+// Training, tuning and studies by the program.
+
+#include "evaluation/files/parameter_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
+#include "tests/support/program_on_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
+    const std::string command =
+        "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
+        "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
+        "--seed 3 --out ";
+    const Outcome whole = run(command + "whole.json");
+    ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+    EXPECT_THAT(whole.output, HasSubstr("step 12 of 12, judging"));
+    EXPECT_THAT(whole.output, HasSubstr("usable"));
+    ASSERT_EQ(run(command + "first.json --checkpoint c.json").exit_code, 0);
+    const Outcome again = run(command + "again.json --checkpoint c.json --threads 2");
+    ASSERT_EQ(again.exit_code, 0) << again.errors;
+    EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
+    const auto weights = [&](const std::string& file) {
+        auto json = nlohmann::json::parse(text_of(path(file)));
+        json.erase("training");  // the figures of a run that has nothing left to do are missing
+        return json;
+    };
+    EXPECT_EQ(weights("again.json"), weights("whole.json"));
+    const Outcome other = run(command + "other.json --checkpoint c.json --beam 7");
+    EXPECT_EQ(other.exit_code, 2);
+    EXPECT_THAT(other.errors, HasSubstr("c.json"));
+    EXPECT_FALSE(std::filesystem::exists(path("other.json")));
+}
+
+TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColourStudyUses) {
+    const std::string tune =
+        "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
+        "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";
+    const Outcome tuned = run(tune);
+    ASSERT_EQ(tuned.exit_code, 0) << tuned.errors;
+    EXPECT_THAT(tuned.output, HasSubstr("held out circle"));
+    const nlohmann::json record = nlohmann::json::parse(text_of(path("p.record.json")));
+    EXPECT_EQ(record["nearest"], 8);
+    EXPECT_EQ(record["context"], 16);
+    EXPECT_EQ(record["shape"], true);
+    EXPECT_EQ(record["rounds"], 1);
+    EXPECT_TRUE(has_shape_costs(read_rld_parameters(path("p.json"))));
+    std::size_t counted = 0;
+    for (const auto& [cause, scenes] : record["losses"]["0.3"].items()) counted += scenes.get<std::size_t>();
+    EXPECT_GT(counted, 5U);
+    EXPECT_TRUE(record.contains("wrong_cones"));
+    EXPECT_EQ(run(tune).output, tuned.output) << "from its log";
+
+    const Outcome study = run("study confidence-and-colour --record p.record.json --out study.jsonl");
+    ASSERT_EQ(study.exit_code, 0) << study.errors;
+    EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
+    // Geometry alone, on the held-out tracks: what the tuning says.
+    std::ifstream lines(path("study.jsonl"));
+    std::string first;
+    std::getline(lines, first);
+    const nlohmann::json geometry = nlohmann::json::parse(first);
+    EXPECT_EQ(geometry["known"], "geometry alone");
+    EXPECT_EQ(geometry["context"], 16);
+    EXPECT_NEAR(geometry["accurate"].get<double>(), record["held_out_figures"]["mean"].get<double>(), 1e-12);
+    expect_refused("study confidence-and-colour --record p.json", {"p.json"});
+    expect_refused("study confidence-and-colour --record p.record.json --tracks generated:circle",
+                   {"--tracks", "straight"});
+}
+
+TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
+    make_scenes("--fp 0.2");
+    const Outcome optimality = run("study optimality --scenes s.scenes.jsonl --out optimality.jsonl");
+    ASSERT_EQ(optimality.exit_code, 0) << optimality.errors;
+    EXPECT_THAT(optimality.output, HasSubstr("equal %"));
+    std::ifstream lines(path("optimality.jsonl"));
+    std::size_t rows = 0;
+    for (std::string line; std::getline(lines, line); ++rows) {
+        const auto row = nlohmann::json::parse(line);
+        if (!row.contains("gap")) continue;
+        const double optimum = row.at("optimum").at("objective");
+        const double candidate = row.at("candidate").at("objective");
+        EXPECT_DOUBLE_EQ(row.at("gap"),
+                         std::max(0.0, candidate - optimum) / std::max(1.0, std::abs(optimum)));
+    }
+    EXPECT_EQ(rows, read_scenes(path("s.scenes.jsonl")).size());
+    const Outcome backends = run("study backends --scenes s.scenes.jsonl --sizes 6 --out backends.jsonl");
+    ASSERT_EQ(backends.exit_code, 0) << backends.errors;
+    EXPECT_THAT(backends.output, HasSubstr("cbc-main/tight"));
+    EXPECT_THAT(backends.output, HasSubstr("exhaustive"));
+    const Outcome printed =
+        run("study backends --scenes s.scenes.jsonl --sizes 6,10 --solvers all,cbc-main/paper");
+    ASSERT_EQ(printed.exit_code, 0) << printed.errors;
+    EXPECT_THAT(printed.output, HasSubstr("cbc-main/paper"));
+    EXPECT_THAT(printed.output, HasSubstr("exhaustive takes at most 9 cones: left out at n = 10"));
+    expect_refused("study optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
+                   {"method", "enumerate"});
+    expect_refused("study optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
+    expect_refused("study backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
+                   {"--solvers", "magic"});
+    const Outcome list = run("study");
+    EXPECT_EQ(list.exit_code, 0);
+    EXPECT_THAT(list.output, HasSubstr("confidence-and-colour  how much more accurate"));
+    const Outcome beams = run("study front-beam --scenes s.scenes.jsonl --beams 5,15 --reference-beam 40");
+    EXPECT_THAT(beams.output, HasSubstr("best score"));
+    expect_refused("study front-beam --scenes s.scenes.jsonl --beams 0", {"beam_width"});
+    expect_refused("study front-beam --scenes s.scenes.jsonl --weights s.scenes.jsonl", {"s.scenes.jsonl"});
+    expect_refused("study magic", {"magic"});
+}
+
+}  // namespace
+}  // namespace conelane::experiments

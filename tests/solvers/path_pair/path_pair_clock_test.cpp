@@ -1,0 +1,84 @@
+// What path-pair makes before its first bound: in a dense scene that takes milliseconds, so the clock is
+// looked at all along, and at any look it may strike.
+
+#include "conelane/lane_graph_problem.hpp"
+#include "conelane/scene.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+
+#include <cstddef>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+/// A grid of 12 by 16 cones, 1.9 m apart: 2700 edges.
+LaneGraphProblem dense_problem() {
+    Scene scene;
+    for (int row = 0; row < 12; ++row) {
+        for (int column = 0; column < 16; ++column) {
+            const auto id = static_cast<ConeId>(scene.cones.size());
+            scene.cones.push_back({id, Point(1.9 * column, 1.9 * (row - 5.5) + 0.01 * column)});
+        }
+    }
+    return make_problem(scene, {});
+}
+
+std::vector<char> near_cones(const ArcGraph& graph) {
+    std::vector<char> near;
+    for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
+    return near;
+}
+
+TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
+    const LaneGraphProblem problem = dense_problem();
+    ASSERT_GT(problem.edges.size(), 1500U);
+    int looks = 0;
+    SearchClock clock([&] {
+        ++looks;
+        return false;
+    });
+    ArcGraph graph;
+    EXPECT_TRUE(graph.build(problem, clock));
+    // So many steps of a nanosecond at least, and a look after each 50 000 of them.
+    EXPECT_GT(looks, static_cast<int>((10 * problem.conflicts.size() + 20 * problem.turns.size()) / 50'000));
+
+    for (int last = 1; last <= looks; ++last) {
+        int seen = 0;
+        SearchClock striking([&] { return ++seen == last; });
+        EXPECT_FALSE(graph.build(problem, striking)) << "look " << last << " of " << looks;
+        EXPECT_EQ(seen, last);
+    }
+}
+
+TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
+    const LaneGraphProblem problem = dense_problem();
+    SearchClock no_limit;
+    ArcGraph graph;
+    ASSERT_TRUE(graph.build(problem, no_limit));
+    const std::vector<char> near = near_cones(graph);
+    int looks = 0;
+    SearchClock clock([&] {
+        ++looks;
+        return false;
+    });
+    ResidualGraph whole;
+    EXPECT_TRUE(whole.assign(graph, near, clock));
+    EXPECT_EQ(whole.in_arc.size(), whole.out_arc.size());
+    EXPECT_GT(looks, static_cast<int>(10 * whole.out_arc.size() / 50'000));
+
+    for (int last = 1; last <= looks; ++last) {
+        int seen = 0;
+        SearchClock striking([&] { return ++seen == last; });
+        ResidualGraph part;
+        EXPECT_FALSE(part.assign(graph, near, striking)) << "look " << last << " of " << looks;
+        EXPECT_EQ(part.size(), 0);
+        EXPECT_EQ(part.out_start, std::vector<int>{0});
+    }
+}
+
+}  // namespace
+}  // namespace conelane::path_pair

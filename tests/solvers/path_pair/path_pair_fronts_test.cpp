@@ -1,0 +1,544 @@
+// What path-pair drops from the fronts of two legs is in no lane graph, and what it finds there is the best.
+
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/path_pair/bound/leg_bounds.hpp"
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/frontier/dominated_edges.hpp"
+#include "solvers/path_pair/frontier/front_graph.hpp"
+#include "solvers/path_pair/frontier/front_search.hpp"
+#include "solvers/path_pair/frontier/onward_tables.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/edge_sets.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "solvers/path_pair/primal/front_beam.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/primal/pair_completion.hpp"
+#include "tests/support/random_scenes.hpp"
+#include "tests/support/straight_lane_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+
+/// The fronts of a problem, with random multipliers.
+struct Fronts {
+    Fronts(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
+        graph.build(problem, clock);
+        LegSystem::Kind& kind = system.kinds[0];
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            kind.start.push_back(graph.near(cone) ? 1 : 0);
+            kind.end.push_back(graph.near(cone) ? 0 : 1);
+        }
+        residual.assign(graph, kind.start, clock);
+        decisions.reset(graph);
+        relaxation.bind(graph, system, cliques, decisions, clock);
+        boost::random::mt19937_64 random(seed);
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            multipliers.cone.push_back(boost::random::uniform_real_distribution<double>(0.0, 0.5)(random));
+        }
+        leg_bound = relaxation.evaluate(residual, multipliers);
+        edges.assign(graph, residual, clock);
+        dominated.find(residual, relaxation, edges, true, clock);
+        fronts.bind(relaxation, stopped);
+        search.bind(graph, relaxation, incumbent);
+        incumbent.reset(graph, 1e6);
+    }
+
+    bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
+        return fronts.build(residual, dominated, limit, most_fronts);
+    }
+
+    /// Every walk on from a front to a last one that costs less than `limit`, by plain recursion.
+    void for_each_walk_on(int f, double cost, double limit, std::vector<int>& arcs,
+                          const std::function<void(double)>& visit) const {
+        if (fronts.is_last(f)) visit(cost);
+        for (const FrontGraph::Step& step : fronts.steps(f)) {
+            const double next = cost + fronts.cost(step);
+            if (!(next + fronts.onward(step.to) < limit)) continue;
+            if (step.arc >= 0) arcs.push_back(step.arc);
+            for_each_walk_on(step.to, next, limit, arcs, visit);
+            if (step.arc >= 0) arcs.pop_back();
+        }
+    }
+
+    FrontSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
+        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
+        return search.run(fronts, edges, tables, {1e-9, width, most_labels}, stopped);
+    }
+
+    /// Every leg from a near to a far cone, by plain recursion.
+    [[nodiscard]] std::vector<std::vector<int>> legs() const {
+        std::vector<std::vector<int>> all;
+        std::vector<int> leg;
+        const std::function<void(int)> extend = [&](int a) {
+            for (const int other : leg) {
+                if (graph.incompatible(residual.edge(other), residual.edge(a)) ||
+                    residual.tail[at(other)] == residual.head[at(a)]) {
+                    return;
+                }
+            }
+            leg.push_back(a);
+            if (!graph.near(residual.head[at(a)])) all.push_back(leg);
+            for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
+                extend(residual.out_arc[at(p)]);
+            }
+            leg.pop_back();
+        };
+        for (int a = 0; a < residual.size(); ++a) {
+            if (graph.near(residual.tail[at(a)])) extend(a);
+        }
+        return all;
+    }
+
+    /// No cone and no incompatible edges in common.
+    [[nodiscard]] bool are_pair(const std::vector<int>& first, const std::vector<int>& second) const {
+        std::set<int> cones{residual.tail[at(first.front())]};
+        for (const int a : first) cones.insert(residual.head[at(a)]);
+        if (cones.contains(residual.tail[at(second.front())])) return false;
+        return std::ranges::all_of(second, [&](int b) {
+            return !cones.contains(residual.head[at(b)]) && std::ranges::none_of(first, [&](int a) {
+                return graph.incompatible(residual.edge(a), residual.edge(b));
+            });
+        });
+    }
+
+    [[nodiscard]] int arc(int from, int to) const {
+        const auto found = std::ranges::find(residual.arc, graph.arc(from, to));
+        return static_cast<int>(found - residual.arc.begin());
+    }
+
+    static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+    LaneGraphProblem problem;
+    std::function<bool()> stopped = [this] { return is_stopped; };
+    bool is_stopped = false;
+    SearchClock clock;
+    ArcGraph graph;
+    ResidualGraph residual;
+    LegSystem system;
+    CliquePool cliques;
+    Decisions decisions;
+    Multipliers multipliers;
+    PairRelaxation relaxation;
+    double leg_bound = 0.0;
+    EdgeSets edges;
+    DominatedEdges dominated;
+    FrontGraph fronts;
+    Incumbent incumbent;
+    OnwardTables tables;
+    FrontSearch search;
+};
+
+LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
+    return make_problem(tests::random_scene(seed, cones), {});
+}
+
+/// Of a problem of all pairs those edges that a lane graph may have, and of their turns the allowed ones.
+TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
+    const LaneGraphProblem all = make_problem(tests::random_scene(3, 9), {}, EdgeExtent::all_pairs);
+    const LaneGraphProblem allowed = make_problem(tests::random_scene(3, 9), {});
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(all, clock));
+    EXPECT_LT(static_cast<std::size_t>(graph.edge_count()), all.edges.size());
+    EXPECT_EQ(static_cast<std::size_t>(graph.edge_count()), allowed.edges.size());
+    for (int edge = 0; edge < graph.edge_count(); ++edge)
+        EXPECT_FALSE(all.edges[graph.problem_edge(edge)].high_cost);
+}
+
+/// Across and then along is a forbidden turn: no lane graph has both of its edges, so a clique may hold them.
+TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
+    const Fronts s(tests::straight_lane_problem(), 1);
+    const int across = s.graph.arc(0, 1) / 2;
+    const int along = s.graph.arc(1, 3) / 2;
+    EXPECT_TRUE(s.graph.incompatible(across, along));
+    EXPECT_TRUE(s.graph.incompatible(along, across));
+    EXPECT_FALSE(s.graph.incompatible(s.graph.arc(0, 2) / 2, s.graph.arc(2, 4) / 2)) << "straight on";
+}
+
+/// 500 cones without an edge: wherever the clock strikes, the last time among the far cones, there is no
+/// graph.
+TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
+    Scene scene;
+    for (int cone = 0; cone < 500; ++cone)
+        scene.cones.push_back({static_cast<ConeId>(cone), Point(100.0 + 100.0 * cone, 0.0)});
+    const LaneGraphProblem problem = make_problem(scene, {});
+    ArcGraph graph;
+    int looks = 0;
+    SearchClock patient([&] { return ++looks == 0; });
+    ASSERT_TRUE(graph.build(problem, patient));
+    const int all = looks;
+    ASSERT_GT(all, 3);
+    for (int strike = 1; strike <= all; ++strike) {
+        looks = 0;
+        SearchClock clock([&] { return ++looks == strike; });
+        EXPECT_FALSE(graph.build(problem, clock)) << strike;
+        EXPECT_EQ(looks, strike);
+    }
+}
+
+/// Three cones about each of which a leg may turn for nothing: going round costs exactly 0, gains nothing and
+/// is no cycle that pays.
+TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
+    Scene scene;
+    const double height = 1.6 * std::sqrt(3.0);
+    for (const Point& place : {Point(1.0, -1.6), Point(1.0, 1.6), Point(1.0 + height, 0.0)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    RldParameters parameters;
+    parameters.t_crit = 1000.0;
+    parameters.w_t = 0.0;
+    const LaneGraphProblem problem = make_problem(scene, parameters);
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(problem, clock));
+    ResidualGraph residual;
+    residual.assign(graph, std::vector<char>(3, 1), clock);
+    ASSERT_EQ(residual.size(), 6);
+    const std::vector<double> nothing(6, 0.0);
+    std::vector<double> label;
+    std::vector<int> before;
+    std::vector<int> cycles;
+    LegBounds bounds;
+    EXPECT_TRUE(bounds.forward(residual, nothing, nothing, label, before, cycles));
+    EXPECT_EQ(label, nothing);
+}
+
+/// A leg might end on 4 -> 6 alone, which is left out: none ends at all.
+TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
+    const Fronts s(tests::straight_lane_problem(), 1);
+    const auto count = static_cast<std::size_t>(s.residual.size());
+    const auto last = static_cast<std::size_t>(s.arc(4, 6));
+    std::vector<double> end(count, kUnreachable);
+    end[last] = 0.0;
+    std::vector<char> usable(count, 1);
+    std::vector<double> label;
+    LegBounds bounds;
+    const std::vector<double> nothing(count, 0.0);
+    bounds.backward(s.residual, nothing, end, usable, label);
+    EXPECT_EQ(label[static_cast<std::size_t>(s.arc(2, 4))], 0.0);
+    usable[last] = 0;
+    bounds.backward(s.residual, nothing, end, usable, label);
+    EXPECT_EQ(label, std::vector<double>(count, kUnreachable));
+}
+
+/// Given 0 -> 1 -> 2, the best second leg is 5 -> 6 -> 7 at -1.998; 0 -> 3 -> 4 at -2 begins at a cone of the
+/// first. Given that one, the best is 3 -> 0 -> 1 -> 2 at -3. Each is found at once, without a search over
+/// legs.
+///     4 ----- 3 ----- 0 ----- 1 ----- 2
+///                   car >
+///                     5 ----- 6 ---- 7
+TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
+    Scene scene;
+    for (const Point& place : {Point(0.0, 1.75), Point(3.2, 1.75), Point(6.4, 1.75), Point(-3.2, 1.75),
+                               Point(-6.4, 1.75), Point(0.0, -1.75), Point(3.2, -1.75), Point(6.0, -1.75)}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    }
+    RldParameters parameters;
+    parameters.d_max = 16.0;
+    Fronts s(make_problem(scene, parameters), 1);
+    s.relaxation.evaluate_backward(s.residual);
+    PairCompletion completion;
+    completion.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 1e-9, 0);
+    ASSERT_TRUE(s.incumbent.found());
+    EXPECT_NEAR(s.incumbent.cutoff(), -5.0 + 0.4 * std::pow(0.4 / 1.7, 4), 1e-9);
+}
+
+// A leg on 4 -> 6 has come over 0, 2 and 4. So {0, 2} is dominated: the other leg cannot use it, though it
+// has no cone in common with {4, 6} and is not too close to it.
+TEST(PathPairDominatedEdges, FollowedByHandOnAStraightLane) {
+    Fronts s(tests::straight_lane_problem(), 1);
+    const int late = s.arc(4, 6);
+    const int early = s.arc(0, 2);
+    const int opposite = s.arc(1, 3);
+    EXPECT_FALSE(s.dominated.may_pair(0, late, 0, early, true));
+    EXPECT_TRUE(s.dominated.may_pair(0, late, 0, opposite, true));
+    s.dominated.find(s.residual, s.relaxation, s.edges, false, s.clock);
+    EXPECT_TRUE(s.dominated.may_pair(0, late, 0, early, true));
+}
+
+TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
+    std::size_t pairs = 0;
+    int dropped = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Fronts s(random_problem(seed), seed);
+        const std::vector<std::vector<int>> legs = s.legs();
+        for (const std::vector<int>& first : legs) {
+            for (const std::vector<int>& second : legs) {
+                if (!s.are_pair(first, second)) continue;
+                ++pairs;
+                for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+                    ASSERT_TRUE(s.dominated.may_follow(0, first[k], first[k + 1]));
+                }
+                for (const int a : first) {
+                    for (const int b : second) ASSERT_TRUE(s.dominated.may_pair(0, a, 0, b, false));
+                }
+            }
+        }
+        DominatedEdges alone;
+        SearchClock clock;
+        alone.find(s.residual, s.relaxation, s.edges, false, clock);
+        for (int a = 0; a < s.residual.size(); ++a) {
+            for (int b = 0; b < s.residual.size(); ++b) {
+                const bool passes = s.dominated.may_pair(0, a, 0, b, false);
+                dropped += alone.may_pair(0, a, 0, b, false) && !passes ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(pairs, 1000u);
+    EXPECT_GT(dropped, 1000);
+}
+
+/// The fronts' bound lies between that of single legs and the optimum, with dominated edges and without.
+TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int higher = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        const double optimum = best.objective.value_or(kUnreachable);
+        with_lane += best.objective ? 1 : 0;
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        EXPECT_GE(bound, s.leg_bound - 1e-9);
+        EXPECT_LE(bound, optimum + 1e-9);
+        s.fronts.drop_dominated_edges(s.edges);
+        s.fronts.find_forward();
+        const double thinned = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        EXPECT_GE(thinned, bound - 1e-9);
+        EXPECT_LE(thinned, optimum + 1e-9);
+        higher += thinned > s.leg_bound + 1e-6 ? 1 : 0;
+    }
+    EXPECT_GT(with_lane, 30);
+    EXPECT_GT(higher, 30);
+}
+
+/// Of both legs the one that stands earlier moves, so every pair is one walk.
+TEST(PathPairFrontGraph, TheEarlierLegMoves) {
+    int both_go_on = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        Fronts s(random_problem(seed), seed);
+        ASSERT_TRUE(s.build());
+        for (int f = 0; f < s.fronts.size(); ++f) {
+            if (s.fronts.front(f).ended) continue;
+            EXPECT_LT(s.fronts.front(f).moving, s.fronts.front(f).waiting);
+            ++both_go_on;
+        }
+    }
+    EXPECT_GT(both_go_on, 20);
+}
+
+TEST(PathPairFrontGraph, WhatIsDroppedByALimitReachesIt) {
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 14), seed);
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable);
+        if (bound == kUnreachable) continue;
+        const int all = s.fronts.size();
+        s.fronts.drop(bound + 0.5);
+        EXPECT_LT(s.fronts.size(), all);
+        EXPECT_NEAR(s.fronts.find_onward(kUnreachable), bound, 1e-9);
+        EXPECT_EQ(s.fronts.find_onward(bound), kUnreachable);
+    }
+}
+
+TEST(PathPairFrontGraph, GivesUpWhereToldTo) {
+    Fronts s(random_problem(3, 20), 3);
+    EXPECT_FALSE(s.build(kUnreachable, 2));
+    EXPECT_TRUE(s.build());
+    s.is_stopped = true;
+    EXPECT_FALSE(s.build());
+}
+
+/// Dominated edges that are looked for while the fronts are built leave fewer of them, no lower bound and the
+/// best pair.
+TEST(PathPairFrontGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_fronts = false});
+    int fewer = 0;
+    int with_lane = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 24), seed);
+        const std::optional<double> best = solver->solve(s.problem, {}).objective;
+        if (!best) continue;
+        ++with_lane;
+        const double cutoff = *best + 4.0;
+        const double limit = cutoff + s.relaxation.offset();
+        ASSERT_TRUE(s.build(limit));
+        const int all = s.fronts.size();
+        const double bound = s.fronts.find_onward(limit);
+        ASSERT_TRUE(s.fronts.build(s.residual, s.dominated, limit, kAny, &s.edges));
+        EXPECT_LE(s.fronts.size(), all);
+        fewer += s.fronts.size() < all ? 1 : 0;
+        EXPECT_GE(s.fronts.find_onward(limit), bound - 1e-9);
+        s.incumbent.reset(s.graph, cutoff);
+        s.run(FrontSearch::kAnyWidth, kAny);
+        EXPECT_NEAR(s.incumbent.cutoff(), *best, 1e-9);
+    }
+    EXPECT_GT(with_lane, 20);
+    EXPECT_GT(fewer, 3);
+}
+
+/// A walk on that costs x more than the cheapest one uses no edge whose regret is above x, and nothing that
+/// an arc excludes whose detour is above x.
+TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
+    std::size_t walks = 0;
+    int regrets = 0;
+    int detours = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed, 10), seed);
+        ASSERT_TRUE(s.build());
+        const double bound = s.fronts.find_onward(kUnreachable);
+        if (bound == kUnreachable) continue;
+        const double gap = 1.5;
+        s.fronts.drop(bound + gap);
+        s.tables.find(s.fronts, s.edges, bound + gap, true, s.stopped);
+        for (int f = 0; f < s.fronts.size(); ++f) {
+            const double onward = s.fronts.onward(f);
+            std::vector<int> arcs;
+            s.for_each_walk_on(f, 0.0, onward + gap, arcs, [&](double cost) {
+                if (!(cost < onward + gap)) return;
+                ++walks;
+                const int most = s.tables.quanta_below(cost - onward);
+                for (const int a : arcs) ASSERT_LE(s.tables.regrets(f)[s.edges.number(a)], most);
+                for (int a = 0; a < s.residual.size(); ++a) {
+                    const bool excludes = std::ranges::any_of(arcs, [&](int b) {
+                        return EdgeSets::contains(s.edges.lost_after(a), s.edges.number(b));
+                    });
+                    if (excludes) continue;
+                    ASSERT_LE(s.tables.detour(f, a), most);
+                }
+            });
+            for (int a = 0; a < s.residual.size(); ++a) {
+                const Quanta regret = s.tables.regrets(f)[s.edges.number(a)];
+                regrets += regret > 0 && regret < kTooMany ? 1 : 0;
+                const Quanta detour = s.tables.detour(f, a);
+                detours += detour > 0 && detour < kTooMany ? 1 : 0;
+            }
+        }
+    }
+    EXPECT_GT(walks, 500u);
+    EXPECT_GT(regrets, 100);
+    EXPECT_GT(detours, 100);
+}
+
+/// A beam of one beginning at each arc runs along both boundaries of a straight lane.
+TEST(PathPairFrontBeam, FindsTheStraightLane) {
+    Fronts s(tests::straight_lane_problem(), 1);
+    FrontBeam beam;
+    beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    beam.run(s.residual, s.edges, 1e-9, 1);
+    ASSERT_TRUE(s.incumbent.found());
+    EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(s.problem, {}).objective, 1e-9);
+}
+
+TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int best_found = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        FrontBeam beam;
+        beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+        beam.run(s.residual, s.edges, 1e-9, 8);
+        if (!best.objective) {
+            EXPECT_FALSE(s.incumbent.found());
+            continue;
+        }
+        ++with_lane;
+        if (!s.incumbent.found()) continue;
+        EXPECT_GE(s.incumbent.cutoff(), *best.objective - 1e-9);
+        best_found += s.incumbent.cutoff() < *best.objective + 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(2 * best_found, with_lane);
+}
+
+TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int narrow_ones = 0;
+    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Fronts s(random_problem(seed), seed);
+        const RldReport best = exhaustive->solve(s.problem, {});
+        ASSERT_TRUE(s.build());
+        if (s.fronts.find_onward(kUnreachable) == kUnreachable) {
+            EXPECT_FALSE(best.objective);
+            continue;
+        }
+        // Of each front the cheapest beginning alone: a lane graph, but not always the best.
+        const FrontSearch::Outcome narrow = s.run(1, kAny);
+        EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
+        EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
+        narrow_ones += narrow == FrontSearch::Outcome::narrow ? 1 : 0;
+        if (narrow == FrontSearch::Outcome::exhausted) {
+            EXPECT_NEAR(s.incumbent.cutoff(), best.objective.value_or(1e6), 1e-6) << "claimed to be all";
+        }
+        ASSERT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::exhausted);
+        ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
+        if (!best.objective) continue;
+        ++with_lane;
+        EXPECT_NEAR(s.incumbent.cutoff(), *best.objective, 1e-6);
+    }
+    EXPECT_GT(with_lane, 50);
+    EXPECT_GT(narrow_ones, 2);
+}
+
+/// Whenever the clock strikes on the way, the search does not call itself whole.
+TEST(PathPairFrontSearch, IsStoppedByEveryLookAtTheClock) {
+    int stopped_on_the_way = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Fronts s(random_problem(seed, 24), seed);
+        ASSERT_TRUE(s.build());
+        if (s.fronts.find_onward(kUnreachable) == kUnreachable) continue;
+        s.tables.find(s.fronts, s.edges, 1e6, true, s.stopped);
+        bool struck = true;
+        for (int strike = 1; struck && strike < 5; ++strike) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike);
+            int looks = 0;
+            s.incumbent.reset(s.graph, 1e6);
+            const std::function<bool()> strikes = [&] { return ++looks >= strike; };
+            const FrontSearch::Outcome outcome =
+                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontSearch::kAnyWidth, kAny}, strikes);
+            struck = looks >= strike;
+            ASSERT_EQ(outcome, struck ? FrontSearch::Outcome::stopped : FrontSearch::Outcome::exhausted);
+            stopped_on_the_way += struck && strike > 1 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(stopped_on_the_way, 5);
+}
+
+TEST(PathPairFrontSearch, StopsWhereToldTo) {
+    Fronts s(random_problem(3, 20), 3);
+    ASSERT_TRUE(s.build());
+    s.fronts.find_onward(kUnreachable);
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, 5), FrontSearch::Outcome::stopped);
+    s.is_stopped = true;
+    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::stopped);
+}
+
+}  // namespace
+}  // namespace conelane::path_pair

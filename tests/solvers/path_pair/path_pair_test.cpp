@@ -1,0 +1,375 @@
+// path-pair as a whole: the optima of others, and answers that stay true at any deadline and in any mode.
+
+#include "conelane/bound_certificate.hpp"
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/milp/cbc_solver.hpp"
+#include "solvers/milp/milp_rld_solver.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "solvers/path_pair/search/branch_and_bound.hpp"
+#include "tests/support/random_scenes.hpp"
+#include "tests/support/six_cone_lane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+RldReport solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                double time_limit_ms = std::numeric_limits<double>::infinity()) {
+    return solver.solve(make_problem(scene, parameters), {time_limit_ms, 1e-9});
+}
+
+/// One instance over many scenes of different sizes, with either default of d_max and either pairing.
+TEST(PathPair, AgreesWithCbc) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    int feasible = 0;
+    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(1000 + seed, 6 + seed % 13);
+        RldParameters parameters;
+        if (seed % 2 == 0) parameters.d_max = 16.0;
+        if (seed % 3 == 0) parameters.pairing = Pairing::paper;
+        const RldReport expected = solve(*cbc, scene, parameters);
+        const RldReport report = solve(*path_pair, scene, parameters);
+        ASSERT_EQ(report.status, expected.status);
+        if (report.status != SolveStatus::optimal) continue;
+        ++feasible;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+    }
+    EXPECT_GT(feasible, 60);
+}
+
+TEST(PathPair, EveryStageCanBeSwitchedOff) {
+    const std::unique_ptr<RldSolver> complete = make_path_pair_solver();
+    std::vector<PathPairOptions> ablations(7);
+    ablations[0].fix_arcs = false;
+    ablations[1].clique_multipliers = false;
+    ablations[2].complete_walks = false;
+    ablations[3].search_fronts = false;
+    ablations[4].root_steps = 1;
+    ablations[4].node_steps = 1;
+    ablations[5].drop_dominated_edges = false;
+    ablations[6].search_windows = false;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 12);
+        const RldReport expected = solve(*complete, scene, {});
+        for (const PathPairOptions& options : ablations) {
+            const RldReport report = solve(*make_path_pair_solver(options), scene, {});
+            ASSERT_EQ(report.status, expected.status);
+            if (report.objective) {
+                EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+            }
+        }
+    }
+}
+
+/// The optimum as a start is kept, another lane graph is improved on, one that is none is dropped.
+TEST(PathPair, StartsFromALaneGraph) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 16), {});
+        const RldReport cold = solver->solve(problem, {});
+        if (!cold.lane_graph) continue;
+        ++started;
+        const LaneGraph& optimum = *cold.lane_graph;
+        EXPECT_EQ(solver->solve(problem, {}, &optimum).lane_graph, cold.lane_graph);
+        const RldReport stopped = solver->solve(problem, {.time_limit_ms = 0.0}, &optimum);
+        EXPECT_EQ(stopped.status, SolveStatus::feasible);
+        EXPECT_EQ(stopped.objective, cold.objective);
+        EXPECT_EQ(stopped.stopped_by, StopReason::time);
+        LaneGraph torn = optimum;
+        torn.edges.erase(torn.edges.begin() + static_cast<std::ptrdiff_t>(torn.edges.size() / 2));
+        EXPECT_NEAR(*solver->solve(problem, {}, &torn).objective, *cold.objective, 1e-9);
+    }
+    EXPECT_GT(started, 20);
+}
+
+/// With a gap wider than any difference of costs every lane graph is good enough: the start is the answer.
+/// Without one it is any, but there is one.
+TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
+    Scene scene = tests::six_cone_lane();
+    scene.cones.push_back({6, {10.6, 1.75}});  // the best lane goes on to it
+    const LaneGraphProblem problem = make_problem(scene, {});
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    const LaneGraph start{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}}};
+    for (const double gap : {100.0, 1e6, std::numeric_limits<double>::infinity()}) {
+        SCOPED_TRACE(testing::Message() << "gap " << gap);
+        const RldReport warm = solver->solve(problem, {.absolute_gap = gap}, &start);
+        EXPECT_EQ(warm.status, SolveStatus::optimal);
+        EXPECT_EQ(warm.lane_graph, start);
+        const RldReport cold = solver->solve(problem, {.absolute_gap = gap});
+        EXPECT_EQ(cold.status, SolveStatus::optimal);
+        ASSERT_TRUE(cold.lane_graph);
+        EXPECT_TRUE(is_feasible(problem, *cold.lane_graph));
+    }
+}
+
+/// Cones on a lattice, where walks of equal cost and cycles that are neutral abound: labels that improve by
+/// rounding alone must not go round for ever.
+TEST(PathPair, EndsWhereEverythingTies) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
+    for (const double spacing_m : {3.0, 3.2, 4.0}) {
+        for (const double theta_t : {0.9, 2.0}) {
+            SCOPED_TRACE(testing::Message() << spacing_m << " m, theta_t " << theta_t);
+            Scene scene;
+            for (ConeId id = 0; id < 15; ++id) {
+                const Point step(static_cast<double>(id / 3), static_cast<double>(id % 3) - 1.0);
+                scene.cones.push_back({id, Point(1.0, 0.0) + spacing_m * step});
+            }
+            RldParameters parameters;
+            parameters.theta_t = theta_t;
+            const RldReport report = solve(*path_pair, scene, parameters);
+            const RldReport expected = solve(*cbc, scene, parameters);
+            ASSERT_EQ(report.status, expected.status);
+            if (expected.objective) {
+                EXPECT_NEAR(*report.objective, *expected.objective, 1e-6);
+            }
+        }
+    }
+}
+
+/// Whatever the deadline, the claim is true: the bound is below the optimum, the lane graph is one.
+TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int unfinished = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const Scene scene = tests::random_scene(seed, 24);
+        RldParameters parameters;
+        if (seed % 2 == 0) parameters.pairing = Pairing::paper;
+        const RldReport optimum = solve(*solver, scene, parameters);
+        for (const double limit_ms : {0.0, 0.01, 0.03, 0.1, 0.3}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << limit_ms << " ms");
+            const RldReport report = solve(*solver, scene, parameters, limit_ms);
+            ASSERT_NE(report.status, SolveStatus::error);
+            EXPECT_EQ(report.lane_graph.has_value(), report.objective.has_value());
+            if (report.status == SolveStatus::infeasible) {
+                EXPECT_EQ(optimum.status, SolveStatus::infeasible);
+                continue;
+            }
+            if (!report.bound) {  // stopped before the search began
+                ASSERT_EQ(report.status, SolveStatus::stopped);
+                continue;
+            }
+            if (report.status != SolveStatus::optimal) ++unfinished;
+            if (optimum.objective) {
+                EXPECT_LE(*report.bound, *optimum.objective + 1e-9);
+            }
+            if (!report.lane_graph) continue;
+            const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
+            EXPECT_THAT(check(scene, parameters, *report.lane_graph, claim).violations, testing::IsEmpty());
+        }
+    }
+    EXPECT_GT(unfinished, 20);
+}
+
+/// The clock strikes at each of the looks at it in turn: what is claimed complete is, and the bound is one.
+/// It never falls, and where nodes branch it rises on the way.
+TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
+    int cut_short = 0;
+    int rises = 0;
+    std::uint64_t run = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 30), {});
+        SearchClock no_limit;
+        ArcGraph graph;
+        graph.build(problem, no_limit);
+        LegSystem system;
+        for (int cone = 0; cone < graph.cone_count(); ++cone) {
+            system.kinds[0].start.push_back(graph.near(cone) ? 1 : 0);
+            system.kinds[0].end.push_back(graph.near(cone) ? 0 : 1);
+        }
+        Incumbent incumbent;
+        PathPairOptions options;
+        if (run++ % 2 == 1) options = {.search_fronts = false, .root_steps = 10, .node_steps = 5};
+        BranchAndBound search(graph, incumbent, options);
+        constexpr double kTolerance = 1e-9;
+        int looks = 0;
+        incumbent.reset(graph, 0.0);
+        ASSERT_TRUE(search.run(system, kTolerance, [&looks] { return ++looks < 0; }).complete);
+        const double optimum = incumbent.cutoff();
+        double bound_before = -kUnreachable;
+        for (int strike = 1; strike <= looks + 1; strike += 1 + looks / 200) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike << " of " << looks);
+            int look = 0;
+            incumbent.reset(graph, 0.0);
+            const BranchAndBound::Outcome outcome =
+                search.run(system, kTolerance, [&] { return ++look >= strike; });
+            EXPECT_GE(incumbent.cutoff(), optimum - kTolerance);
+            EXPECT_LE(outcome.bound, optimum + kTolerance);
+            EXPECT_GE(outcome.bound, bound_before - 1e-6);
+            if (outcome.bound > bound_before + 1e-6) ++rises;
+            bound_before = outcome.bound;
+            if (outcome.complete) {
+                EXPECT_NEAR(incumbent.cutoff(), optimum, 2.0 * kTolerance);
+            } else {
+                ++cut_short;
+            }
+        }
+    }
+    EXPECT_GT(cut_short, 100);
+    EXPECT_GT(rises, 100);
+}
+
+TEST(PathPair, TakesLargeConeSets) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
+        boost::random::mt19937_64 random(7);
+        boost::random::uniform_real_distribution<double> ahead(0.0, 60.0);
+        boost::random::uniform_real_distribution<double> across(-30.0, 30.0);
+        Scene scene;
+        for (ConeId id = 0; id < 512; ++id) {
+            const double x = ahead(random);
+            scene.cones.push_back({id, {x, across(random)}});
+        }
+        RldParameters parameters;
+        parameters.pairing = pairing;
+        const RldReport report = solve(*solver, scene, parameters, 100.0);
+        ASSERT_NE(report.status, SolveStatus::error);
+        if (!report.lane_graph) continue;
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {false, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+    }
+}
+
+/// The verifier finds the root's bound again from the scene, below the optimum, and refuses a higher claim, a
+/// multiplier below zero and a clique that is none.
+TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    for (const RldParameters& parameters : {RldParameters{}, with_shape_costs({})}) {
+        int forged_cliques = 0;
+        int bounded = 0;
+        for (std::uint64_t seed = 0; seed < 40; ++seed) {
+            SCOPED_TRACE(testing::Message()
+                         << "seed " << seed << ", shape costs: " << has_shape_costs(parameters));
+            const Scene scene = tests::random_scene(seed, 16);
+            const RldReport optimum = solve(*solver, scene, parameters);
+            BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
+            const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
+            EXPECT_THAT(verdict.violations, testing::IsEmpty());
+            ASSERT_TRUE(verdict.bound);
+            if (optimum.objective) {
+                ASSERT_EQ(optimum.status, SolveStatus::optimal);
+                EXPECT_LE(*verdict.bound, *optimum.objective + 1e-9);
+                BoundCertificate higher = certificate;
+                higher.bound = *verdict.bound + 1e-3;
+                EXPECT_THAT(verify_bound(scene, parameters, higher).violations, testing::SizeIs(1));
+                ++bounded;
+            }
+            RldParameters other_pairing = parameters;
+            other_pairing.pairing = Pairing::paper;
+            EXPECT_THAT(verify_bound(scene, other_pairing, certificate).violations,
+                        testing::Contains(testing::HasSubstr("pairing")));
+            for (const BoundCertificate::Clique& clique : certificate.cliques) {
+                // An edge does not exclude itself.
+                BoundCertificate wrong = certificate;
+                wrong.cliques = {{{clique.edges.front(), clique.edges.front()}, clique.multiplier}};
+                EXPECT_FALSE(verify_bound(scene, parameters, wrong).violations.empty());
+                ++forged_cliques;
+            }
+            certificate.cone_multiplier.front() = -0.1;
+            EXPECT_FALSE(verify_bound(scene, parameters, certificate).violations.empty());
+        }
+        EXPECT_GT(forged_cliques, 0);
+        EXPECT_GT(bounded, 20);
+    }
+}
+
+/// The verifier's shape costs are those that the solver saw: it finds the same bound, and nearly always a
+/// lower one where any of them is cheaper.
+TEST(PathPairCertificate, RestsOnEveryShapeCost) {
+    const RldParameters parameters = with_shape_costs({});
+    std::vector<RldParameters> cheaper(3, parameters);
+    cheaper[0].w_u = 0.0;
+    cheaper[1].w_v = 0.0;
+    cheaper[2].w_n *= 1.5;
+    std::vector<int> refused(cheaper.size(), 0);
+    int finite = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 16);
+        const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
+        const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
+        ASSERT_TRUE(verdict.bound);
+        if (!std::isfinite(*verdict.bound)) continue;
+        ++finite;
+        EXPECT_NEAR(*verdict.bound, certificate.bound, 1e-6);
+        for (std::size_t k = 0; k < cheaper.size(); ++k) {
+            if (!verify_bound(scene, cheaper[k], certificate).violations.empty()) ++refused[k];
+        }
+    }
+    EXPECT_GT(finite, 20);
+    EXPECT_THAT(refused, testing::Each(testing::Gt(finite * 3 / 4)));
+}
+
+/// Bounds of one step each leave everything to branching, on ends first and then on edges.
+TEST(PathPair, BranchingAloneFindsTheOptimum) {
+    PathPairOptions options;
+    options.search_fronts = options.complete_walks = options.clique_multipliers = options.fix_arcs = false;
+    options.root_steps = options.node_steps = 1;
+    const std::unique_ptr<RldSolver> branching = make_path_pair_solver(options);
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    std::int64_t nodes = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        RldParameters parameters;
+        parameters.pairing = seed % 2 == 0 ? Pairing::near_far : Pairing::paper;
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 8), parameters);
+        const RldReport expected = exhaustive->solve(problem, {});
+        const RldReport report = branching->solve(problem, {});
+        ASSERT_EQ(report.status, expected.status);
+        nodes += report.nodes;
+        if (!expected.objective) continue;
+        ++with_lane;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-9);
+    }
+    EXPECT_GT(with_lane, 15);
+    EXPECT_GT(nodes, 1000);
+}
+
+/// Where edges cost more than they gain, the rest of a leg costs something too: arcs are dropped by the sum
+/// of both parts of a leg, no more.
+TEST(PathPair, FixesNoArcOfTheOptimumWhereEdgesCostMoreThanTheyGain) {
+    RldParameters parameters;
+    parameters.w_b = 0.05;
+    parameters.w_s = 1.0;
+    const std::unique_ptr<RldSolver> fixing = make_path_pair_solver();
+    PathPairOptions options;
+    options.fix_arcs = false;
+    const std::unique_ptr<RldSolver> keeping = make_path_pair_solver(options);
+    int dear = 0;
+    for (std::uint64_t seed = 0; seed < 400; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 18), parameters);
+        const RldReport expected = keeping->solve(problem, {});
+        const RldReport report = fixing->solve(problem, {});
+        ASSERT_EQ(report.status, expected.status);
+        if (!expected.objective) continue;
+        dear += *expected.objective > 0.0 ? 1 : 0;
+        EXPECT_NEAR(*report.objective, *expected.objective, 1e-9);
+    }
+    EXPECT_GT(dear, 80);
+}
+
+}  // namespace
+}  // namespace conelane::path_pair

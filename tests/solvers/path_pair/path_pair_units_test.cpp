@@ -1,0 +1,347 @@
+// The units of path-pair: bounds that bound, cliques that are cliques, legs as brute force finds them.
+
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/path_pair/bound/clique_separation.hpp"
+#include "solvers/path_pair/bound/leg_bounds.hpp"
+#include "solvers/path_pair/bound/leg_search.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "tests/support/random_scenes.hpp"
+#include "tests/support/six_cone_lane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+using tests::six_cone_lane;
+
+/// A scene's arcs with multipliers such that no cycle costs less than 0, and legs from near to far cones.
+struct SceneWithMultipliers {
+    explicit SceneWithMultipliers(std::uint64_t seed, std::size_t cones = 9) {
+        const Scene scene = tests::random_scene(seed, cones);
+        graph.build(make_problem(scene, {}), clock);
+        std::vector<char> near;
+        for (int cone = 0; cone < graph.cone_count(); ++cone) near.push_back(graph.near(cone) ? 1 : 0);
+        residual.assign(graph, near, clock);
+        multipliers.cone.assign(cones, 0.0);
+        boost::random::mt19937_64 random(seed);
+        for (double& multiplier : multipliers.cone) {
+            multiplier = boost::random::uniform_real_distribution<double>(0.0, 0.5)(random);
+        }
+        do {
+            reduce(graph, cliques, multipliers, residual, edge_multiplier, reduced);
+            start.clear();
+            end.clear();
+            for (int a = 0; a < residual.size(); ++a) {
+                const std::size_t at = static_cast<std::size_t>(a);
+                const int tail = residual.tail[at];
+                start.push_back(graph.near(tail) ? multipliers.cone[static_cast<std::size_t>(tail)]
+                                                 : kUnreachable);
+                end.push_back(graph.near(residual.head[at]) ? kUnreachable : 0.25);
+            }
+            if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
+            raise_cycles(residual, cycle, reduced, multipliers.cone);
+            ++raised;
+        } while (true);
+        bounds.backward(residual, reduced, end, std::vector<char>(residual.arc.size(), 1), backward);
+    }
+
+    /// Every simple leg without incompatible edges, by plain recursion.
+    void for_each_leg(const std::function<void(const std::vector<int>&, double)>& visit) const {
+        std::vector<int> leg;
+        std::vector<char> used(static_cast<std::size_t>(graph.cone_count()), 0);
+        const std::function<void(int, double)> extend = [&](int a, double cost) {
+            const std::size_t at = static_cast<std::size_t>(a);
+            const std::size_t head = static_cast<std::size_t>(residual.head[at]);
+            if (used[head] != 0) return;
+            for (const int other : leg) {
+                if (graph.incompatible(residual.edge(other), residual.edge(a))) return;
+            }
+            cost += reduced[at];
+            used[head] = 1;
+            leg.push_back(a);
+            if (end[at] < kUnreachable) visit(leg, cost + end[at]);
+            for (int p = residual.out_start[at]; p < residual.out_start[at + 1]; ++p) {
+                extend(residual.out_arc[static_cast<std::size_t>(p)],
+                       cost + residual.out_cost[static_cast<std::size_t>(p)]);
+            }
+            leg.pop_back();
+            used[head] = 0;
+        };
+        for (int a = 0; a < residual.size(); ++a) {
+            const std::size_t at = static_cast<std::size_t>(a);
+            if (start[at] == kUnreachable) continue;
+            used[static_cast<std::size_t>(residual.tail[at])] = 1;
+            extend(a, start[at]);
+            used[static_cast<std::size_t>(residual.tail[at])] = 0;
+        }
+    }
+
+    SearchClock clock;
+    ArcGraph graph;
+    ResidualGraph residual;
+    CliquePool cliques;
+    Multipliers multipliers;
+    LegBounds bounds;
+    std::vector<double> edge_multiplier, reduced, start, end, forward, backward;
+    std::vector<int> before, cycle;
+    int raised = 0;
+};
+
+class Offers {
+  public:
+    Offers(const Scene& scene, const RldParameters& parameters) {
+        SearchClock clock;
+        graph.build(make_problem(scene, parameters), clock);
+        incumbent.reset(graph, 0.0);
+    }
+    bool offer(const std::vector<int>& first_cones, const std::vector<int>& second_cones) {
+        return incumbent.offer(leg(first_cones), leg(second_cones));
+    }
+    [[nodiscard]] std::vector<int> leg(const std::vector<int>& cones) const {
+        std::vector<int> arcs;
+        for (std::size_t k = 1; k < cones.size(); ++k) arcs.push_back(graph.arc(cones[k - 1], cones[k]));
+        return arcs;
+    }
+
+    ArcGraph graph;
+    Incumbent incumbent;
+};
+
+TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
+    Offers lane(six_cone_lane(), {});
+    EXPECT_TRUE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_NEAR(lane.incumbent.cutoff(), -3.0, 1e-9);
+    EXPECT_TRUE(lane.offer({0, 1, 2}, {3, 4, 5}));
+    EXPECT_NEAR(lane.incumbent.cutoff(), -4.0, 1e-9);
+    EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 4, 5})) << "no cheaper";
+    EXPECT_FALSE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_EQ(lane.incumbent.edges().size(), 4U);
+}
+
+TEST(PathPairIncumbent, PaysForEveryTurn) {
+    RldParameters parameters;
+    parameters.t_crit = 1e6;
+    const Offers lane(six_cone_lane(), parameters);
+    const double corner = 0.5 * std::pow(std::numbers::pi / 2.0 / 0.9, 4);
+    const double across = lane.incumbent.leg_cost(lane.leg({1, 4}));
+    EXPECT_NEAR(lane.incumbent.leg_cost(lane.leg({0, 1, 4, 5})), -1.0 + corner + across + corner - 1.0, 1e-9);
+}
+
+TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
+    RldParameters parameters;
+    parameters.t_crit = 1e6;
+    parameters.d_min = 1.0;
+    EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
+    parameters = {};
+    parameters.d_min = 3.6;
+    EXPECT_FALSE(Offers(six_cone_lane(1.6), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too narrow";
+    parameters = {};
+    parameters.d_h = 2.1;  // 0 - 1 and 3 - 4 alone are near enough to the car
+    EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {4, 5}))
+        << "one edge along the heading";
+    EXPECT_TRUE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 5}));
+}
+
+/// Of one boundary alone: each cone has half of its edges, and its turn.
+TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
+    LaneGraphProblem problem;
+    problem.cone_count = 3;
+    problem.near = {true, true, false};
+    for (const std::size_t i : {0U, 1U}) {
+        problem.edges.push_back({i, i + 1, 0.0, 0.0, 0.0, 0.0, -1.0, true, false});
+    }
+    problem.turns.push_back({0, 1, 1, 0.0, 0.0, 0.25, false});
+    ArcGraph graph;
+    SearchClock clock;
+    ASSERT_TRUE(graph.build(problem, clock));
+    EXPECT_DOUBLE_EQ(graph.share_bound(), -0.5 + (-0.5 + 0.25 - 0.5) - 0.5);
+}
+
+TEST(PathPairLegBounds, NoLegThroughAnArcCostsLessThanItsLabels) {
+    int legs = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const SceneWithMultipliers s(seed);
+        s.for_each_leg([&](const std::vector<int>& leg, double cost) {
+            ++legs;
+            for (const int a : leg) {
+                const std::size_t at = static_cast<std::size_t>(a);
+                ASSERT_LE(s.forward[at] + s.backward[at], cost + 1e-9);
+            }
+        });
+    }
+    EXPECT_GT(legs, 1000);
+}
+
+TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const SceneWithMultipliers s(seed, 14);
+        double forth = kUnreachable;
+        double back = kUnreachable;
+        for (std::size_t a = 0; a < s.residual.arc.size(); ++a) {
+            forth = std::min(forth, s.forward[a] + s.end[a]);
+            back = std::min(back, s.start[a] + s.reduced[a] + s.backward[a]);
+        }
+        if (forth == kUnreachable) {
+            EXPECT_EQ(back, kUnreachable);
+        } else {
+            EXPECT_NEAR(forth, back, 1e-9) << "seed " << seed;
+        }
+    }
+}
+
+/// What came before is a start, not more: labels are the same from the walks of other costs, from another
+/// graph's and from none.
+TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
+    LegBounds bounds;
+    std::vector<int> left_over;
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const SceneWithMultipliers s(seed);
+        std::vector<double> cold, warm;
+        std::vector<int> before, cycles;
+        ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, cold, before, cycles));
+        left_over.resize(s.residual.arc.size(), 0);
+        // Walks of another graph, but of arcs that this one has.
+        for (int& arc : left_over) arc = std::min(arc, s.residual.size() - 1);
+        started += static_cast<int>(left_over.size());
+        ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, warm, left_over, cycles));
+        for (std::size_t a = 0; a < cold.size(); ++a) {
+            if (cold[a] < kUnreachable) {
+                EXPECT_NEAR(warm[a], cold[a], 1e-9);
+            } else {
+                EXPECT_EQ(warm[a], kUnreachable);
+            }
+        }
+    }
+    EXPECT_GT(started, 500);
+}
+
+/// A loop over a far square of cones costs less than 0: its multipliers rise until it costs 0, and no
+/// further.
+TEST(PathPairLegBounds, APayingCycleIsRaisedUntilItIsNeutral) {
+    RldParameters parameters;
+    parameters.theta_t = 2.0;
+    parameters.t_crit = 100.0;
+    Scene scene;
+    for (const Point& p : {Point(4, 0), Point(7.2, 0), Point(7.2, 3.2), Point(4, 3.2)}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), p});
+    }
+    ArcGraph graph;
+    SearchClock clock;
+    graph.build(make_problem(scene, parameters), clock);
+    ResidualGraph residual;
+    residual.assign(graph, std::vector<char>{1, 0, 0, 0}, clock);
+    Multipliers multipliers;
+    multipliers.cone.assign(4, 0.0);
+    LegBounds bounds;
+    std::vector<double> edge_multiplier, reduced, forward;
+    std::vector<int> before, cycle;
+    int raised = 0;
+    while (true) {
+        reduce(graph, {}, multipliers, residual, edge_multiplier, reduced);
+        std::vector<double> start(residual.arc.size(), kUnreachable);
+        for (std::size_t a = 0; a < start.size(); ++a) {
+            if (residual.tail[a] == 0) start[a] = multipliers.cone[0];
+        }
+        if (bounds.forward(residual, reduced, start, forward, before, cycle)) break;
+        raise_cycles(residual, cycle, reduced, multipliers.cone);
+        ASSERT_LT(++raised, 20);
+    }
+    EXPECT_GT(raised, 0);
+    for (const double multiplier : multipliers.cone) EXPECT_LT(multiplier, 1.0);
+}
+
+TEST(PathPairLegSearch, FindsTheLegsThatBruteForceFinds) {
+    LegSearch search;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const SceneWithMultipliers s(seed);
+        double best = kUnreachable;
+        s.for_each_leg([&](const std::vector<int>&, double cost) { best = std::min(best, cost); });
+        const double cutoff = best + 0.5;
+        int expected = 0;
+        s.for_each_leg([&](const std::vector<int>&, double cost) { expected += cost < cutoff ? 1 : 0; });
+        int found = 0;
+        std::int64_t budget = 1'000'000;
+        const LegSearch::Query query{s.graph, s.residual, s.reduced, s.start, s.end, s.backward};
+        EXPECT_TRUE(search.run(query, cutoff, budget, [&](std::span<const int>, double cost) {
+            ++found;
+            EXPECT_LT(cost, cutoff);
+            return cutoff;
+        }));
+        EXPECT_EQ(found, expected);
+    }
+}
+
+/// The reduced cost of a leg is its own cost plus the multipliers of what it uses.
+TEST(PathPairMultipliers, ReducedCostOfALegIsItsCostPlusWhatItUses) {
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        SceneWithMultipliers s(seed);
+        s.for_each_leg([&](const std::vector<int>& leg, double cost) {
+            double sum =
+                s.end[static_cast<std::size_t>(leg.back())] +
+                s.multipliers
+                    .cone[static_cast<std::size_t>(s.residual.tail[static_cast<std::size_t>(leg.front())])];
+            for (std::size_t k = 0; k < leg.size(); ++k) {
+                const std::size_t at = static_cast<std::size_t>(leg[k]);
+                sum += s.graph.cost(s.residual.edge(leg[k])) +
+                       s.multipliers.cone[static_cast<std::size_t>(s.residual.head[at])];
+                if (k > 0) {
+                    sum += s.graph.turn_cost(s.residual.arc[static_cast<std::size_t>(leg[k - 1])],
+                                             s.residual.arc[at]);
+                }
+            }
+            ASSERT_NEAR(sum, cost, 1e-9) << "seed " << seed;
+        });
+    }
+}
+
+TEST(PathPairCliques, AreViolatedMaximalAndPairwiseIncompatible) {
+    int found = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const SceneWithMultipliers s(seed, 20);
+        const std::size_t edges = static_cast<std::size_t>(s.graph.edge_count());
+        boost::random::mt19937_64 random(seed);
+        std::vector<double> use;
+        for (std::size_t e = 0; e < edges; ++e) {
+            use.push_back(boost::random::uniform_real_distribution<double>(0.0, 1.0)(random));
+        }
+        CliquePool pool;
+        CliqueSeparation separation;
+        SearchClock clock;
+        separation.separate(s.graph, use, std::vector<char>(edges, 1), 20, pool, clock);
+        for (int q = 0; q < pool.size(); ++q) {
+            ++found;
+            const std::span<const int> clique = pool.edges(q);
+            double sum = 0.0;
+            for (const int e : clique) {
+                sum += use[static_cast<std::size_t>(e)];
+                for (const int f : clique) ASSERT_TRUE(e == f || s.graph.incompatible(e, f));
+            }
+            EXPECT_GT(sum, 1.0);
+            for (int e = 0; e < s.graph.edge_count(); ++e) {
+                EXPECT_FALSE(std::ranges::all_of(clique, [&](int f) { return s.graph.incompatible(e, f); }));
+            }
+        }
+    }
+    EXPECT_GT(found, 100);
+}
+
+}  // namespace
+}  // namespace conelane::path_pair

@@ -1,0 +1,262 @@
+// Where path-pair looks for incumbents in a large graph: windows around a lane graph, and a beam over pairs.
+
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/primal/incumbent_window.hpp"
+#include "solvers/path_pair/primal/pair_beam.hpp"
+#include "solvers/path_pair/search/branch_and_bound.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+#include "tests/support/random_scenes.hpp"
+#include "tests/support/straight_lane_problem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane::path_pair {
+namespace {
+
+using Legs = std::array<std::vector<int>, 2>;
+
+struct Graph {
+    explicit Graph(const LaneGraphProblem& problem) {
+        arcs.build(problem, clock);
+        for (int cone = 0; cone < arcs.cone_count(); ++cone) {
+            system.kinds[0].start.push_back(arcs.near(cone) ? 1 : 0);
+            system.kinds[0].end.push_back(arcs.near(cone) ? 0 : 1);
+        }
+        whole.assign(arcs, system.kinds[0].start, clock);
+        usable.assign(static_cast<std::size_t>(arcs.arc_count()), 1);
+        incumbent.reset(arcs, 0.0);
+    }
+    [[nodiscard]] std::vector<int> leg(std::span<const int> cones) const {
+        std::vector<int> leg;
+        for (std::size_t k = 0; k + 1 < cones.size(); ++k) leg.push_back(arcs.arc(cones[k], cones[k + 1]));
+        return leg;
+    }
+    [[nodiscard]] static std::vector<int> marked(const std::vector<char>& marks) {
+        std::vector<int> cones;
+        for (std::size_t cone = 0; cone < marks.size(); ++cone) {
+            if (marks[cone] != 0) cones.push_back(static_cast<int>(cone));
+        }
+        return cones;
+    }
+
+    SearchClock clock;
+    ArcGraph arcs;
+    LegSystem system;
+    ResidualGraph whole;
+    std::vector<char> usable;
+    Incumbent incumbent;
+};
+
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
+
+// No arc of the lane leads on from 6 or 7, so windows around them are empty: all stays as it is. From 4 one
+// leads to 6: the left leg may end anywhere from there on.
+TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
+    Graph s(tests::straight_lane_problem());
+    const Legs legs{s.leg(std::vector<int>{0, 2, 4, 6}), s.leg(std::vector<int>{1, 3, 5, 7})};
+    std::ranges::fill(s.usable, char{0});
+    for (const std::vector<int>& leg : legs) {
+        for (const int arc : leg) s.usable[at(arc)] = 1;
+    }
+    IncumbentWindow window;
+    window.assign(s.arcs, s.system, s.whole, s.usable);
+    window.restart(1);
+    std::vector<int> arcs;
+    for (const bool improved : {true, false, false}) {  // 6, tried again, and 7
+        ASSERT_TRUE(window.next(legs, arcs));
+        EXPECT_EQ(arcs.size(), 6U);
+        EXPECT_EQ(window.system().kind_count, 2);
+        for (std::size_t k = 0; k < 2; ++k) {
+            EXPECT_EQ(Graph::marked(window.system().kinds[k].start), (std::vector<int>{static_cast<int>(k)}));
+            EXPECT_EQ(Graph::marked(window.system().kinds[k].end),
+                      (std::vector<int>{6 + static_cast<int>(k)}));
+        }
+        window.report(improved);
+    }
+    ASSERT_TRUE(window.next(legs, arcs));
+    EXPECT_EQ(Graph::marked(window.system().kinds[0].start), (std::vector<int>{0}));
+    EXPECT_EQ(window.system().kinds[0].end, s.system.kinds[0].end);
+    EXPECT_EQ(Graph::marked(window.system().kinds[1].end), (std::vector<int>{7}));
+    window.report(false);
+    for (const int centre : {5, 2, 3}) {
+        SCOPED_TRACE(centre);
+        ASSERT_TRUE(window.next(legs, arcs));
+        window.report(false);
+    }
+    EXPECT_FALSE(window.next(legs, arcs));
+}
+
+// One beginning at a time is enough on a straight lane.
+TEST(PathPairBeam, FindsTheStraightLane) {
+    const LaneGraphProblem problem = tests::straight_lane_problem();
+    Graph s(problem);
+    PairBeam beam;
+    beam.run(s.arcs, s.system, {1, 2}, s.incumbent, s.clock);
+    ASSERT_TRUE(s.incumbent.found());
+    EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(problem, {}).objective, 1e-9);
+}
+
+TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
+    const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
+    int with_lane = 0;
+    int best_found = 0;
+    for (std::uint64_t seed = 0; seed < 80; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 9), {});
+        const RldReport best = exhaustive->solve(problem, {});
+        Graph s(problem);
+        s.incumbent.reset(s.arcs, 1e6);
+        PairBeam beam;
+        beam.run(s.arcs, s.system, {64, 16}, s.incumbent, s.clock);
+        if (!best.objective) {
+            EXPECT_FALSE(s.incumbent.found());
+            continue;
+        }
+        ++with_lane;
+        if (!s.incumbent.found()) continue;
+        EXPECT_GE(s.incumbent.cutoff(), *best.objective - 1e-9);
+        best_found += s.incumbent.cutoff() < *best.objective + 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(4 * best_found, 3 * with_lane);
+}
+
+/// The legs are in every window, and nothing else there is excluded by a first or a last arc that stays.
+TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
+    int fixed_ends = 0;
+    int with_others = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Graph s(make_problem(tests::random_scene(seed, 30), {}));
+        PairBeam beam;
+        beam.run(s.arcs, s.system, {16, 4}, s.incumbent, s.clock);
+        if (!s.incumbent.found()) continue;
+        const Legs& legs = s.incumbent.legs();
+        IncumbentWindow window;
+        window.assign(s.arcs, s.system, s.whole, s.usable);
+        window.restart(10 + seed);
+        std::vector<int> arcs;
+        while (window.next(legs, arcs)) {
+            EXPECT_TRUE(std::ranges::is_sorted(arcs));
+            std::vector<int> others;
+            for (const int a : arcs) others.push_back(s.whole.arc[at(a)]);
+            for (const std::vector<int>& leg : legs) {
+                for (const int arc : leg) EXPECT_EQ(std::erase(others, arc), 1U);
+            }
+            with_others += others.empty() ? 0 : 1;
+            const auto expect_fixed = [&](const std::vector<char>& ends, const std::vector<char>& all,
+                                          int cone, int arc) {
+                EXPECT_NE(ends[at(cone)], 0);
+                if (ends == all) return;
+                EXPECT_EQ(Graph::marked(ends).size(), 1U);
+                ++fixed_ends;
+                for (const int other : others) {
+                    EXPECT_NE(s.arcs.tail(other), cone);
+                    EXPECT_NE(s.arcs.head(other), cone);
+                    EXPECT_FALSE(s.arcs.incompatible(other / 2, arc / 2));
+                }
+            };
+            for (std::size_t k = 0; k < 2; ++k) {
+                const LegSystem::Kind& kind = window.system().kinds[k];
+                const LegSystem::Kind& all = s.system.kinds[0];
+                expect_fixed(kind.start, all.start, s.arcs.tail(legs[k].front()), legs[k].front());
+                expect_fixed(kind.end, all.end, s.arcs.head(legs[k].back()), legs[k].back());
+            }
+            window.report(false);
+        }
+    }
+    EXPECT_GT(fixed_ends, 200);
+    EXPECT_GT(with_others, 100);
+}
+
+/// Cones strewn ahead of the car, three metres apart in the mean: many ways, no lane.
+Scene strewn_scene(std::uint64_t seed, std::size_t cones, double side) {
+    boost::random::mt19937_64 random(seed);
+    const auto uniform = [&](double low, double high) {
+        return boost::random::uniform_real_distribution<double>(low, high)(random);
+    };
+    Scene scene;
+    scene.id = "strewn_" + std::to_string(seed);
+    for (std::size_t i = 0; i < cones; ++i) {
+        const double x = uniform(0.0, side);
+        scene.cones.push_back({static_cast<ConeId>(i), Point(x, uniform(-0.5 * side, 0.5 * side))});
+    }
+    return scene;
+}
+
+struct Stopped {
+    double cost = 0.0;
+    BranchAndBound::Outcome outcome{};
+    bool is_lane = true;
+};
+
+/// Until the clock has been looked at so often.
+Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
+    const LaneGraphProblem problem = make_problem(scene, {});
+    Graph s(problem);
+    BranchAndBound search(s.arcs, s.incumbent, options);
+    int look = 0;
+    Stopped result;
+    result.outcome = search.run(s.system, 1e-9, [&] { return ++look > looks; });
+    result.cost = s.incumbent.cutoff();
+    if (s.incumbent.found()) {
+        LaneGraph lane;
+        for (const int edge : s.incumbent.edges()) {
+            const ProblemEdge& e = problem.edges[s.arcs.problem_edge(edge)];
+            lane.edges.push_back({e.i, e.j});
+        }
+        std::ranges::sort(lane.edges);
+        result.is_lane =
+            check(scene, {}, lane, {false, result.cost, result.outcome.bound}).violations.empty();
+    }
+    return result;
+}
+
+/// In dense scenes: a search that goes on has a lane graph that costs no more, and with windows it costs
+/// less.
+TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
+    double with = 0.0;
+    double without = 0.0;
+    int stopped = 0;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const Scene scene = strewn_scene(seed, 70, 25.0);
+        double before = 0.0;
+        for (const int looks : {50, 200, 800, 2000}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << looks << " looks");
+            const Stopped result = search(scene, {}, looks);
+            EXPECT_TRUE(result.is_lane);
+            EXPECT_LE(result.cost, before);
+            EXPECT_LE(result.outcome.bound, result.cost + 1e-6);
+            before = result.cost;
+            stopped += result.outcome.complete ? 0 : 1;
+            PathPairOptions options;
+            options.search_windows = false;
+            const Stopped plain = search(scene, options, looks);
+            with += result.cost;
+            without += plain.cost;
+        }
+    }
+    EXPECT_GT(stopped, 8);
+    EXPECT_LT(with, without);
+}
+
+}  // namespace
+}  // namespace conelane::path_pair

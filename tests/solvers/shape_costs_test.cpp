@@ -1,0 +1,210 @@
+// The costs of a lane's shape, on lanes that can be followed by hand; and the same numbers from the
+// independent checker, which knows them only as the paper-and-pencil definition says.
+
+#include "model/shape_costs.hpp"
+
+#include "conelane/check.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "solvers/exhaustive.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+Scene scene_of(const std::vector<Point>& cones) {
+    Scene scene;
+    for (const Point& cone : cones) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size() + 1), cone});
+    }
+    return scene;
+}
+
+/// Facing alone, of a lane 4 m wide: that is all an edge costs.
+RldParameters facing_parameters() {
+    RldParameters parameters;
+    parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
+    parameters.w_v = 1.0;
+    parameters.d_w = 4.0;
+    parameters.d_v = 2.0;
+    parameters.theta_v = 0.5;
+    parameters.d_l = 2.0;
+    return parameters;
+}
+
+/// Of the problem; the checker's is the same.
+double facing_cost(const Scene& scene, const RldParameters& parameters, std::size_t i, std::size_t j) {
+    const double checked = *check(scene, parameters, LaneGraph{{{i, j}}}).objective;
+    for (const ProblemEdge& edge : make_problem(scene, parameters).edges) {
+        if (edge.i != i || edge.j != j) continue;
+        EXPECT_NEAR(checked, edge.facing_cost, 1e-12);
+        return edge.facing_cost;
+    }
+    ADD_FAILURE() << "there is no such edge";
+    return -1.0;
+}
+
+TEST(Unevenness, IsTheSquaredDifferenceInUnitsOfTheSpacingThreshold) {
+    RldParameters parameters;
+    parameters.d_t = 2.0;
+    EXPECT_EQ(unevenness(3.0, 3.0, parameters), 0.0);
+    EXPECT_EQ(unevenness(3.0, 4.0, parameters), 0.25);
+    EXPECT_EQ(unevenness(4.0, 3.0, parameters), 0.25);
+}
+
+TEST(FacingCost, IsNothingWhereALaneHasItsWidth) {
+    const Scene lane = scene_of({{2, 2}, {5, 2}, {2, -2}, {5, -2}});
+    EXPECT_NEAR(facing_cost(lane, facing_parameters(), 0, 1), 0.0, 1e-12);
+    EXPECT_NEAR(facing_cost(lane, facing_parameters(), 2, 3), 0.0, 1e-12);
+}
+
+TEST(FacingCost, GrowsWithWidthOffsetAngleAndLength) {
+    // 1 m too wide: (1 / 2)^2.
+    EXPECT_NEAR(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -3}, {5, -3}}), facing_parameters(), 0, 1), 0.25,
+                1e-12);
+    // 1 m farther along.
+    EXPECT_NEAR(facing_cost(scene_of({{2, 2}, {5, 2}, {3, -2}, {6, -2}}), facing_parameters(), 0, 1), 0.25,
+                1e-12);
+    // Turned about its middle by an angle with sine 0.3: (0.3 / 0.5)^2.
+    const double ahead = 1.5 * std::sqrt(1.0 - 0.09);
+    const Scene turned = scene_of({{2, 2}, {5, 2}, {3.5 - ahead, -2.45}, {3.5 + ahead, -1.55}});
+    EXPECT_NEAR(facing_cost(turned, facing_parameters(), 0, 1), 0.36, 1e-12);
+    // 1 m longer: (1 / 2)^2, for the longer one as for the shorter.
+    const Scene unlike = scene_of({{2, 2}, {5, 2}, {1.5, -2}, {5.5, -2}});
+    EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 0, 1), 0.25, 1e-12);
+    EXPECT_NEAR(facing_cost(unlike, facing_parameters(), 2, 3), 0.25, 1e-12);
+}
+
+TEST(FacingCost, IsOneWhereNothingFaces) {
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}}), facing_parameters(), 0, 1), 1.0);
+    // Out of reach, across, or with a cone in common.
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -8}, {5, -8}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {3.5, -1}, {3.5, -4}}), facing_parameters(), 0, 1), 1.0);
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
+    // It would be faced by an edge to its own end, were the lane that narrow.
+    RldParameters narrow = facing_parameters();
+    narrow.d_w = 0.5;
+    EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
+}
+
+/// What (27) forbids can be no boundary, whether a problem lists it or not.
+TEST(FacingCost, CountsNoEdgeThatIsTooLong) {
+    const RldParameters parameters = facing_parameters();
+    const Scene scene = scene_of({{2, 2}, {5, 2}, {0.5, -2}, {6.5, -2}});  // 6 m apart
+    EXPECT_EQ(facing_cost(scene, parameters, 0, 1), 1.0);
+    EXPECT_EQ(make_problem(scene, parameters, EdgeExtent::all_pairs).edges.front().facing_cost, 1.0);
+}
+
+TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
+    RldParameters parameters;
+    parameters.d_w = 4.0;
+    parameters.d_t = 2.0;
+    Scene scene;
+    for (const double side : {1.0, -1.0}) {
+        EXPECT_EQ(near_end_fit(scene, {3, side * 2}, parameters), 1.0);
+        EXPECT_EQ(near_end_fit(scene, {-1, side * 3}, parameters), 0.75);
+        EXPECT_EQ(near_end_fit(scene, {1, side * 1}, parameters), 0.75);
+        EXPECT_EQ(near_end_fit(scene, {1, side * 7}, parameters), 0.0);
+    }
+    scene.pose.yaw_rad = 0.5 * std::numbers::pi;
+    EXPECT_NEAR(near_end_fit(scene, {2, 0}, parameters), 1.0, 1e-12);
+}
+
+/// A straight lane with uneven spacing: what the near ends are worth and the unevenness are all there is.
+TEST(ShapeCosts, AddUpOnALaneByHand) {
+    const Scene lane = scene_of({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
+    RldParameters parameters;
+    parameters.d_w = 4.0;
+    parameters.d_t = 2.0;
+    parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
+    parameters.w_u = 3.0;
+    parameters.w_n = 0.5;
+    parameters.d_near = 3.0;
+    const LaneGraph graph{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    const double expected = 2 * 3.0 * 0.25 - 2 * 0.5;
+    EXPECT_NEAR(objective(make_problem(lane, parameters), graph), expected, 1e-12);
+    EXPECT_NEAR(*check(lane, parameters, graph).objective, expected, 1e-12);
+}
+
+TEST(ShapeCosts, OffMeansNoneAtAll) {
+    const Scene scene = tests::random_scene(3, 9);
+    RldParameters other_thresholds;
+    other_thresholds.d_w = 3.0;
+    other_thresholds.d_v = 1.0;
+    other_thresholds.theta_v = 0.1;
+    other_thresholds.d_l = 1.0;
+    const LaneGraphProblem plain = make_problem(scene, {});
+    const LaneGraphProblem same = make_problem(scene, other_thresholds);
+    ASSERT_FALSE(plain.turns.empty());
+    for (std::size_t e = 0; e < plain.edges.size(); ++e) EXPECT_EQ(plain.edges[e].cost, same.edges[e].cost);
+    for (std::size_t t = 0; t < plain.turns.size(); ++t) EXPECT_EQ(plain.turns[t].cost, same.turns[t].cost);
+    EXPECT_FALSE(has_shape_costs(RldParameters{}));
+}
+
+/// Two cones at one place, and an edge of 0.2 m beside them at just the width expected: what has no direction
+/// is faced by nothing.
+TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
+    Scene scene;
+    for (const Point& place : {Point(2.0, 0.0), Point(2.0, 0.0), Point(1.9, 0.5), Point(2.1, 0.5)})
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
+    RldParameters parameters;
+    parameters.w_v = 1.0;
+    parameters.d_w = 0.5;
+    parameters.d_e = 0.2;
+    parameters.d_v = parameters.d_l = 2.0;
+    const LaneGraphProblem problem = make_problem(scene, parameters, EdgeExtent::all_pairs);
+    ASSERT_EQ(problem.edges.front().j, 1U);
+    EXPECT_EQ(problem.edges.front().facing_cost, 1.0);
+}
+
+TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
+    EXPECT_TRUE(has_shape_costs(with_shape_costs({})));
+    RldParameters own;
+    own.w_v = 0.3;
+    const RldParameters same = with_shape_costs(own);
+    EXPECT_EQ(same.w_v, 0.3);
+    EXPECT_EQ(same.w_u, 0.0);
+    EXPECT_EQ(same.s_crit, RldParameters{}.s_crit);
+}
+
+/// Each edge alone, and every lane graph that is best under some weights, costs what the checker says. With
+/// it the near ends, which the problem spreads over edges and turns.
+TEST(ShapeCosts, AreThoseOfTheIndependentChecker) {
+    std::size_t faced = 0;
+    std::size_t lanes = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 9);
+        RldParameters parameters;
+        parameters.w_u = 0.7;
+        parameters.w_v = 1.3;
+        parameters.w_n = seed % 2 == 0 ? 0.9 : 4.0;
+        for (const EdgeExtent extent : {EdgeExtent::candidates, EdgeExtent::all_pairs}) {
+            const LaneGraphProblem problem = make_problem(scene, parameters, extent);
+            for (const ProblemEdge& edge : problem.edges) {
+                const CheckReport report = check(scene, parameters, LaneGraph{{{edge.i, edge.j}}});
+                ASSERT_TRUE(report.objective);
+                ASSERT_NEAR(*report.objective, edge.cost, 1e-9);
+                if (edge.facing_cost < 1.0) ++faced;
+            }
+        }
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        const RldReport best = make_exhaustive_solver()->solve(problem, {});
+        if (!best.lane_graph) continue;
+        ++lanes;
+        EXPECT_NEAR(*check(scene, parameters, *best.lane_graph).objective, *best.objective, 1e-9);
+        EXPECT_NEAR(objective(problem, *best.lane_graph), *best.objective, 1e-9);
+    }
+    EXPECT_GT(faced, 200U);
+    EXPECT_GT(lanes, 20U);
+}
+
+}  // namespace
+}  // namespace conelane

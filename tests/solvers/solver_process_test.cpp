@@ -1,0 +1,103 @@
+// What a solve leaves of the process around it: SIGINT stays the program's, and no library's assertion ends
+// it.
+
+#include "conelane/lane_graph_problem.hpp"
+#include "model/formulation_parts.hpp"
+#include "solvers/registry.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace conelane {
+namespace {
+
+constexpr unsigned kLongest_s = 60;
+
+/// Solves again and again; SIGINT comes from a thread of its own in the midst of it. Relaxations of the
+/// printed rows with 40 cones take seconds, so nearly all of the time is spent inside of Clp.
+[[noreturn]] void be_interrupted_in(const char* name, Formulation formulation, std::size_t cones) {
+    alarm(kLongest_s);  // where SIGINT is swallowed, this ends the process
+    const std::unique_ptr<RldSolver> solver = find_rld_solver(name)->make(formulation);
+    const LaneGraphProblem problem =
+        make_problem(tests::random_scene(1, cones), {}, parts(formulation).extent);
+    const std::jthread interrupter([] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        kill(getpid(), SIGINT);
+    });
+    while (true) (void)solver->solve(problem, {});
+}
+
+class Interrupt : public testing::TestWithParam<const char*> {
+  protected:
+    void SetUp() override { testing::FLAGS_gtest_death_test_style = "threadsafe"; }
+};
+
+TEST_P(Interrupt, EndsAProgramThatHasNoHandler) {
+    EXPECT_EXIT(be_interrupted_in(GetParam(), Formulation::paper, 40), testing::KilledBySignal(SIGINT), "");
+}
+
+volatile std::sig_atomic_t interrupts = 0;
+
+/// A handler that the program has installed is still there after a solve, and is called in the midst of one.
+TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
+    const auto before = std::signal(SIGINT, [](int) { interrupts = interrupts + 1; });
+    interrupts = 0;
+    const std::unique_ptr<RldSolver> solver = find_rld_solver(GetParam())->make(Formulation::paper);
+    const LaneGraphProblem problem = make_problem(tests::random_scene(1, 30), {}, EdgeExtent::all_pairs);
+    const auto interrupt_after = [](int wait_ms) {
+        return std::jthread([wait_ms] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+            kill(getpid(), SIGINT);
+        });
+    };
+    {
+        const std::jthread first = interrupt_after(100);
+        const std::jthread second = interrupt_after(200);
+        const RldReport report = solver->solve(problem, {400.0});
+        EXPECT_NE(report.status, SolveStatus::error) << report.message;
+    }
+    EXPECT_EQ(interrupts, 2);
+    std::signal(SIGINT, before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cbc, Interrupt, testing::Values("cbc", "cbc-main"), [](const auto& test) {
+    return std::string(test.param) == "cbc" ? "cbc" : "cbc_main";
+});
+
+/// A scene on which CBC's feasibility pump ran into an assertion of Clp, every time.
+TEST(CbcMain, SolvesWhatTheFeasibilityPumpAbortedOn) {
+    constexpr std::pair<double, double> kCones[] = {
+        {13.203246, -10.469978}, {19.8542, 1.4488},       {15.09518, -16.433888}, {16.7573, -2.6786},
+        {22.779535, -2.016967},  {20.3092, -2.7153},      {23.451, 10.7345},      {13.931565, -2.062864},
+        {16.4778, 1.5947},       {26.337545, -3.423048},  {25.260876, -7.583478}, {25.273619, 4.861673},
+        {27.2656, 9.9162},       {17.344899, -15.598792}, {27.929, 1.1358},       {20.1299, 15.1719},
+        {31.9769, 1.0164},       {25.837844, 10.628586},  {23.90863, 6.114528},   {25.6087, 10.0986},
+        {18.926969, -12.454994}, {30.975316, -1.243058},  {24.3936, 1.2254},      {24.3774, -2.725},
+        {29.690921, 2.784989},   {15.096821, 10.376269},  {20.8608, 13.3936},     {15.848653, -8.083543},
+        {29.108, -2.9807},       {22.0263, 11.9073}};
+    Scene scene;
+    scene.pose = {{13.466225, -0.437298}, -0.04135656};
+    for (const auto& [x, y] : kCones) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
+    }
+    const LaneGraphProblem problem = make_problem(scene, {});
+    const RldReport reference = find_rld_solver("path-pair")->make(Formulation::tight)->solve(problem, {});
+    const std::unique_ptr<RldSolver> solver = find_rld_solver("cbc-main")->make(Formulation::tight);
+    for (int time = 0; time < 3; ++time) {
+        const RldReport report = solver->solve(problem, {});
+        ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
+        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
+    }
+}
+
+}  // namespace
+}  // namespace conelane

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "conelane/formulation.hpp"
+#include "solvers/registry.hpp"
+#include "tests/support/print_status.hpp"
+
+#include <ostream>
+#include <vector>
+
+namespace conelane::tests {
+
+/// A solver of the registry on one formulation.
+struct Contestant {
+    const RldSolverEntry* entry;
+    Formulation formulation;
+    friend void PrintTo(const Contestant& c, std::ostream* out) {
+        *out << c.entry->name << ' ' << to_string(c.formulation);
+    }
+};
+
+/// All of them, on every formulation that they use.
+inline std::vector<Contestant> contestants() {
+    std::vector<Contestant> all;
+    for (const RldSolverEntry& entry : rld_solvers()) {
+        all.push_back({&entry, Formulation::tight});
+        if (entry.uses_formulation) all.push_back({&entry, Formulation::paper});
+    }
+    return all;
+}
+
+}  // namespace conelane::tests
