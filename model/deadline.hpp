@@ -22,7 +22,6 @@ class Deadline {
     explicit Deadline(double limit_ms = std::numeric_limits<double>::infinity()) : limit_ms_(limit_ms) {}
 
     [[nodiscard]] double remaining_ms() const { return limit_ms_ - watch_.elapsed_ms(); }
-    [[nodiscard]] bool half_passed() const { return watch_.elapsed_ms() >= 0.5 * limit_ms_; }
     [[nodiscard]] bool passed() const { return remaining_ms() <= 0.0; }
 
   private:

@@ -161,20 +161,7 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     coefficients_.clear();
     finishing_.clear();
 
-    Follow truth;
-    const std::size_t start = true_start();
-    truth.reachable = start != kNone;
-    if (truth.reachable) {
-        truth.next = {static_cast<double>(cost.score_starts(front_.map(), front_.starts())[start]),
-                      kNone,
-                      {},
-                      kLeft,
-                      start};
-        const auto& [left, right] = front_.starts().pairs[start];
-        const FrontState state = start_state(front_.map(), front_.starts().cones[kLeft][left],
-                                             front_.starts().cones[kRight][right]);
-        truth.level = front_.first_level(state);
-    }
+    Follow truth = begin_truth(cost);
     SearchBudget unlimited;
     while (front_.advance(unlimited)) {
         const bool was_lost = truth.lost;
@@ -185,22 +172,57 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     loss.kept = truth.reachable && truth.ended && !truth.lost;
 
     front_.sort_finished(options.listed);
-    const std::size_t listed = std::min(options.listed, front_.finished().size());
-    if (listed == 0) {
+    const std::vector<FrontSearch::Finished> lanes = listed_lanes(truth, options, loss);
+    if (lanes.empty()) {
         loss.risk = options.risk.worst();
-        add_coefficients(weights, cost, derivatives);
-        return loss;
+    } else {
+        add_list_loss(lanes, boundaries, options, loss);
     }
+    add_coefficients(weights, cost, derivatives);
+    return loss;
+}
+
+/// The true lane before the first move; not reachable where none of the search's starts is its own.
+FrontLearner::Follow FrontLearner::begin_truth(FrontCost& cost) {
+    Follow truth;
+    const std::size_t start = true_start();
+    truth.reachable = start != kNone;
+    if (!truth.reachable) return truth;
+    truth.next = {static_cast<double>(cost.score_starts(front_.map(), front_.starts())[start]),
+                  kNone,
+                  {},
+                  kLeft,
+                  start};
+    const auto& [left, right] = front_.starts().pairs[start];
+    const FrontState state =
+        start_state(front_.map(), front_.starts().cones[kLeft][left], front_.starts().cones[kRight][right]);
+    truth.level = front_.first_level(state);
+    return truth;
+}
+
+/// The best finished lanes, best first, and the true one behind them where the search has kept it but does
+/// not list it.
+std::vector<FrontSearch::Finished> FrontLearner::listed_lanes(const Follow& truth,
+                                                              const FrontLossOptions& options,
+                                                              Loss& loss) const {
+    const std::size_t listed = std::min(options.listed, front_.finished().size());
     std::vector<FrontSearch::Finished> lanes(front_.finished().begin(),
                                              front_.finished().begin() + static_cast<std::ptrdiff_t>(listed));
-    if (loss.kept) {
-        const auto is_truth = [&](const FrontSearch::Finished& lane) { return lane.parent == truth.node; };
-        if (std::ranges::none_of(lanes, is_truth)) {
-            const auto own = std::ranges::find_if(front_.finished(), is_truth);
-            if (own != front_.finished().end()) lanes.push_back(*own);
-        }
-        loss.found = lanes.front().parent == truth.node;
+    if (lanes.empty() || !loss.kept) return lanes;
+    const auto is_truth = [&](const FrontSearch::Finished& lane) { return lane.parent == truth.node; };
+    if (std::ranges::none_of(lanes, is_truth)) {
+        const auto own = std::ranges::find_if(front_.finished(), is_truth);
+        if (own != front_.finished().end()) lanes.push_back(*own);
     }
+    loss.found = lanes.front().parent == truth.node;
+    return lanes;
+}
+
+/// Minimum risk over the listed lanes, and the cross-entropy of their probabilities to those that their risks
+/// want.
+void FrontLearner::add_list_loss(std::span<const FrontSearch::Finished> lanes,
+                                 const TrackBoundaries& boundaries, const FrontLossOptions& options,
+                                 Loss& loss) {
     std::vector<double> risks;
     std::vector<double> probabilities;
     std::vector<double> wanted;
@@ -226,8 +248,6 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
         coefficients_[lanes[i].parent] += factor;
         finishing_.push_back({lanes[i].parent, lanes[i].side, factor});
     }
-    add_coefficients(weights, cost, derivatives);
-    return loss;
 }
 
 void FrontLearner::add_coefficients(const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives) {

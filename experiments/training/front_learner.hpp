@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace conelane::experiments {
@@ -61,9 +62,14 @@ class FrontLearner {
         bool lost = false;
         bool ended = false;
     };
+    Follow begin_truth(FrontCost& cost);
     void follow(Follow& truth, FrontCost& cost);
     void foresee(Follow& truth, std::size_t level, FrontCost& cost);
     Loss& add_fall_out(const Follow& truth, const FrontLossOptions& options, Loss& loss);
+    std::vector<FrontSearch::Finished> listed_lanes(const Follow& truth, const FrontLossOptions& options,
+                                                    Loss& loss) const;
+    void add_list_loss(std::span<const FrontSearch::Finished> lanes, const TrackBoundaries& boundaries,
+                       const FrontLossOptions& options, Loss& loss);
 
     FrontSearch front_;
     FrontMoves moves_;

@@ -17,11 +17,6 @@ struct LaneBounds {
     double w_max_m = 6.5;                       ///< C_width
 };
 
-/// CD of equation (6) by its definition, for a lane of at least one point a side. C_poly: no two segments of
-/// the lane polygon (l_1, ..., l_n, r_m, ..., r_1) that are not neighbours have a point in common.
-[[nodiscard]] bool satisfies_constraints(std::span<const Point> left, std::span<const Point> right,
-                                         const LaneBounds& bounds);
-
 /// Whether the search may give up on a lane that violates C_width by a vertex that is too far from what has
 /// been built of the other boundary.
 enum class WidthBacktracking {

@@ -92,8 +92,4 @@ void SearchGraph::keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs) {
     first_edge_ = std::move(first_kept);
 }
 
-bool SearchGraph::adjacent(Vertex a, Vertex b) const {
-    return std::ranges::binary_search(neighbours(a), b);
-}
-
 }  // namespace conelane

@@ -63,7 +63,6 @@ class SearchGraph {
         return {neighbour_x_.data() + first, neighbour_y_.data() + first, first_edge_[vertex + 1] - first};
     }
     [[nodiscard]] DirectedEdge first_edge(Vertex vertex) const { return first_edge_[vertex]; }
-    [[nodiscard]] bool adjacent(Vertex a, Vertex b) const;
 
   private:
     void keep_pairs(std::vector<std::pair<Vertex, Vertex>> pairs);

@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/lane_features.hpp"
 #include "graph_search/clc/start_vertices.hpp"
+#include "tests/support/lane_constraints_reference.hpp"
 #include "tests/support/no_time_limit.hpp"
 
 #include <algorithm>

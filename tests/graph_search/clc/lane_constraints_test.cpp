@@ -2,6 +2,7 @@
 
 #include "graph_search/clc/lane_closing.hpp"
 #include "graph_search/clc/next_vertex.hpp"
+#include "tests/support/lane_constraints_reference.hpp"
 
 #include <array>
 #include <cmath>

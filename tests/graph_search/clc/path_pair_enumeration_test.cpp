@@ -1,6 +1,7 @@
 #include "graph_search/clc/path_pair_enumeration.hpp"
 
 #include "model/deadline.hpp"
+#include "tests/support/lane_constraints_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
