@@ -1,12 +1,14 @@
 #include "experiments/comparison/comparison.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/atomic_file.hpp"
-#include "evaluation/files/input_error.hpp"
-#include "evaluation/outside/finished_lanes.hpp"
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/outside/finished_lanes.hpp"
+#include "evaluation/scenes/left_out_scenes.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -28,7 +30,10 @@ constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 MethodMaker maker_of(const Entrant& entrant, const RunOptions& options) {
     if (entrant.maker) return entrant.maker(options);
     if (entrant.outside) return maker_of_program(entrant.method, entrant.outside->source, options);
-    return maker_of(find_method(entrant.method), options);
+    const Method& method = find_method(entrant.method);
+    RunOptions used = options;
+    used.method = options_used_by(method, options.method);
+    return maker_of(method, used);
 }
 
 /// Runs an entrant on the scenes that its lanes file does not answer yet.
@@ -64,6 +69,14 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
     return lanes;
 }
 
+AnswerErrors errors_among(const std::vector<std::vector<LaneRecord>>& files) {
+    AnswerErrors errors;
+    for (const std::vector<LaneRecord>& records : files) {
+        for (const LaneRecord& record : records) add_answer_of(errors, record);
+    }
+    return errors;
+}
+
 void write_text(const fs::path& file, const std::string& text) {
     AtomicFile output(file);
     output.stream() << text;
@@ -72,8 +85,9 @@ void write_text(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-std::string score_directory(const fs::path& directory, const SceneSet& set,
-                            const std::vector<std::string>& lanes_files, const std::string& run_record) {
+ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set,
+                                  const std::vector<std::string>& lanes_files,
+                                  const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
     const OutsideMethods outside{outside_methods_of_record(run_record),
@@ -90,12 +104,13 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
     const std::vector<ScoreRow> rows = summarise(scored);
     write_scores(directory / "scores.jsonl", scored);
     write_results(directory / "results.jsonl", rows, scored, outside, run_record);
-    const std::string table = score_table(rows) + outside_notes(scored, outside);
+    const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
+    const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
     write_text(directory / "table.txt", table);
-    return table;
+    return {table, errors_among(records)};
 }
 
-std::string compare(const ComparisonOptions& options, const fs::path& directory) {
+ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
     std::set<std::string> lanes_of_entrants;
     bool any_program = false;
     for (const Entrant& entrant : options.entrants) {
@@ -106,13 +121,14 @@ std::string compare(const ComparisonOptions& options, const fs::path& directory)
         throw InvalidInput("method", "'" + entrant.method + "'" + cones + " is named twice");
     }
     const std::string record = run_record(options);
-    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard);
+    LeftOutScenes left_out;
+    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard, left_out);
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
     const auto finished = finished_lanes(options, set.scenes, directory);
 
     const FolderLock lock = open_run(directory, record, options.overwrite);
-    write_scene_set(directory / kScenesFile, set);
+    write_scene_set(directory / kScenesFile, set, left_out);
     if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {

@@ -4,6 +4,7 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/input_error.hpp"
+#include "evaluation/files/json_node.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "experiments/comparison/echo_floor.hpp"
@@ -173,9 +174,7 @@ std::string read_run_record(const fs::path& directory) {
     std::ifstream stream(file);
     std::string record;
     if (!std::getline(stream, record)) throw InputError(file, 0, "", "cannot be read");
-    const nlohmann::json json = nlohmann::json::parse(record, nullptr, false);
-    if (json.is_discarded()) throw InputError(file, 1, "", "is no JSON");
-    if (!json.is_object()) throw InputError(file, 1, "", "must be an object");
+    with_json_line(record, file, 1, [](const JsonNode& /*checked*/) {});
     return record;
 }
 

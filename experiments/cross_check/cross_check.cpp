@@ -1,18 +1,20 @@
 #include "experiments/cross_check/cross_check.hpp"
 
+#include "experiments/cross_check/case_file.hpp"
+#include "experiments/cross_check/shrink.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/folder_lock.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/files/output_stream.hpp"
+#include "experiments/progress/progress.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/cross_check/case_file.hpp"
-#include "experiments/cross_check/shrink.hpp"
-#include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -72,7 +74,8 @@ class CaseLog {
         std::error_code failure;
         if (fs::exists(file)) fs::resize_file(file, whole, failure);
         stream_.open(file, std::ios::binary | std::ios::app);
-        if (failure || !stream_) throw InputError(file, 0, "", "cannot be written");
+        if (!stream_) failure = std::error_code(errno, std::generic_category());
+        if (failure) throw InputError(file, 0, "", "cannot be written: " + failure.message());
         if (whole == 0) write(to_line(record));
     }
 
@@ -109,12 +112,12 @@ class CaseLog {
     void write(const std::string& line) {
         stream_ << line << '\n';
         stream_.flush();
-        if (!stream_) throw InputError(file_, 0, "", "cannot be written to its end");
+        stream_.require_written(file_);
     }
 
     fs::path file_;
     CrossCheckSummary& summary_;
-    std::ofstream stream_;
+    OutputStream stream_;
 };
 
 /// Who a finding is about, and whether it is an error or a claim: "glpk (tight)", "cbc (paper): error".

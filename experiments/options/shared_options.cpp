@@ -1,9 +1,11 @@
 #include "experiments/options/shared_options.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/parameter_file.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 
 #include <algorithm>
@@ -192,6 +194,12 @@ void ParameterSource::apply_to(DetectorOptions& options) const {
     if (!pairing.empty()) options.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
 }
 
+void ParameterSource::require_not_given(const std::string& who) const {
+    if (name.empty() && pairing.empty()) return;
+    throw InvalidInput(name.empty() ? "--pairing" : "--params",
+                       fmt::format("{} no RLD parameters: only the methods rld-... take them", who));
+}
+
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without) {
     command.add_option("--params", source.name,
                        fmt::format("RLD parameters: {} or a file (JSON); without it {}",
@@ -204,7 +212,7 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, 
     command
         .add_option_function<std::size_t>(
             "--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
-        ->check(CLI::Range(1, 100000));
+        ->check(whole_number(1, kMostCones));
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
@@ -242,7 +250,7 @@ void refuse_lost_inputs(CLI::App& command) {
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
     command.add_option("--threads", threads, meaning)
-        ->check(CLI::Range(1U, kMostThreads))
+        ->check(whole_number(1, kMostThreads))
         ->capture_default_str();
 }
 

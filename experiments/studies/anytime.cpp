@@ -3,9 +3,10 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "experiments/options/whole_number.hpp"
+#include "experiments/progress/progress.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
@@ -81,7 +82,7 @@ class AnytimeStudy : public Study {
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
                 "scenes at most, evenly spread")
-            ->check(CLI::Range(1, 1'000'000));
+            ->check(whole_number(1, 1'000'000));
     }
 
     StudyResult run() override {

@@ -2,9 +2,10 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/options/whole_number.hpp"
+#include "experiments/progress/progress.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 #include "model/deadline.hpp"
@@ -164,13 +165,13 @@ class DeadlinesStudy : public Study {
             ->check(CLI::Range(0.1, 1e6))
             ->capture_default_str();
         command.add_option("--repeats", options_.repeats, "calls for each scene and limit")
-            ->check(CLI::Range(1, 1'000'000))
+            ->check(whole_number(1, 1'000'000))
             ->capture_default_str();
         command
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
                 "scenes at most, evenly spread")
-            ->check(CLI::Range(1, 1'000'000));
+            ->check(whole_number(1, 1'000'000));
     }
 
     StudyResult run() override {

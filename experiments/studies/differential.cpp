@@ -4,9 +4,10 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "experiments/options/whole_number.hpp"
+#include "experiments/progress/progress.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/seeded_random.hpp"
-#include "experiments/progress/progress.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/study_options.hpp"
@@ -23,8 +24,8 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr std::size_t kFewestCones = 12;
-constexpr std::size_t kMostCones = 40;
+constexpr std::size_t kFewestConesDrawn = 12;
+constexpr std::size_t kMostConesDrawn = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What the solver proved and found: the optimum is in [lower, upper].
@@ -107,7 +108,7 @@ class DifferentialStudy : public Study {
         command.add_option("--first", options_.first, "number of the first case, to cut a run into parts")
             ->capture_default_str();
         command.add_option("--cases", options_.cases, "how many")
-            ->check(CLI::Range(1, 10'000'000))
+            ->check(whole_number(1, 10'000'000))
             ->capture_default_str();
         command.add_option("--reference", options_.reference, "the other solver, an exact one of any size")
             ->capture_default_str();
@@ -149,7 +150,7 @@ DifferentialCase draw_case(std::span<const AnnotatedScene> scenes, std::uint64_t
     DifferentialCase drawn;
     drawn.number = number;
     drawn.scene = &scenes[Size(0, scenes.size() - 1)(random)];
-    drawn.cones = Size(kFewestCones, kMostCones)(random);
+    drawn.cones = Size(kFewestConesDrawn, kMostConesDrawn)(random);
     const boost::random::bernoulli_distribution<> coin(0.5);
     drawn.pairing = coin(random) ? Pairing::paper : Pairing::near_far;
     drawn.shape_costs = coin(random);

@@ -1,20 +1,26 @@
 #include "conelane/invalid_input.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
+#include "experiments/comparison/runner.hpp"
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/file_text.hpp"
+#include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
+#include "experiments/comparison/methods.hpp"
+#include "experiments/options/shared_options.hpp"
 #include "evaluation/outside/outside_method.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/methods.hpp"
-#include "experiments/comparison/runner.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "program/commands/commands.hpp"
 
+#include <cerrno>
 #include <cstddef>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,6 +35,7 @@ struct Options {
     std::string method;
     std::string scenes;
     std::string out;
+    std::string weights;  ///< empty: the shipped ones
     ParameterSource parameters;
     RunOptions run;
 };
@@ -41,15 +48,21 @@ class LaneSink {
     }
     void put(const LaneRecord& record) {
         std::ostream& stream = file_ ? file_->stream() : std::cout;
+        errno = 0;
         stream << lane_line(record) << '\n' << std::flush;
-        if (!stream) throw InputError("", 0, "--out", "cannot be written to its end");
+        if (!stream)
+            throw InputError("", 0, "--out",
+                             "cannot be written to its end: " + std::generic_category().message(errno));
+        add_answer_of(errors_, record);
     }
     void commit() {
         if (file_) file_->commit();
+        report_errors(errors_);
     }
 
   private:
     std::optional<AtomicFile> file_;
+    AnswerErrors errors_;
 };
 
 /// A method and the name that its answers bear.
@@ -57,14 +70,29 @@ struct Answering {
     std::string name;
     MethodMaker make;
 };
-Answering method_of(const Options& options) {
+Answering method_of(Options& options) {
     const auto outside = find_outside_method(options.method);
+    const auto refuse_weights = [&options](const std::string& who) {
+        if (options.weights.empty()) return;
+        throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
+    };
     if (!outside) {
         const Method& method = find_method(options.method);
+        if (!method.is_rld()) options.parameters.require_not_given("'" + options.method + "' has");
+        if (!method.takes_weights()) refuse_weights("'" + options.method + "'");
+        if (!options.weights.empty()) {
+            // Read once, and before the work: what is wrong with them is said at once.
+            options.run.method.weights = parsed_file(options.weights, [](std::string text) {
+                (void)parse_front_weights(text);
+                return WeightsBytes{std::move(text)};
+            });
+        }
         return {std::string(method.name), maker_of(method, options.run)};
     }
     if (!outside->is_program())
         throw InvalidInput("--method", "'" + options.method + "' holds lanes already, none can be detected");
+    options.parameters.require_not_given("the program '" + outside->name + "' has");
+    refuse_weights("the program '" + outside->name + "'");
     return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
 }
 
@@ -104,7 +132,11 @@ void detect(Options& options) {
         return;
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    write_lanes(options.out, run(method.name, method.make, scenes, options.run));
+    const std::vector<LaneRecord> lanes = run(method.name, method.make, scenes, options.run);
+    write_lanes(options.out, lanes);
+    AnswerErrors errors;
+    for (const LaneRecord& record : lanes) add_answer_of(errors, record);
+    report_errors(errors);
 }
 
 }  // namespace
@@ -147,6 +179,8 @@ void add_detect_command(CLI::App& program) {
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
     add_parameter_options(command, options->parameters, "the defaults");
+    command.add_option("--weights", options->weights,
+                       "of front and front-warm: a file that `conelane train front` wrote");
     command.callback([options] { detect(*options); });
 }
 

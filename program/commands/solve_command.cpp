@@ -1,10 +1,11 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
 #include "evaluation/files/solution_file.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
-#include "program/commands/commands.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -54,6 +55,7 @@ void solve_all(const Options& options) {
         throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
     }
     const RldParameters parameters = options.parameters.load();
+    const ParameterTag tag = tag_of(options.parameters.name, parameters);
     const std::unique_ptr<RldSolver> solver =
         entry->make(options.formulation == "paper" ? Formulation::paper : Formulation::tight);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
@@ -80,7 +82,8 @@ void solve_all(const Options& options) {
                               report.build_ms,
                               report.solve_ms,
                               report.stopped_by,
-                              options.nearest};
+                              options.nearest,
+                              tag};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
@@ -91,7 +94,16 @@ void solve_all(const Options& options) {
         progress.advance();
     }
     write_solutions(options.out, records);
+    AnswerErrors errors;
+    for (const SolutionRecord& record : records) {
+        if (record.status == to_string(SolveStatus::error)) {
+            errors.add_error(record.solver, record.scene, record.message);
+        } else {
+            errors.add_answer(record.solver);
+        }
+    }
     fmt::print("{} scenes: {}, in {}\n", records.size(), status_counts(records), options.out);
+    report_errors(errors);
 }
 
 }  // namespace

@@ -16,21 +16,24 @@ namespace {
 
 void read_all(std::string_view bytes) {
     answers([&] {
-        const FrontWeights weights = parse_front_weights(bytes);
+        const FrontWeights weights = experiments::parse_front_weights(bytes);
         validate(weights);
-        require(parse_front_weights(front_weights_json(weights, "{}")) == weights,
+        require(experiments::parse_front_weights(front_weights_json(weights, "{}")) == weights,
                 "weights are read as they were written");
     });
     answers([&] {
-        const RankNetWeights weights = parse_rank_net(bytes);
+        const RankNetWeights weights = conelane::parse_rank_net(bytes);
         (void)make_rank_net(weights);
-        const std::string json = rank_net_json(weights, "{}");
-        require(rank_net_json(parse_rank_net(json), "{}") == json, "weights are read as they were written");
+        const std::string json = conelane::rank_net_json(weights, "{}");
+        require(rank_net_json(parse_rank_net(json), "{}") == json,
+                "weights are read as they were written");
     });
     answers([&] {
-        const StepScores scores = parse_step_scores(bytes);
-        const std::string json = step_scores_json(scores, step_scores_training(bytes));
-        require(step_scores_json(parse_step_scores(json), step_scores_training(json)) == json,
+        const StepScores scores = conelane::parse_step_scores(bytes);
+        const std::string json =
+            step_scores_json(scores, conelane::step_scores_training(bytes));
+        require(step_scores_json(parse_step_scores(json),
+                                              step_scores_training(json)) == json,
                 "scores are read as they were written");
     });
 }
