@@ -1,13 +1,16 @@
 #include "detectors/recipe.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "detectors/baseline_parameters.hpp"
 #include "graph_search/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
+#include "graph_search/front/front_weights_reader.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
+#include <string>
 #include <utility>
 
 namespace conelane {
@@ -20,14 +23,6 @@ constexpr std::size_t kRldContext = 24;
 
 std::unique_ptr<RldSolver> path_pair() {
     return make_path_pair_solver();
-}
-
-std::unique_ptr<LaneDetector> front() {
-    return make_front_detector(shipped_front_options());
-}
-
-std::unique_ptr<LaneDetector> warm_front() {
-    return make_front_detector(warm_front_options());
 }
 
 std::unique_ptr<LaneDetector> clc() {
@@ -56,9 +51,9 @@ constexpr std::array kRecipes{
     DetectorRecipe{"front",
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
                    "missed cones, answers with one boundary where it sees one alone",
-                   OtherRecipe{front}},
+                   FrontRecipe{shipped_front_options}},
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
-                   OtherRecipe{warm_front}},
+                   FrontRecipe{warm_front_options}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
                    "search, a network on all features trained for usable lanes",
@@ -102,20 +97,58 @@ class NearestCones : public LaneDetector {
     std::size_t nearest_;
 };
 
+/// Throws InvalidInput naming an option that the detector does not use, and those that it does.
+void require_used(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    const auto refuse = [&](const char* option) {
+        const char* const used = recipe.is_rld()          ? "nearest, rld_parameters, pairing"
+                                 : recipe.takes_weights() ? "nearest, weights"
+                                                          : "nearest";
+        throw InvalidInput(
+            option, "the detector '" + std::string(recipe.name) + "' does not use it; it takes " + used);
+    };
+    if (options.rld_parameters && !recipe.is_rld()) refuse("rld_parameters");
+    if (options.pairing && !recipe.is_rld()) refuse("pairing");
+    if (options.weights && !recipe.takes_weights()) refuse("weights");
+    if (options.nearest == std::size_t{0}) throw InvalidInput("nearest", "must be at least 1");
+}
+
+FrontWeights weights_of(const std::variant<std::filesystem::path, WeightsBytes>& source) {
+    const auto* const file = std::get_if<std::filesystem::path>(&source);
+    return file != nullptr ? read_front_weights(*file)
+                           : parse_front_weights(std::get<WeightsBytes>(source).bytes);
+}
+
 }  // namespace
 
 std::span<const DetectorRecipe> detector_recipes() {
     return kRecipes;
 }
 
+DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options) {
+    if (!recipe.is_rld()) {
+        options.rld_parameters.reset();
+        options.pairing.reset();
+    }
+    if (!recipe.takes_weights()) options.weights.reset();
+    return options;
+}
+
 std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const DetectorOptions& options) {
+    require_used(recipe, options);
     if (const auto* rld = std::get_if<RldRecipe>(&recipe.how)) {
         RldDetectorOptions made{.parameters = rld_parameters(recipe, options),
                                 .cones = cone_set(recipe, options)};
         validate(made.parameters);
         return make_rld_detector(rld->make_solver(), made);
     }
-    auto detector = std::get<OtherRecipe>(recipe.how).make();
+    std::unique_ptr<LaneDetector> detector;
+    if (const auto* front = std::get_if<FrontRecipe>(&recipe.how)) {
+        FrontOptions made = front->options();
+        if (options.weights) made.weights = weights_of(*options.weights);
+        detector = make_front_detector(made);
+    } else {
+        detector = std::get<OtherRecipe>(recipe.how).make();
+    }
     if (!options.nearest) return detector;
     return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
 }

@@ -11,11 +11,18 @@
 
 namespace conelane {
 
+struct FrontOptions;
+
 /// RLD: a solver, the cones it is shown, the costs it minimises.
 struct RldRecipe {
     std::unique_ptr<RldSolver> (*make_solver)();
     ConeSet cones;
     bool shape_costs = false;  ///< adds the costs of a lane's shape where the parameters have none
+};
+
+/// `front`, whose weights may be replaced.
+struct FrontRecipe {
+    FrontOptions (*options)();
 };
 
 /// Any other detector: what makes it.
@@ -27,16 +34,21 @@ struct OtherRecipe {
 struct DetectorRecipe {
     std::string_view name;
     std::string_view meaning;
-    std::variant<RldRecipe, OtherRecipe> how;
+    std::variant<RldRecipe, FrontRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
     [[nodiscard]] bool is_rld() const { return std::holds_alternative<RldRecipe>(how); }
+    /// Whether its weights may be replaced.
+    [[nodiscard]] bool takes_weights() const { return std::holds_alternative<FrontRecipe>(how); }
 };
 
 /// The detectors of the library.
 [[nodiscard]] std::span<const DetectorRecipe> detector_recipes();
 
-/// Throws InvalidInput where parameters are out of their range.
+/// The options without those that the detector does not use: for where several detectors get the same.
+[[nodiscard]] DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options);
+
+/// Throws InvalidInput naming the option that is out of range, not used or cannot be read.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe,
                                                           const DetectorOptions& options = {});
 

@@ -13,7 +13,7 @@ std::string_view to_string(SolveStatus status) {
         case SolveStatus::infeasible:
             return "infeasible";
         case SolveStatus::stopped:
-            return "time_limit";
+            return "stopped";
         case SolveStatus::error:
             break;
     }

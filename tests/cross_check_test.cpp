@@ -103,7 +103,7 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
         {"a bound that is no number", [](RldReport& r, const Scene&, double) { r.bound = std::nan(""); }},
         {"infeasible with a lane graph",
          [](RldReport& r, const Scene&, double) { r.status = SolveStatus::infeasible; }},
-        {"time_limit with a lane graph",
+        {"stopped with a lane graph",
          [](RldReport& r, const Scene&, double) { r.status = SolveStatus::stopped; }},
         {"optimal without a lane graph", [](RldReport& r, const Scene&, double) { r.lane_graph.reset(); }},
         {"error, out of paper",
@@ -118,7 +118,7 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
              r.status = SolveStatus::infeasible;
          }},
         // A bound without a lane graph, which nothing contradicts but the other's answer.
-        {"wrong within 1000 ms: time_limit, bound -3.9; but right within",
+        {"wrong within 1000 ms: stopped, bound -3.9; but right within",
          [](RldReport& r, const Scene&, double) {
              r = {};
              r.status = SolveStatus::stopped;

@@ -6,9 +6,9 @@
 
 namespace conelane {
 
-/// For GoogleTest, which would print the bytes. Files call `stopped` by its most frequent reason.
+/// For GoogleTest, which would print the bytes.
 inline void PrintTo(SolveStatus status, std::ostream* out) {
-    *out << (status == SolveStatus::stopped ? "stopped" : to_string(status));
+    *out << to_string(status);
 }
 inline void PrintTo(StopReason reason, std::ostream* out) {
     *out << to_string(reason);

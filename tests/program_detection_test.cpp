@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -46,6 +47,54 @@ TEST_F(Program, LanesDoNotDependOnThreads) {
     };
     EXPECT_EQ(lanes("clc", "1"), lanes("clc", "3"));
     EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
+}
+
+/// What a method does not use is refused before the work, and nothing is written.
+TEST_F(Program, OptionsThatAMethodDoesNotUseAreRefused) {
+    make_scenes("--fp 0");
+    const auto refuse = [&](const std::string& method, const std::string& options, const std::string& why) {
+        const std::string out = " --scenes s.scenes.jsonl --out l.lanes.jsonl";
+        expect_refused("detect --method " + method + " " + options + out,
+                       {options.substr(0, options.find(' ')), why});
+        EXPECT_FALSE(std::filesystem::exists(path("l.lanes.jsonl")));
+    };
+    refuse("front", "--params shape", "'front' has no RLD parameters");
+    refuse("clc", "--pairing paper", "'clc' has no RLD parameters");
+    refuse("exec:mine=cat", "--params shape", "the program 'mine' has no RLD parameters");
+    refuse("front", "--nearest 0", "0");
+    refuse("clc", "--weights s.scenes.jsonl", "'clc' does not take them");
+    refuse("exec:mine=cat", "--weights s.scenes.jsonl", "the program 'mine' does not take them");
+    expect_refused("compare --tracks generated:circle --methods front,clc --params shape --out results",
+                   {"--params", "these methods have no RLD parameters"});
+    EXPECT_FALSE(std::filesystem::exists(path("results")));
+    EXPECT_EQ(run("compare --tracks generated:circle --methods clc,rld-pair --fp 0 --range 30 --every 60 "
+                  "--condition paper --params shape --out results")
+                  .exit_code,
+              0)
+        << "one of the methods has RLD parameters";
+}
+
+TEST_F(Program, DetectsByWeightsOfOnesOwn) {
+    make_scenes("--fp 0");
+    const std::string shipped = CONELANE_SOURCE_DIR "/graph_search/weights/front.json";
+    const auto lanes = [&](const std::string& options) {
+        const std::string out = " --time-limit inf --scenes s.scenes.jsonl --out l.lanes.jsonl";
+        EXPECT_EQ(run("detect --method front " + options + out).exit_code, 0);
+        std::vector<LaneAnswer> answers;
+        for (const LaneRecord& record : read_lanes(path("l.lanes.jsonl"))) answers.push_back(record.answer);
+        return answers;
+    };
+    const std::vector<LaneAnswer> by_default = lanes("");
+    const std::vector<LaneAnswer> by_file = lanes("--weights " + shipped);
+    ASSERT_EQ(by_file.size(), by_default.size());
+    for (std::size_t i = 0; i < by_file.size(); ++i) {
+        EXPECT_EQ(by_file[i].lane, by_default[i].lane);
+        EXPECT_EQ(by_file[i].confidence, by_default[i].confidence);
+    }
+    file_with(text_of(shipped).substr(0, 9000), "cut.json");
+    expect_refused("detect --method front --weights cut.json --scenes s.scenes.jsonl --out x.lanes.jsonl",
+                   {"cut.json", "the file ends in the middle"});
+    EXPECT_FALSE(std::filesystem::exists(path("x.lanes.jsonl")));
 }
 
 /// 132 cones of which most edges are possible keep an exact search busy for hours.

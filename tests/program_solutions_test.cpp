@@ -157,7 +157,7 @@ TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
         0);
     const std::string solutions = text_of(path("c.solutions.jsonl"));
     const nlohmann::json record = nlohmann::json::parse(solutions);
-    EXPECT_EQ(record["status"], "time_limit");
+    EXPECT_EQ(record["status"], "stopped");
     EXPECT_EQ(record["stopped_by"], "time");
     const Outcome outcome = check(solutions);
     EXPECT_EQ(outcome.exit_code, 0);

@@ -15,6 +15,7 @@ namespace conelane::experiments {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::Pair;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -141,7 +142,7 @@ TEST_F(SolutionFileTest, RoundTrip) {
                                  0,   0.41,  2.9,     {},        {}};
     const SolutionRecord failed{"b",        "cbc", "tight", "error", "no licence", {}, {},
                                 -kInfinity, {},    0.5,     0.0,     {},           {}};
-    const SolutionRecord stopped{"c", "cbc", "tight", "time_limit",     "", {}, {}, {},
+    const SolutionRecord stopped{"c", "cbc", "tight", "stopped",        "", {}, {}, {},
                                  {},  0.5,   0.0,     StopReason::time, 12U};
     write_solutions(path("s"), std::vector{optimal, failed, stopped});
     EXPECT_EQ(
@@ -152,7 +153,7 @@ TEST_F(SolutionFileTest, RoundTrip) {
         R"({"scene":"b","solver":"cbc","formulation":"tight","status":"error","edges":[],)"
         R"("build_ms":0.5,"solve_ms":0.0,"message":"no licence"})"
         "\n"
-        R"({"scene":"c","solver":"cbc","formulation":"tight","status":"time_limit","edges":[],)"
+        R"({"scene":"c","solver":"cbc","formulation":"tight","status":"stopped","edges":[],)"
         R"("build_ms":0.5,"solve_ms":0.0,"stopped_by":"time","nearest":12})"
         "\n");
     const std::vector<SolutionRecord> read = read_solutions(path("s"));
@@ -175,9 +176,22 @@ TEST_F(SolutionFileTest, RoundTrip) {
     EXPECT_EQ(read[2].nearest, 12U);
 }
 
+/// Up to version 0.5 the word was that of the most frequent limit, also where it was the memory.
+TEST_F(SolutionFileTest, ReadsTheOldNameOfAStop) {
+    std::string by_memory = solution("time_limit", "[]");
+    by_memory.replace(by_memory.find("\"tight\""), 7, "\"paper\", \"stopped_by\": \"memory\"");
+    const std::vector<SolutionRecord> read =
+        read_solutions(file_with(solution("time_limit", "[]") + by_memory, "s"));
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_EQ(read[0].status, "stopped");
+    EXPECT_FALSE(read[0].stopped_by.has_value());
+    EXPECT_EQ(read[1].status, "stopped");
+    EXPECT_EQ(read[1].stopped_by, StopReason::memory);
+}
+
 TEST_F(SolutionFileTest, NamesBadRecords) {
     EXPECT_EQ(error_in(solution("solved", "[]")),
-              "s:1: status: must be one of optimal, feasible, infeasible, time_limit, error");
+              "s:1: status: must be one of optimal, feasible, infeasible, stopped, error");
     EXPECT_EQ(error_in(solution("optimal", "[[1, 2], [1]]")), "s:1: edges[1]: must be a pair of cone ids");
     EXPECT_EQ(error_in(solution("optimal", "[[1, 2.5]]")), "s:1: edges[0][1]: must be an integer of 64 bits");
     EXPECT_EQ(error_in(solution("infeasible", "[[1, 2]]")),
@@ -251,6 +265,10 @@ TEST_F(ParameterFileTest, NamesBadParameters) {
     };
     EXPECT_EQ(error_with("\"d_t\"", "\"other\""), "p: d_t: is missing");
     EXPECT_EQ(error_with("\"near_far\"", "\"far\""), "p: pairing: must be one of near_far, paper");
+    EXPECT_EQ(error_with("{", "{\"w_bb\": 1,"), "p: w_bb: is no key here; w_b is");
+    EXPECT_EQ(error_with("{", "{\"Use_Confidence\": 1,"),
+              "p: Use_Confidence: is no key here; use_confidence is");
+    EXPECT_THAT(error_with("{", "{\"wings\": 1,"), HasSubstr("p: wings: is no key here, only d_e, d_t, "));
     EXPECT_EQ(error_with("1.7", "\"1.7\""), "p: d_t: must be a number");
     EXPECT_EQ(error_with("1.7", "NaN"), "p:3: d_t: must be a finite number");
     EXPECT_EQ(error_with("1.7", "-1"), "p: d_t: must be in [0.001000, 1000.000000] m");

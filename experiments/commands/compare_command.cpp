@@ -5,6 +5,7 @@
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <exception>
 #include <filesystem>
@@ -78,6 +79,10 @@ void compare_and_print(Options& options) {
         for (const std::string& name : generated_track_names())
             comparison.tracks.push_back("generated:" + name);
     }
+    const bool any_rld = std::ranges::any_of(comparison.entrants, [](const Entrant& entrant) {
+        return !entrant.outside && find_method(entrant.method).is_rld();
+    });
+    if (!any_rld) options.parameters.require_not_given("these methods have");
     options.parameters.apply_to(comparison.run.method);
     comparison.scenes.threads = comparison.run.threads;
     fmt::print("{}\n", compare(comparison, options.directory));

@@ -2,6 +2,8 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/file_text.hpp"
+#include "experiments/files/front_weights_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
@@ -29,6 +31,7 @@ struct Options {
     std::string method;
     std::string scenes;
     std::string out;
+    std::string weights;  ///< empty: the shipped ones
     ParameterSource parameters;
     RunOptions run;
 };
@@ -59,12 +62,20 @@ struct Answering {
 };
 Answering method_of(const Options& options) {
     const auto outside = parse_outside_method(options.method);
+    const auto refuse_weights = [&options](const std::string& who) {
+        if (options.weights.empty()) return;
+        throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
+    };
     if (!outside) {
         const Method& method = find_method(options.method);
+        if (!method.is_rld()) options.parameters.require_not_given("'" + options.method + "' has");
+        if (!method.takes_weights()) refuse_weights("'" + options.method + "'");
         return {std::string(method.name), maker_of(method, options.run)};
     }
     if (!outside->is_program())
         throw InvalidInput("--method", "'" + options.method + "' holds lanes already, none can be detected");
+    options.parameters.require_not_given("the program '" + outside->name + "' has");
+    refuse_weights("the program '" + outside->name + "'");
     return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
 }
 
@@ -98,6 +109,11 @@ void detect_streamed(const Answering& method, const Options& options) {
 
 void detect(Options& options) {
     options.parameters.apply_to(options.run.method);
+    if (!options.weights.empty()) {
+        // Read once, and before the work: what is wrong with them is said at once.
+        options.run.method.weights = WeightsBytes{text_of(options.weights)};
+        (void)parsed_file(options.weights, [](const std::string& text) { return parse_front_weights(text); });
+    }
     const Answering method = method_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
         detect_streamed(method, options);
@@ -147,6 +163,8 @@ void add_detect_command(CLI::App& program) {
     add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
     add_parameter_options(command, options->parameters, "the defaults");
+    command.add_option("--weights", options->weights,
+                       "of front and front-warm: a file that `conelane train front` wrote");
     command.callback([options] { detect(*options); });
 }
 

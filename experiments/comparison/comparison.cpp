@@ -28,7 +28,10 @@ constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 MethodMaker maker_of(const Entrant& entrant, const RunOptions& options) {
     if (entrant.maker) return entrant.maker(options);
     if (entrant.outside) return maker_of_program(entrant.method, entrant.outside->source, options);
-    return maker_of(find_method(entrant.method), options);
+    const Method& method = find_method(entrant.method);
+    RunOptions used = options;
+    used.method = options_used_by(method, options.method);
+    return maker_of(method, used);
 }
 
 /// Runs an entrant on the scenes that its lanes file does not answer yet.

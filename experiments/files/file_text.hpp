@@ -25,7 +25,7 @@ auto parsed_file(const std::filesystem::path& file, const Parse& parse) {
     try {
         return parse(text_of(file));
     } catch (const InvalidInput& error) {
-        throw InputError(file, 0, error.key(), error.what());
+        throw InputError(file, 0, "", error.what());
     }
 }
 

@@ -1,8 +1,11 @@
 #include "experiments/files/method_parameter_file.hpp"
 
 #include "experiments/files/json_node.hpp"
+#include "experiments/files/known_keys.hpp"
 
 #include <span>
+#include <string_view>
+#include <vector>
 
 namespace conelane::experiments {
 namespace {
@@ -11,10 +14,13 @@ template <typename Parameters>
 Parameters parse(std::string_view text, const std::filesystem::path& file,
                  std::span<const ParameterField<Parameters>> fields) {
     Parameters parameters;
+    std::vector<std::string_view> keys;
     with_json_text(text, file, [&](const JsonNode& json) {
         for (const ParameterField<Parameters>& field : fields) {
             parameters.*field.value = json.member(field.key).number_in(field.lowest, field.highest);
+            keys.push_back(field.key);
         }
+        require_known_keys(json, keys);
     });
     return parameters;
 }

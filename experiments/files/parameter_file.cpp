@@ -2,10 +2,13 @@
 
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
+#include "experiments/files/known_keys.hpp"
 
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace conelane::experiments {
 namespace {
@@ -19,9 +22,19 @@ bool is_on(const JsonNode& flag) {
     return value == 1;
 }
 
+std::vector<std::string_view> all_keys() {
+    std::vector<std::string_view> keys;
+    for (const auto fields : {rld_parameter_fields(), rld_extra_fields()}) {
+        for (const RldParameterField& field : fields) keys.push_back(field.key);
+    }
+    keys.insert(keys.end(), {"pairing", "use_confidence", "forbid_crossing"});
+    return keys;
+}
+
 }  // namespace
 
 RldParameters rld_parameters_of(const JsonNode& json) {
+    static const std::vector<std::string_view> kKeys = all_keys();
     RldParameters parameters;
     for (const RldParameterField& field : rld_parameter_fields()) {
         parameters.*field.value = json.member(field.key).number();
@@ -32,6 +45,7 @@ RldParameters rld_parameters_of(const JsonNode& json) {
     }
     if (const auto flag = json.find("use_confidence")) parameters.use_confidence = is_on(*flag);
     if (const auto flag = json.find("forbid_crossing")) parameters.forbid_crossing = is_on(*flag);
+    require_known_keys(json, kKeys);
     json.require_valid([&] { validate(parameters); });
     return parameters;
 }

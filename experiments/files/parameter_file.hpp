@@ -10,7 +10,7 @@ namespace conelane::experiments {
 /// RLD parameters from a flat JSON object. Every numeric key of the paper is required; `pairing` is near_far
 /// where absent, the extras `use_confidence` and `forbid_crossing` (0 or 1) are off and those of
 /// rld_extra_fields() have their defaults.
-/// Throws InputError naming file and key, and the line of what is no JSON.
+/// Throws InputError naming file and key, also one that is no parameter, and the line of what is no JSON.
 [[nodiscard]] RldParameters read_rld_parameters(const std::filesystem::path& file);
 
 /// The same from a text; errors name `file`.

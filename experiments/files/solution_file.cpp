@@ -13,8 +13,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 5> kStatuses{"optimal", "feasible", "infeasible", "time_limit",
-                                                    "error"};
+constexpr std::array<std::string_view, 5> kStatuses{"optimal", "feasible", "infeasible", "stopped", "error"};
+/// How files of version 0.5 and before spell "stopped", whatever the limit was.
+constexpr std::string_view kStopped = kStatuses[3];
+constexpr std::string_view kOldStopped = "time_limit";
 constexpr std::array kStopReasons{StopReason::time, StopReason::iterations, StopReason::memory};
 
 std::vector<std::pair<ConeId, ConeId>> read_edges(const JsonNode& json) {
@@ -35,7 +37,8 @@ SolutionRecord read_record(const JsonNode& json) {
     record.scene = json.member("scene").string();
     record.solver = json.member("solver").string();
     record.formulation = json.member("formulation").string();
-    record.status = kStatuses[json.member("status").index_in(kStatuses)];
+    const JsonNode status = json.member("status");
+    record.status = status.string() == kOldStopped ? kStopped : kStatuses[status.index_in(kStatuses)];
     record.edges = read_edges(json.member("edges"));
     if (!record.edges.empty() && record.status != "optimal" && record.status != "feasible") {
         json.member("edges").fail("must be empty where status is " + record.status);

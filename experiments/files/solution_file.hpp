@@ -20,7 +20,7 @@ struct SolutionRecord {
     std::string scene;
     std::string solver;
     std::string formulation;
-    std::string status;   ///< optimal, feasible, infeasible, time_limit or error
+    std::string status;   ///< optimal, feasible, infeasible, stopped or error
     std::string message;  ///< where status is error
     std::vector<std::pair<ConeId, ConeId>> edges;
     std::optional<double> objective;

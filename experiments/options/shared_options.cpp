@@ -1,5 +1,6 @@
 #include "experiments/options/shared_options.hpp"
 
+#include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
@@ -190,6 +191,12 @@ void ParameterSource::apply_to(DetectorOptions& options) const {
         options.rld_parameters = shipped ? *shipped : read_rld_parameters(name);
     }
     if (!pairing.empty()) options.pairing = pairing == "paper" ? Pairing::paper : Pairing::near_far;
+}
+
+void ParameterSource::require_not_given(const std::string& who) const {
+    if (name.empty() && pairing.empty()) return;
+    throw InvalidInput(name.empty() ? "--pairing" : "--params",
+                       fmt::format("{} no RLD parameters: only the methods rld-... take them", who));
 }
 
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without) {

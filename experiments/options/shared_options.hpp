@@ -27,6 +27,8 @@ struct ParameterSource {
     [[nodiscard]] RldParameters load() const;
     /// Tells methods what was asked for; they have parameters of their own.
     void apply_to(DetectorOptions& options) const;
+    /// Throws InvalidInput naming the option that was given although `who` has no RLD parameters.
+    void require_not_given(const std::string& who) const;
 };
 /// `without` says what holds where --params is not given.
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);

@@ -1,6 +1,6 @@
 # cmake -D FOLDER=DIR -D ARCHIVE=FILE -D OUTPUT=FILE -P embed.cmake: the report's Python package as a zip archive, and
 # that as bytes in a C++ source. The same sources give the same bytes.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 
 get_filename_component(package ${FOLDER} NAME)
 get_filename_component(parent ${FOLDER} DIRECTORY)

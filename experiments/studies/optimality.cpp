@@ -31,6 +31,11 @@
 namespace conelane::experiments {
 namespace {
 
+/// The parameters are of the objective that lanes are measured by; most methods know none.
+std::unique_ptr<LaneDetector> made(const Method& method, const OptimalityOptions& options) {
+    return make_detector(method, options_used_by(method, {options.parameters, {}, options.nearest}));
+}
+
 /// One lap with the state that a method carries along it.
 class Lap {
   public:
@@ -38,7 +43,7 @@ class Lap {
         : tracks_(tracks),
           options_(options),
           solver_(find_rld_solver("path-pair")->make(Formulation::tight)),
-          detector_(make_detector(find_method(options.method), {options.parameters, {}, options.nearest})) {}
+          detector_(made(find_method(options.method), options)) {}
 
     OptimalityRow drive(const AnnotatedScene& annotated) {
         const Scene cones =

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include <pybind11/stl.h>
 
@@ -21,6 +23,18 @@ namespace {
 const DetectorRecipe* find_recipe(const std::string& name) {
     const auto recipe = std::ranges::find(detector_recipes(), name, &DetectorRecipe::name);
     return recipe == detector_recipes().end() ? nullptr : &*recipe;
+}
+
+/// str or os.PathLike: a file; bytes: its content.
+std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) {
+    if (py::isinstance<py::bytes>(object)) return WeightsBytes{object.cast<std::string>()};
+    PyObject* const path = PyOS_FSPath(object.ptr());
+    if (path == nullptr) {
+        PyErr_Clear();
+        throw InvalidInput("weights", "is neither the path nor the bytes of a file");
+    }
+    const auto text = py::reinterpret_steal<py::object>(path);
+    return std::filesystem::path(text.cast<std::string>());
 }
 
 /// The options of a detector; `recipe` is nullptr where there is no such detector, which make_detector says.
@@ -35,13 +49,20 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
             options.rld_parameters = rld_parameters(value);
         } else if (key == "pairing") {
             options.pairing = pairing_of(std::string(py::str(value)));
+        } else if (key == "weights") {
+            options.weights = weights_of(value);
         } else {
-            throw InvalidInput("options",
-                               "there is no option '" + key + "', only nearest, parameters, pairing");
+            throw InvalidInput(
+                "options", "there is no option '" + key + "', only nearest, parameters, pairing, weights");
         }
-        if (key != "nearest" && recipe != nullptr && !recipe->is_rld())
-            throw InvalidInput(key,
-                               "is of the detectors rld-..., '" + std::string(recipe->name) + "' has none");
+        if (recipe == nullptr || key == "nearest") continue;
+        const std::string name(recipe->name);
+        if (key == "weights") {
+            if (!recipe->takes_weights())
+                throw InvalidInput(key, "is of the detectors front and front-warm, '" + name + "' has none");
+        } else if (!recipe->is_rld()) {
+            throw InvalidInput(key, "is of the detectors rld-..., '" + name + "' has none");
+        }
     }
     return options;
 }
@@ -112,11 +133,15 @@ parameters : str or dict, optional
     `rld_parameters`.
 pairing : str, optional
     Of the detectors `rld-...`: "near_far" or "paper".
+weights : str, os.PathLike or bytes, optional
+    Of the detectors `front` and `front-warm`: weights of your own instead of the shipped ones. The path of a file
+    that ``conelane train front --out FILE`` wrote, or its content as bytes.
 
 Raises
 ------
 ValueError
-    For an unknown name or option, listing the known ones, and for values out of range.
+    For an unknown name or option, listing the known ones, for an option that the detector does not use, for
+    values out of range, and for weights that cannot be read.
 
 Notes
 -----

@@ -94,8 +94,15 @@ void add_solution(py::module_& module) {
     py::class_<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
         .def_property_readonly(
             "status", [](const SolutionObject& s) { return to_string(s.report.status); },
-            R"(str: "optimal", "feasible" (a limit came before the proof), "infeasible" (by proof), "time_limit" (a limit
+            R"(str: "optimal", "feasible" (a limit came before the proof), "infeasible" (by proof), "stopped" (a limit
 came before any lane graph) or "error")")
+        .def_property_readonly(
+            "stopped_by",
+            [](const SolutionObject& s) -> std::optional<std::string_view> {
+                if (!s.report.stopped_by) return std::nullopt;
+                return to_string(*s.report.stopped_by);
+            },
+            R"(str or None: the limit that ended the search: "time", "memory" or "iterations")")
         .def_property_readonly("edges", edges,
                                "(K, 2) ndarray of int64: the lane graph, as indices into the cones")
         .def_property_readonly(
@@ -118,7 +125,9 @@ came before any lane graph) or "error")")
             [](const SolutionObject& s) { return array(indices_of(s.lane.right, s.cones, "right")); },
             "(R,) ndarray of int64: right boundary")
         .def("__repr__", [](const SolutionObject& s) {
-            return fmt::format("<conelane.RldSolution {}>", to_string(s.report.status));
+            const std::string reason =
+                s.report.stopped_by ? fmt::format(", stopped by {}", to_string(*s.report.stopped_by)) : "";
+            return fmt::format("<conelane.RldSolution {}{}>", to_string(s.report.status), reason);
         });
 }
 

@@ -134,6 +134,7 @@ class Detector:
         nearest: Optional[int] = None,
         parameters: Optional[_Parameters] = None,
         pairing: Optional[str] = None,
+        weights: Optional[Union[_Path, bytes]] = None,
     ) -> None: ...
     def detect(
         self,
@@ -154,6 +155,8 @@ class Detector:
 class RldSolution:
     @property
     def status(self) -> str: ...
+    @property
+    def stopped_by(self) -> Optional[str]: ...
     @property
     def edges(self) -> NDArray[int64]: ...
     @property

@@ -15,7 +15,7 @@ int main() {
         for (const auto id : answer.lane.left) std::cout << id << ' ';
         std::cout << '|';
         for (const auto id : answer.lane.right) std::cout << ' ' << id;
-        const conelane::DrivableLane lane = conelane::drivable(answer.lane, scene);
+        const conelane::DrivableLane lane = conelane::drivable(answer, scene);
         bool straight = !lane.points.empty();
         for (const auto& point : lane.points) straight = straight && std::abs(point.position.y()) < 1e-6;
         std::cout << (straight ? " straight\n" : " crooked\n");

@@ -1,5 +1,5 @@
 # cmake -D PREFIX=DIR -D SOURCES=DIR -P relocatable.cmake: checks an installed package.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 
 file(GLOB_RECURSE package ${PREFIX}/lib*/*/conelane*.cmake ${PREFIX}/lib*/conelane*.cmake)
 if(NOT package)

@@ -36,6 +36,26 @@ foreach(way IN ITEMS "fetch;${CONELANE_GCC}" "subdirectory;${CONELANE_CLANG}")
                   ${without_pkg_config})
 endforeach()
 
+# The core of a project that stands alone, where no library but Eigen can be found: the Python package is skipped, and
+# CMake says why. `-D CONELANE_PYTHON=ON` asks for what is missing.
+set(without_libraries "")
+foreach(library IN ITEMS Boost nlohmann_json yaml-cpp fmt TBB CLI11 ZLIB GTest PkgConfig Threads)
+    list(APPEND without_libraries -D CMAKE_DISABLE_FIND_PACKAGE_${library}=ON)
+endforeach()
+set(core_alone ${CMAKE_COMMAND} -S ${PROJECT_SOURCE_DIR} -G ${CMAKE_GENERATOR} -D CMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
+               -D CONELANE_BUILD_EXPERIMENTS=OFF -D BUILD_TESTING=OFF ${without_libraries})
+add_test(NAME consumer.core_needs_eigen_alone COMMAND ${core_alone} -B ${consumer}/core_alone)
+set_tests_properties(consumer.core_needs_eigen_alone PROPERTIES FIXTURES_REQUIRED consumer_clean
+                     PASS_REGULAR_EXPRESSION "Python package is skipped.*Build files have been written"
+                     FAIL_REGULAR_EXPRESSION "CMake Error")
+# The package is asked for where Python's own needs are there, so Boost is what is missing first.
+if(conelane_python)
+    add_test(NAME consumer.python_names_what_it_needs
+             COMMAND ${core_alone} -B ${consumer}/python_alone -D CONELANE_PYTHON=ON)
+    set_tests_properties(consumer.python_names_what_it_needs PROPERTIES FIXTURES_REQUIRED consumer_clean
+                         PASS_REGULAR_EXPRESSION "Boost")
+endif()
+
 add_test(NAME consumer.install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${consumer}/prefix)
 set_tests_properties(consumer.install PROPERTIES FIXTURES_REQUIRED consumer_clean FIXTURES_SETUP consumer_prefix)
 consumer_test(components ${CMAKE_CXX_COMPILER} consumer_prefix -D conelane_ROOT=${consumer}/prefix

@@ -1,8 +1,10 @@
 """What a detector of the package takes, answers and refuses."""
+import json
 import sys
 import threading
 import time
 import unittest
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +13,8 @@ import conelane
 # A straight lane, 3 m wide, along +x: right cones have even indices.
 STRAIGHT = np.array([[x, y] for x in (2.0, 6.0, 10.0, 14.0) for y in (-1.5, 1.5)])
 ORIGIN = (0.0, 0.0, 0.0)
+# A file as `conelane train front` writes it.
+WEIGHTS = Path(__file__).parents[2] / "graph_search" / "weights" / "front.json"
 
 
 class Answers(unittest.TestCase):
@@ -100,6 +104,22 @@ class Answers(unittest.TestCase):
         np.testing.assert_array_equal(lane.cones, STRAIGHT)
 
 
+class OwnWeights(unittest.TestCase):
+    def test_the_shipped_file_by_path_and_by_bytes_is_the_shipped_detector(self):
+        shipped = conelane.Detector("front").detect(STRAIGHT, ORIGIN)
+        for weights in (WEIGHTS, str(WEIGHTS), WEIGHTS.read_bytes()):
+            lane = conelane.Detector("front", weights=weights).detect(STRAIGHT, ORIGIN)
+            self.assertEqual((lane.left.tolist(), lane.confidence, lane.trusted_m),
+                             (shipped.left.tolist(), shipped.confidence, shipped.trusted_m))
+
+    def test_other_weights_answer_otherwise(self):
+        own = json.loads(WEIGHTS.read_text())
+        own["usable_output_bias"] = [own["usable_output_bias"][0] - 3.0]
+        lanes = [conelane.Detector("front-warm", weights=weights).detect(STRAIGHT, ORIGIN)
+                 for weights in (WEIGHTS, json.dumps(own).encode())]
+        self.assertLess(lanes[1].confidence, lanes[0].confidence - 1e-3)
+
+
 class Refusals(unittest.TestCase):
     def check(self, message, cones=STRAIGHT, pose=ORIGIN, **more):
         with self.assertRaises(ValueError) as raised:
@@ -139,7 +159,7 @@ class Refusals(unittest.TestCase):
     def test_names_and_options(self):
         for message, call in (
             ("there is no detector 'fron', only " + ", ".join(conelane.methods()), lambda: conelane.Detector("fron")),
-            ("there is no option 'closest', only nearest, parameters, pairing",
+            ("there is no option 'closest', only nearest, parameters, pairing, weights",
              lambda: conelane.Detector("front", closest=3)),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=0)),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=2.5)),
@@ -149,6 +169,13 @@ class Refusals(unittest.TestCase):
             ("pairing: 'far' is none of near_far, paper", lambda: conelane.Detector("rld-pair", pairing="far")),
             ("parameters: is of the detectors rld-..., 'clc' has none",
              lambda: conelane.Detector("clc", parameters="context")),
+            ("weights: is of the detectors front and front-warm, 'clc' has none",
+             lambda: conelane.Detector("clc", weights=WEIGHTS)),
+            ("weights: is neither the path nor the bytes of a file", lambda: conelane.Detector("front", weights=3)),
+            ("weights: nowhere.json: cannot be read", lambda: conelane.Detector("front", weights="nowhere.json")),
+            ("weights: line 1: must be a JSON object", lambda: conelane.Detector("front", weights=b"[]")),
+            ("weights: line 18: the file ends in the middle",
+             lambda: conelane.Detector("front", weights=WEIGHTS.read_bytes()[:5000])),
             ("step_m", lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(step_m=0.0)),
         ):
             with self.subTest(message), self.assertRaises(ValueError) as raised:

@@ -187,7 +187,10 @@ class Rld(unittest.TestCase):
         none = conelane.solve_rld(CONES[:3], (0, 0, 0))
         self.assertEqual((none.status, none.edges.shape, none.objective, len(none.left)),
                          ("infeasible", (0, 2), None, 0))
-        self.assertEqual(conelane.solve_rld(CONES, (0, 0, 0), time_limit_ms=0).status, "time_limit")
+        self.assertIsNone(none.stopped_by)
+        stopped = conelane.solve_rld(CONES, (0, 0, 0), time_limit_ms=0)
+        self.assertEqual((stopped.status, stopped.stopped_by), ("stopped", "time"))
+        self.assertEqual(repr(stopped), "<conelane.RldSolution stopped, stopped by time>")
 
     def test_parameters(self):
         heavy = conelane.solve_rld(CONES, (0, 0, 0), parameters={"w_b": 2.0})

@@ -1,6 +1,6 @@
 # cmake -D PROGRAM=conelane -D BENCHMARKS=conelane_benchmarks -D RESULTS=DIR -P make_results.cmake: a small comparison,
 # a sweep, what is measured of exactness, and their page. BENCHMARKS may be empty.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 
 file(REMOVE_RECURSE ${RESULTS})
 function(conelane)

@@ -6,7 +6,7 @@
 #   or in a header below a folder `detail`, which is private to its library.
 # - x.cpp includes x.hpp first, so compiling it shows that the header includes what it needs.
 # - Headers guard themselves by #pragma once.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/sources.cmake)
 
 set(model_depends_on model)

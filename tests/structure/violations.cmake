@@ -1,5 +1,5 @@
 # cmake -D SCRATCH=DIR -P violations.cmake: the other checks let pass what is right and find what is not.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 
 if(NOT SCRATCH)
     message(FATAL_ERROR "-D SCRATCH=DIR is missing: the folder is emptied and written to")

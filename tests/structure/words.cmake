@@ -1,6 +1,6 @@
 # cmake -D ROOT=DIR -P words.cmake: no file below ROOT, but those that git ignores, names a path of one machine or
 # leaves work open. The brackets keep the patterns from finding themselves.
-cmake_minimum_required(VERSION 3.25)
+cmake_minimum_required(VERSION 3.22...3.25)
 
 set(machine_path "(^|[^A-Za-z0-9_.}-])/(work|home|root|tmp|farm|Users)/[A-Za-z]")
 set(open_work "TO[D]O|FIX[M]E")

@@ -6,9 +6,12 @@
 #include "conelane/scene.hpp"
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 /// The one call: scene in, lane out.
@@ -16,7 +19,7 @@
 ///     auto detector = conelane::make_detector("clc");
 ///     conelane::LaneAnswer answer = detector->detect(scene, {.time_limit_ms = 20.0});
 ///     if (answer.status == conelane::LaneStatus::found) {
-///         conelane::DrivableLane lane = conelane::drivable(answer.lane, scene);
+///         conelane::DrivableLane lane = conelane::drivable(answer, scene);
 ///     }
 namespace conelane {
 
@@ -29,16 +32,29 @@ struct DetectorInfo {
 /// All of them, the one to drive by first.
 [[nodiscard]] std::vector<DetectorInfo> detectors();
 
-/// What may be set of a detector; what is absent is as the detector of that name has it.
-struct DetectorOptions {
-    std::optional<RldParameters> rld_parameters;  ///< of a detector that optimises the RLD objective
-    std::optional<Pairing> pairing;               ///< instead of the parameters'
-    std::optional<std::size_t> nearest;           ///< answers for so many cones, the nearest ahead
+/// The content of a file of weights, where it is at hand and the file is not.
+struct WeightsBytes {
+    std::string bytes;
 };
 
-/// The detector of that name, with its tuned parameters and trained weights: what tables show under it.
-/// Throws InvalidInput, listing the names, where there is none of that name, and where options are out of
-/// range. Detectors are independent of each other; each serves one thread.
+/// What may be set of a detector. What is absent is as the detector of that name has it. An option that the
+/// detector does not use is an error.
+struct DetectorOptions {
+    std::optional<RldParameters> rld_parameters = {};  ///< rld-...: the parameters of the objective
+    std::optional<Pairing> pairing = {};               ///< rld-...: instead of the parameters'
+    /// All detectors: they answer for so many cones, the nearest ahead. At least 1.
+    std::optional<std::size_t> nearest = {};
+    /// front and front-warm: weights of your own instead of the shipped ones. The path of a file that
+    /// `conelane train front --out FILE` wrote, or its content.
+    std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
+};
+
+/// The detector of that name. Without options it is what tables show under the name: a learned detector has
+/// its trained weights, `delaunay-beam` and `astar-lane` have tuned parameters, `rld-...` has the defaults of
+/// RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
+/// Throws InvalidInput, listing the names, where there is none of that name; and naming the option where one
+/// is out of range, is not used by the detector, or weights cannot be read. Detectors are independent of each
+/// other; each serves one thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

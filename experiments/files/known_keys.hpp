@@ -1,0 +1,19 @@
+#pragma once
+
+#include "experiments/files/json_node.hpp"
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace conelane::experiments {
+
+/// The name that a misspelt one most likely means: two letters wrong, missing, too many or in the wrong case
+/// at most. Empty where none is that near.
+[[nodiscard]] std::string_view closest_name(std::string_view misspelt,
+                                            std::span<const std::string_view> names);
+
+/// Throws InputError naming the first key of the object that is none of these, and the one that is meant.
+void require_known_keys(const JsonNode& object, std::span<const std::string_view> keys);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "graph_search/front/front_weights.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+namespace conelane {
+
+/// The weights of `front` from the bytes of a file that `conelane train front --out FILE` wrote: a JSON
+/// object with `version` 1, `features`, the names of the inputs as the library has them, and the numbers of
+/// the networks, such as `extend_hidden`. Throws InvalidInput naming the key, or the line of what is no JSON.
+[[nodiscard]] FrontWeights parse_front_weights(std::string_view json);
+
+/// The same from a file. Throws InvalidInput naming the file too, also where it cannot be read.
+[[nodiscard]] FrontWeights read_front_weights(const std::filesystem::path& file);
+
+}  // namespace conelane

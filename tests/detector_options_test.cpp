@@ -1,0 +1,152 @@
+// What make_detector takes beside a name: options that a detector does not use are refused, weights of one's
+// own are read from a file or from its bytes.
+
+#include "conelane/detectors.hpp"
+#include "conelane/invalid_input.hpp"
+#include "tests/file_test.hpp"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// What is said of the call; empty where it is taken.
+std::string refusal(std::string_view detector, const DetectorOptions& options) {
+    try {
+        (void)make_detector(detector, options);
+    } catch (const InvalidInput& error) {
+        return error.what();
+    }
+    return {};
+}
+
+bool starts_with_rld(std::string_view name) {
+    return name.starts_with("rld-");
+}
+
+TEST(DetectorOptions, ThatADetectorDoesNotUseAreRefused) {
+    for (const DetectorInfo& info : detectors()) {
+        SCOPED_TRACE(info.name);
+        const std::string name(info.name);
+        const std::string by_rld =
+            starts_with_rld(name) ? "" : "the detector '" + name + "' does not use it; it takes nearest";
+        const std::string for_parameters = refusal(name, {.rld_parameters = RldParameters{}});
+        const std::string for_pairing = refusal(name, {.pairing = Pairing::paper});
+        if (starts_with_rld(name)) {
+            EXPECT_EQ(for_parameters, "");
+            EXPECT_EQ(for_pairing, "");
+        } else {
+            EXPECT_THAT(for_parameters, StartsWith("rld_parameters: " + by_rld));
+            EXPECT_THAT(for_pairing, StartsWith("pairing: " + by_rld));
+        }
+        EXPECT_EQ(refusal(name, {.nearest = 0}), "nearest: must be at least 1");
+        EXPECT_EQ(refusal(name, {.nearest = 1}), "");
+        if (!name.starts_with("front")) {
+            EXPECT_THAT(refusal(name, {.weights = "any.json"}),
+                        StartsWith("weights: the detector '" + name + "'"));
+        }
+    }
+}
+
+class OwnWeights : public experiments::FileTest {
+  protected:
+    /// The shipped weights with one text in place of another, which they have to hold.
+    [[nodiscard]] std::string with(const std::string& from, const std::string& to) const {
+        std::string text = shipped_;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        return text.replace(at, from.size(), to);
+    }
+    static std::string fault_of(std::string bytes) {
+        return refusal("front", {.weights = WeightsBytes{std::move(bytes)}});
+    }
+
+    const std::string shipped_ =
+        text_of(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/front.json");
+};
+
+Scene straight() {
+    Scene scene{.id = "straight", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};
+    for (const double x : {2.0, 6.0, 10.0, 14.0, 18.0}) {
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, 1.6}});
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, -1.6}});
+    }
+    return scene;
+}
+
+double confidence(const DetectorOptions& options) {
+    const LaneAnswer answer =
+        make_detector("front", options)->detect(straight(), {.time_limit_ms = 60'000.0});
+    EXPECT_EQ(answer.status, LaneStatus::found);
+    return answer.confidence.value_or(-1.0);
+}
+
+TEST_F(OwnWeights, FileAndBytesOfTheShippedOnesAreTheShippedDetector) {
+    const double shipped = confidence({});
+    EXPECT_EQ(confidence({.weights = file_with(shipped_, "w.json")}), shipped);
+    EXPECT_EQ(confidence({.weights = WeightsBytes{shipped_}}), shipped);
+}
+
+/// The log odds that a lane is usable are the lower by what is taken from their bias.
+TEST_F(OwnWeights, OthersAreUsed) {
+    const std::size_t at = shipped_.find("\"usable_output_bias\"");
+    const std::size_t begin = shipped_.find('[', at);
+    std::string other = shipped_;
+    other.replace(begin, shipped_.find(']', begin) - begin, "[-20");
+    EXPECT_LT(confidence({.weights = WeightsBytes{other}}), 0.5 * confidence({}));
+}
+
+TEST_F(OwnWeights, FaultsNameWhatIsWrong) {
+    EXPECT_EQ(fault_of(""), "weights: line 1: must be a JSON object, as `conelane train front` writes it");
+    EXPECT_EQ(fault_of(with("\"version\": 1", "\"version\": 2")), "version: must be 1");
+    EXPECT_EQ(fault_of(with("\"own_segment_known\"", "\"own_segment\"")),
+              "features: 'state' has 'own_segment' at place 0, unlike the library: the weights are of "
+              "another version");
+    EXPECT_EQ(fault_of(with("\"stop_linear\"", "\"stop_lines\"")), "stop_linear: is missing");
+    EXPECT_EQ(fault_of(with("\"least_trust\"", "\"wings\": [{}, null],\n\"least_trust\"")),
+              "wings: is no key of weights of front");
+    EXPECT_EQ(fault_of(with("\"least_trust\"", "\"version\": 1,\n\"least_trust\"")),
+              "version: is there twice");
+    EXPECT_EQ(fault_of(with("\"extend_output\": [", "\"extend_output\": [1,")),
+              "extend_output: has 49 numbers, not 48");
+    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [NaN,")),
+              "stop_output: number 0 (from 0) is no number");
+    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [1e39,")),
+              "stop_output: number 0 (from 0) is out of range");
+    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [-1e999,")),
+              "stop_output: number 0 (from 0) is out of range");
+    EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [\"1\",")),
+              "stop_output: number 0 (from 0) is no number");
+    EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [1.,")),
+                HasSubstr("a number is incomplete"));
+    EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [01,")), HasSubstr("expected ','"));
+    EXPECT_EQ(fault_of(with("\"least_trust\": ", "\"least_trust\": 1")), "least_trust: must be in [0, 1]");
+    EXPECT_THAT(fault_of(shipped_ + "{}"), HasSubstr("there is more behind the object"));
+    EXPECT_THAT(fault_of(std::string(100'000, '[')), HasSubstr("must be a JSON object"));
+    EXPECT_THAT(fault_of("{\"training\": " + std::string(100'000, '[')), HasSubstr("nested too deep"));
+    const std::string nowhere = path("nowhere.json").string();
+    EXPECT_EQ(refusal("front", {.weights = nowhere}), "weights: " + nowhere + ": cannot be read");
+    EXPECT_EQ(refusal("front-warm", {.weights = file_with("{}", "w.json")}),
+              "weights: " + path("w.json").string() + ": version: is missing");
+}
+
+/// Wherever the file is cut, the cut is seen.
+TEST_F(OwnWeights, TruncatedFilesAreRefused) {
+    const std::size_t whole = shipped_.find_last_of('}');
+    for (std::size_t size = 0; size <= whole; size += 997)
+        EXPECT_NE(fault_of(shipped_.substr(0, size)), "") << size;
+    EXPECT_THAT(fault_of(shipped_.substr(0, whole)), HasSubstr("the file ends in the middle"));
+    EXPECT_EQ(fault_of(shipped_.substr(0, whole + 1)), "");
+}
+
+}  // namespace
+}  // namespace conelane
