@@ -17,6 +17,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -60,7 +61,7 @@ struct Answering {
     std::string name;
     MethodMaker make;
 };
-Answering method_of(const Options& options) {
+Answering method_of(Options& options) {
     const auto outside = parse_outside_method(options.method);
     const auto refuse_weights = [&options](const std::string& who) {
         if (options.weights.empty()) return;
@@ -70,6 +71,13 @@ Answering method_of(const Options& options) {
         const Method& method = find_method(options.method);
         if (!method.is_rld()) options.parameters.require_not_given("'" + options.method + "' has");
         if (!method.takes_weights()) refuse_weights("'" + options.method + "'");
+        if (!options.weights.empty()) {
+            // Read once, and before the work: what is wrong with them is said at once.
+            options.run.method.weights = parsed_file(options.weights, [](std::string text) {
+                (void)parse_front_weights(text);
+                return WeightsBytes{std::move(text)};
+            });
+        }
         return {std::string(method.name), maker_of(method, options.run)};
     }
     if (!outside->is_program())
@@ -109,11 +117,6 @@ void detect_streamed(const Answering& method, const Options& options) {
 
 void detect(Options& options) {
     options.parameters.apply_to(options.run.method);
-    if (!options.weights.empty()) {
-        // Read once, and before the work: what is wrong with them is said at once.
-        options.run.method.weights = WeightsBytes{text_of(options.weights)};
-        (void)parsed_file(options.weights, [](const std::string& text) { return parse_front_weights(text); });
-    }
     const Answering method = method_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
         detect_streamed(method, options);
