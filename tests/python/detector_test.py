@@ -157,6 +157,8 @@ class Refusals(unittest.TestCase):
                    colors=[0, 0, 7, 0, 0, 0, 0, 0])
 
     def test_names_and_options(self):
+        cut = WEIGHTS.read_bytes()[:5000]
+        newline = b"\n"
         for message, call in (
             ("there is no detector 'fron', only " + ", ".join(conelane.methods()), lambda: conelane.Detector("fron")),
             ("there is no option 'closest', only nearest, parameters, pairing, weights",
@@ -174,8 +176,8 @@ class Refusals(unittest.TestCase):
             ("weights: is neither the path nor the bytes of a file", lambda: conelane.Detector("front", weights=3)),
             ("weights: nowhere.json: cannot be read", lambda: conelane.Detector("front", weights="nowhere.json")),
             ("weights: line 1: must be a JSON object", lambda: conelane.Detector("front", weights=b"[]")),
-            ("weights: line 18: the file ends in the middle",
-             lambda: conelane.Detector("front", weights=WEIGHTS.read_bytes()[:5000])),
+            (f"weights: line {cut.count(newline) + 1}: the file ends in the middle",
+             lambda: conelane.Detector("front", weights=cut)),
             ("step_m", lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(step_m=0.0)),
         ):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
