@@ -155,6 +155,39 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     expect_refused("merge part0 part1 part2 --out other", {"other", "--overwrite"});
 }
 
+/// In the second pose of these hairpins the right boundary goes on beside another leg: 12 cones against 75.
+TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
+    const std::string hairpins = "--tracks generated:tight_hairpins --fp 0,0.3 --every 22 ";
+    const std::string degenerate = "tight_hairpins/pose_0001/fp_0.00/range_30";
+    const Outcome made = run("scenes --range 30 " + hairpins + "--out s.scenes.jsonl");
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_THAT(made.errors, HasSubstr("2 scenes are left out"));
+    EXPECT_THAT(made.errors, HasSubstr(degenerate));
+    const std::string scenes = text_of(path("s.scenes.jsonl"));
+    EXPECT_THAT(scenes, testing::Not(HasSubstr("/pose_0001/")));
+    EXPECT_THAT(scenes, testing::AllOf(HasSubstr("/pose_0000/"), HasSubstr("/pose_0002/")));
+    const nlohmann::json track = nlohmann::json::parse(text_of(path("s.tracks.json"))).at("tight_hairpins");
+    EXPECT_EQ(track.at("left_out"),
+              (nlohmann::json{degenerate, "tight_hairpins/pose_0001/fp_0.30/range_30"}));
+
+    const std::string compare = "compare --methods clc --condition paper " + hairpins;
+    for (const char* shard : {"0", "1"}) {
+        const Outcome part = run(compare + "--shard " + shard + "/2 --out part" + shard);
+        ASSERT_EQ(part.exit_code, 0) << part.errors;
+        EXPECT_THAT(part.errors, HasSubstr("1 scene is left out"));
+        EXPECT_THAT(part.output, HasSubstr("1 scene is left out"));
+    }
+    const Outcome merged = run("merge part0 part1 --out merged");
+    ASSERT_EQ(merged.exit_code, 0) << merged.errors;
+    EXPECT_THAT(text_of(path("merged") / "table.txt"), HasSubstr("2 scenes are left out"));
+    EXPECT_EQ(nlohmann::json::parse(text_of(path("merged") / "scenes.tracks.json"))
+                  .at("tight_hairpins")
+                  .at("left_out"),
+              track.at("left_out"));
+    const Outcome scored = run("score --scenes merged/scenes.scenes.jsonl --lanes merged/clc.lanes.jsonl");
+    EXPECT_EQ(scored.output, text_of(path("merged") / "table.txt"));
+}
+
 TEST_F(Program, SweepComparesConeSetSizes) {
     const Outcome outcome = run("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;

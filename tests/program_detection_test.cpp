@@ -194,5 +194,37 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
     EXPECT_EQ(rows, 6U);
 }
 
+/// That there is no lane is as good an answer as a proven optimum, in time and of a method that optimises.
+TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
+    make_scenes("--fp 0");
+    const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
+    ASSERT_GT(scenes.size(), 4U);
+    std::vector<LaneRecord> records;
+    for (const AnnotatedScene& scene : scenes) {
+        records.push_back({scene.scene.id, "exact", {}, 1.0, {}});
+        records.back().answer.status = LaneStatus::none;
+    }
+    records[0].answer.status = LaneStatus::found;
+    records[0].answer.lane = *scenes[0].ground_truth;
+    records[0].answer.optimality = Optimality{-1.0, -1.0, true};
+    records[1].answer.status = LaneStatus::stopped;
+    records[2].latency_ms = 401.0;
+    const std::size_t answers = records.size();
+    // A method that states no objective has solved nothing, whatever it finds.
+    for (const AnnotatedScene& scene : scenes) {
+        records.push_back({scene.scene.id, "search", {}, 1.0, {}});
+        records.back().answer.status = LaneStatus::none;
+    }
+    write_lanes(path("l.lanes.jsonl"), records);
+    ASSERT_EQ(run("score --scenes s.scenes.jsonl --lanes l.lanes.jsonl --json rows").exit_code, 0);
+    std::ifstream lines(path("rows"));
+    std::string line;
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_DOUBLE_EQ(nlohmann::json::parse(line).value("solved_share", 0.0),
+                     static_cast<double>(answers - 2) / static_cast<double>(answers));
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_FALSE(nlohmann::json::parse(line).contains("solved_share")) << line;
+}
+
 }  // namespace
 }  // namespace conelane::experiments

@@ -4,7 +4,9 @@
 #include "tests/program_on_scenes.hpp"
 
 #include <cstddef>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -175,7 +177,41 @@ TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     EXPECT_THAT(good.output, HasSubstr(" passed, 0 failed"));
     const std::string shape = "check --params shape --scenes s.scenes.jsonl --solutions n.solutions.jsonl ";
     EXPECT_EQ(run(shape).exit_code, 0) << "the solutions say it";
-    EXPECT_EQ(run(shape + "--nearest 20").exit_code, 1);
+    expect_refused(shape + "--nearest 20", {"n.solutions.jsonl:1", "nearest"});
+}
+
+/// What was made with other parameters, another pairing or other cones is refused in one line, before
+/// anything is said of its claims. What does not say how it was made is checked as it is.
+TEST_F(Program, ClaimsThatWereMadeOtherwiseAreNamed) {
+    make_scenes("--fp 0.2");
+    const std::string on = " --nearest 12 --params shape --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run("solve --solver path-pair" + on + "--out c.jsonl").exit_code, 0);
+    std::string old;
+    std::istringstream lines(text_of(path("c.jsonl")));
+    for (std::string line; std::getline(lines, line);) {
+        nlohmann::json record = nlohmann::json::parse(line);
+        EXPECT_EQ(record.at("parameters"), "shape");
+        EXPECT_EQ(record.at("pairing"), "near_far");
+        EXPECT_EQ(record.at("parameters_hash").get<std::string>().size(), 16U);
+        for (const char* key : {"parameters", "parameters_hash", "pairing"}) record.erase(key);
+        old += record.dump() + "\n";
+    }
+    file_with(old, "old.jsonl");
+    ASSERT_EQ(run("certify" + on + "--out root.jsonl").exit_code, 0);
+    ASSERT_EQ(run("certify --whole" + on + "--out whole.jsonl").exit_code, 0);
+    for (const auto& [file, verify] : {std::pair<std::string, std::string>{"c.jsonl", "check --solutions "},
+                                       {"root.jsonl", "certify --verify "},
+                                       {"whole.jsonl", "certify --verify "}}) {
+        const std::string this_file = verify + file + " --scenes s.scenes.jsonl ";
+        const Outcome good = run(this_file + "--params shape");
+        EXPECT_EQ(good.exit_code, 0) << "the file names its cone set: " << good.output << good.errors;
+        expect_refused(this_file, {file + ":1", "parameters", "'shape'", "'default'", "--params shape"});
+        expect_refused(this_file + "--params shape --pairing paper", {file + ":1", "pairing"});
+        expect_refused(this_file + "--params shape --nearest 20", {file + ":1", "nearest", "12", "20"});
+    }
+    const std::string old_file = "check --solutions old.jsonl --scenes s.scenes.jsonl ";
+    EXPECT_EQ(run(old_file + "--params shape").exit_code, 0);
+    EXPECT_EQ(run(old_file).exit_code, 1) << "their objectives are others, and nobody can say why";
 }
 
 TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
@@ -217,10 +253,19 @@ TEST_F(Program, CertificatesCoverShapeCosts) {
     const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
-    // They are about these costs and this cone set.
-    EXPECT_EQ(run(on_scenes + "--verify shape.certificates.jsonl").exit_code, 1);
+    // They are about these costs and this cone set, also where they do not say so.
+    std::string unnamed;
+    std::istringstream lines(text_of(path("shape.certificates.jsonl")));
+    for (std::string line; std::getline(lines, line);) {
+        nlohmann::json record = nlohmann::json::parse(line);
+        for (const char* key : {"nearest", "parameters", "parameters_hash", "pairing"}) record.erase(key);
+        unnamed += record.dump() + "\n";
+    }
+    file_with(unnamed, "unnamed.certificates.jsonl");
+    EXPECT_EQ(run(on_scenes + "--verify unnamed.certificates.jsonl").exit_code, 1);
     EXPECT_EQ(
-        run("certify --scenes s.scenes.jsonl --params shape --verify shape.certificates.jsonl").exit_code, 1);
+        run("certify --scenes s.scenes.jsonl --params shape --verify unnamed.certificates.jsonl").exit_code,
+        1);
 }
 
 /// Verified, tampered with, of another cone, and more than may be looked at: the exit code tells the first
@@ -240,7 +285,7 @@ TEST_F(Program, CertifiesWholeSearches) {
     const Outcome bad = run(verify + "forged.jsonl");
     EXPECT_EQ(bad.exit_code, 1);
     EXPECT_THAT(bad.output, testing::AllOf(HasSubstr("does not cost"), HasSubstr("1 refused")));
-    EXPECT_EQ(run("certify --nearest 4 --scenes s.scenes.jsonl --verify c.jsonl").exit_code, 1);
+    expect_refused("certify --nearest 4 --scenes s.scenes.jsonl --verify c.jsonl", {"c.jsonl:1", "nearest"});
     expect_refused(verify + "c.jsonl --most-steps 0", {"--most-steps"});
 }
 

@@ -5,6 +5,7 @@
 #include "tests/file_test.hpp"
 
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -198,6 +199,49 @@ TEST_F(SolutionFileTest, NamesBadRecords) {
               "s:1: edges: must be empty where status is infeasible");
     EXPECT_EQ(error_in(solution("infeasible", "[]") + solution("optimal", "[]")),
               "s:2: scene: solver \"cbc\" answers scene \"a\" twice with one formulation, first on line 1");
+}
+
+class ParameterTagTest : public FileTest {};
+
+/// A name is for people: values tell parameters apart, and a file may be written anew under its name.
+TEST_F(ParameterTagTest, TellsParametersApartByTheirValues) {
+    RldParameters parameters;
+    const ParameterTag made = tag_of("folder/own.json", parameters);
+    EXPECT_EQ(made.name, "own.json");
+    EXPECT_EQ(tag_of("", parameters).name, "default");
+    EXPECT_EQ(tag_of("", parameters).hash, made.hash);
+    std::set<std::string> hashes{made.hash.value()};
+    for (const auto& fields : {rld_parameter_fields(), rld_extra_fields()}) {
+        for (const RldParameterField& field : fields) {
+            RldParameters other;
+            other.*field.value += 0.001;
+            EXPECT_TRUE(hashes.insert(tag_of("", other).hash.value()).second) << field.key;
+        }
+    }
+    parameters.use_confidence = true;
+    EXPECT_TRUE(hashes.insert(tag_of("", parameters).hash.value()).second);
+    parameters.forbid_crossing = true;
+    EXPECT_TRUE(hashes.insert(tag_of("", parameters).hash.value()).second);
+    const ParameterTag now = tag_of("elsewhere/own.json", parameters);
+    EXPECT_EQ(error_of([&] {
+                  require_same_basis({made, {}}, {now, {}}, "f", 3);
+              }),
+              "f:3: parameters: made by other values than 'own.json' has now");
+}
+
+TEST_F(ParameterTagTest, WhatIsNotSaidIsNoDifference) {
+    const ParameterTag now = tag_of("", {});
+    EXPECT_NO_THROW(require_same_basis({{}, {}}, {now, 12U}, "f", 1)) << "a file of an earlier version";
+    EXPECT_NO_THROW(require_same_basis({now, 12U}, {now, {}}, "f", 1));
+    EXPECT_EQ(error_of([&] {
+                  require_same_basis({now, {}}, {now, 12U}, "f", 1);
+              }),
+              "f:1: nearest: made among all cones, checked among the 12 nearest cones: leave out --nearest");
+    EXPECT_EQ(error_of([&] {
+                  require_same_basis({{}, 8U}, {now, 12U}, "f", 1);
+              }),
+              "f:1: nearest: made among the 8 nearest cones, checked among the 12 nearest cones: leave out "
+              "--nearest");
 }
 
 class ParameterFileTest : public FileTest {};

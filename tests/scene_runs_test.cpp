@@ -108,14 +108,16 @@ TEST(SceneGeneration, TheLaneIsClosedWhereBothRunsAreTheWholeBoundary) {
     const Track track = circle();
     // From (0, -20), looking along +y, all is ahead; the foot points lie at place 9, angle -90 degrees.
     const std::vector<Pose> poses{{{0.0, -20.0}, std::numbers::pi / 2}};
-    SceneOptions wanted = options({0.0}, {40.0, 29.0});
+    SceneOptions wanted = options({0.0}, {40.0, 29.0, 25.0});
     const auto scenes = generate(track, poses, wanted);
     ASSERT_THAT(scenes, SizeIs(2));
     const std::vector<std::size_t> all{9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7, 8};
     EXPECT_TRUE(scenes[0].ground_truth->closed);
     EXPECT_EQ(places(scenes[0], scenes[0].ground_truth->left, track, track.left), all);
     EXPECT_EQ(places(scenes[0], scenes[0].ground_truth->right, track, track.right), all);
-    // At 29 m the far side of the outer boundary is out of view.
+    // At 29 m the far side of the outer boundary is out of view and the inner one is whole: all round against
+    // a third, which is degenerate. At 25 m both end.
+    EXPECT_EQ(scenes[1].range_m, 25.0);
     EXPECT_FALSE(scenes[1].ground_truth->closed);
 
     // Missed cones do not open it: the boundary is whole without them.

@@ -3,9 +3,15 @@
 #include "experiments/scenes/scene_set.hpp"
 
 #include "experiments/comparison/runner.hpp"
+#include "experiments/scenes/degenerate_truth.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
+#include "experiments/tracks/track_spec.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -64,6 +70,91 @@ TEST(SceneSet, AShardBeyondTheLapsIsEmpty) {
 TEST(SceneSet, NoSceneAtAllIsAnErrorInEveryShard) {
     EXPECT_THROW((void)make_scene_set(kTracks, options_of({2.0})), std::exception);
     EXPECT_THROW((void)make_scene_set(kTracks, options_of({2.0}), {1, 2}), std::exception);
+}
+
+/// A lane by its cones, ids in the order of the arguments.
+AnnotatedScene with_truth(const std::vector<Point>& left, const std::vector<Point>& right, bool closed) {
+    AnnotatedScene scene;
+    Lane lane;
+    lane.closed = closed;
+    for (const auto& [side, run] : {std::pair{&left, &lane.left}, {&right, &lane.right}}) {
+        for (const Point& position : *side) {
+            run->push_back(static_cast<ConeId>(scene.scene.cones.size()));
+            scene.scene.cones.push_back({.id = run->back(), .position = position});
+        }
+    }
+    scene.ground_truth = lane;
+    return scene;
+}
+bool degenerate(const std::vector<Point>& left, const std::vector<Point>& right, bool closed = false) {
+    const AnnotatedScene scene = with_truth(left, right, closed);
+    return is_degenerate(*scene.ground_truth, scene.scene);
+}
+std::vector<Point> ring(double radius_m, double from_rad, double to_rad, int cones) {
+    std::vector<Point> all;
+    for (int i = 0; i < cones; ++i) {
+        const double angle = from_rad + (to_rad - from_rad) * i / cones;
+        all.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle));
+    }
+    return all;
+}
+
+TEST(DegenerateTruth, LanesOfAnyShapeAreNone) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}}));
+    EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}, {10, -2}})) << "one ends earlier";
+    EXPECT_FALSE(degenerate({{0, 2}, {15, 2}}, {{0, -2}, {5, -2}, {10, -2}, {15, -2}})) << "cones missed";
+    EXPECT_FALSE(degenerate(ring(1.0, 0.0, 3.0, 2), ring(5.0, 0.0, 3.0, 8))) << "a tight bend";
+    EXPECT_FALSE(degenerate(ring(9.0, 0.0, kTurn, 12), ring(12.0, 0.0, kTurn, 16), true));
+    EXPECT_FALSE(degenerate(ring(12.0, 0.0, -kTurn, 16), ring(9.0, 0.0, -kTurn, 12), true))
+        << "the other way";
+}
+
+TEST(DegenerateTruth, ABoundaryThatGoesOnBesideAnotherLegIsOne) {
+    // The left boundary ends after 15 m; the right one turns about it and comes back on its other side.
+    const std::vector<Point> left{{0, 0}, {5, 0}, {10, 0}, {15, 0}};
+    std::vector<Point> right{{0, -3}, {5, -3}, {10, -3}, {15, -3}, {20, -3}, {22, 0}, {20, 3}};
+    EXPECT_FALSE(degenerate(left, {right.begin(), right.begin() + 4}));
+    for (double x = 15.0; x >= 0.0; x -= 5.0) right.emplace_back(x, 3.0);
+    for (double x = 0.0; x <= 60.0; x += 5.0) right.emplace_back(x, 9.0);
+    EXPECT_TRUE(degenerate(left, right));
+    EXPECT_TRUE(degenerate({{0, -2}, {5, -2}}, {{0, 2}, {5, 2}})) << "sides swapped";
+}
+
+/// Ids go by the pose, and every other scene keeps its own.
+TEST(SceneSet, OnlyScenesWithADegenerateTruthAreLeftOut) {
+    SceneOptions options = options_of({30.0});
+    options.every_m = 22.0;
+    LeftOutScenes left_out;
+    const SceneSet set = make_scene_set({"generated:tight_hairpins"}, options, {}, left_out);
+    EXPECT_EQ(left_out, (LeftOutScenes{{"tight_hairpins",
+                                        {"tight_hairpins/pose_0001/fp_0.00/range_30",
+                                         "tight_hairpins/pose_0001/fp_0.20/range_30",
+                                         "tight_hairpins/pose_0001/fp_0.40/range_30"}}}));
+    const std::vector<std::string> made = ids(set.scenes);
+    EXPECT_THAT(made, testing::IsSupersetOf({"tight_hairpins/pose_0000/fp_0.00/range_30",
+                                             "tight_hairpins/pose_0002/fp_0.40/range_30"}));
+    for (const AnnotatedScene& scene : set.scenes) ASSERT_TRUE(scene.ground_truth) << scene.scene.id;
+    const Track track = load_tracks("generated:tight_hairpins").front();
+    EXPECT_EQ(ids(generate_scenes(track, options)), made) << "the library leaves out the same ones";
+}
+
+TEST(TrackLaps, ALapOfDegenerateTruthsIsEmpty) {
+    Track track;
+    track.name = "swapped";
+    track.closed = false;
+    for (int i = 0; i < 4; ++i) {
+        for (const double y : {-2.0, 2.0}) {
+            auto& side = y < 0.0 ? track.left : track.right;
+            side.push_back(track.cones.size());
+            track.cones.push_back({.id = static_cast<ConeId>(track.cones.size()), .position = {4.0 * i, y}});
+        }
+    }
+    const SceneOptions options = options_of({20.0});
+    const std::vector<Pose> poses{{{0.0, 0.0}, 0.0}};
+    const TrackLaps laps(track, poses, options);
+    for (std::size_t lap = 0; lap < laps.size(); ++lap) EXPECT_TRUE(laps.is_empty(lap));
+    EXPECT_TRUE(generate_scenes(track, poses, options).empty());
 }
 
 TEST(TrackLaps, KnowsWhichLapsAreEmpty) {

@@ -39,12 +39,15 @@ struct Options {
     ParameterSource parameters;
 };
 
-Scene cone_set(const Options& options, const Scene& scene) {
-    return options.nearest ? nearest_ahead(scene, *options.nearest) : scene;
+Scene cone_set(const Scene& scene, std::optional<std::size_t> nearest) {
+    return nearest ? nearest_ahead(scene, *nearest) : scene;
 }
 
 CertificateRecord to_record(const Scene& scene, const BoundCertificate& certificate) {
-    CertificateRecord record{scene.id, {}, {}, certificate.heading_multiplier, certificate.bound};
+    CertificateRecord record;
+    record.scene = scene.id;
+    record.heading_multiplier = certificate.heading_multiplier;
+    record.bound = certificate.bound;
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         if (certificate.cone_multiplier[i] == 0.0) continue;
         record.cone_multipliers.emplace_back(scene.cones[i].id, certificate.cone_multiplier[i]);
@@ -84,15 +87,17 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
     return certificate;
 }
 
-/// What `certify` makes of each scene of the file.
+/// What `certify` makes of each scene of the file, with the name of what it is about.
 template <typename Certify>
-auto certificates(const Options& options, const Certify& certify) {
+auto certificates(const Options& options, const RldParameters& parameters, const Certify& certify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<std::invoke_result_t<Certify, const Scene&>> records;
     records.reserve(scenes.size());
     Progress progress("certify", scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
-        records.push_back(certify(cone_set(options, annotated.scene)));
+        records.push_back(certify(cone_set(annotated.scene, options.nearest)));
+        records.back().nearest = options.nearest;
+        records.back().parameters = tag_of(options.parameters.name, parameters);
         progress.advance();
     }
     return records;
@@ -101,7 +106,7 @@ auto certificates(const Options& options, const Certify& certify) {
 std::vector<SearchCertificateRecord> search_certificates(const Options& options,
                                                          const RldParameters& parameters) {
     std::vector<std::string> unproven;
-    auto records = certificates(options, [&](const Scene& scene) {
+    auto records = certificates(options, parameters, [&](const Scene& scene) {
         const SearchCertificate certificate =
             certify_search(make_problem(scene, parameters), options.time_limit_ms);
         if (std::isinf(certificate.bound) && certificate.bound < 0.0) unproven.push_back(scene.id);
@@ -118,18 +123,25 @@ std::vector<CertificateRecord> root_certificates(const Options& options, const R
     if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
         throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
     }
-    return certificates(options, [&](const Scene& scene) {
+    return certificates(options, parameters, [&](const Scene& scene) {
         return to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms));
     });
 }
 
-/// Calls `verify(record, scene)` for each record with the scene that it names.
+/// Calls `verify(record, scene)` for each record with the cones that it is about: those that the options say,
+/// or else the record itself. Throws before the first call where a record is about something else than the
+/// options say.
 template <typename Record, typename Verify>
-void for_each_record(const Options& options, const std::vector<Record>& records, const Verify& verify) {
+void for_each_record(const Options& options, const RldParameters& parameters,
+                     const std::vector<Record>& records, const Verify& verify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::unordered_map<std::string, const Scene*> scene_of;
     for (const AnnotatedScene& scene : scenes) scene_of.emplace(scene.scene.id, &scene.scene);
     if (records.empty()) throw InputError(options.verify, 0, "", "holds no certificate");
+    const ClaimBasis checked{tag_of(options.parameters.name, parameters), options.nearest};
+    for (const Record& record : records) {
+        require_same_basis({record.parameters, record.nearest}, checked, options.verify, record.line);
+    }
     Progress progress("verify", records.size());
     for (const Record& record : records) {
         const auto found = scene_of.find(record.scene);
@@ -137,7 +149,7 @@ void for_each_record(const Options& options, const std::vector<Record>& records,
             throw InputError(options.verify, record.line, "scene",
                              "'" + record.scene + "' is not in the scenes file");
         }
-        verify(record, cone_set(options, *found->second));
+        verify(record, cone_set(*found->second, options.nearest ? options.nearest : record.nearest));
         progress.advance();
     }
 }
@@ -149,7 +161,7 @@ std::string no_cone(ConeId id) {
 void verify_bounds(const Options& options, const RldParameters& parameters) {
     const std::vector<CertificateRecord> records = read_certificates(options.verify);
     std::size_t failed = 0;
-    for_each_record(options, records, [&](const CertificateRecord& record, const Scene& scene) {
+    for_each_record(options, parameters, records, [&](const CertificateRecord& record, const Scene& scene) {
         ConeId missing{};
         std::vector<std::string> violations;
         if (const auto certificate = from_record(scene, record, missing)) {
@@ -172,20 +184,22 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
     std::size_t bounds = 0;
     std::size_t refused = 0;
     std::size_t unverified = 0;
-    for_each_record(options, records, [&](const SearchCertificateRecord& record, const Scene& scene) {
-        ConeId missing{};
-        SearchVerdict verdict;
-        if (const auto certificate = from_search_record(scene, record, missing)) {
-            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
-        } else {
-            verdict.reason = no_cone(missing);
-        }
-        if (verdict.kind != Kind::verified) fmt::print("{}: {}\n", record.scene, verdict.reason);
-        if (verdict.kind == Kind::unverified) ++unverified;
-        if (verdict.kind == Kind::refused) ++refused;
-        if (verdict.kind == Kind::verified)
-            ++(verdict.is_optimum ? optima : std::isinf(record.bound) ? infeasible : bounds);
-    });
+    for_each_record(options, parameters, records,
+                    [&](const SearchCertificateRecord& record, const Scene& scene) {
+                        ConeId missing{};
+                        SearchVerdict verdict;
+                        if (const auto certificate = from_search_record(scene, record, missing)) {
+                            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
+                        } else {
+                            verdict.reason = no_cone(missing);
+                        }
+                        if (verdict.kind != Kind::verified)
+                            fmt::print("{}: {}\n", record.scene, verdict.reason);
+                        if (verdict.kind == Kind::unverified) ++unverified;
+                        if (verdict.kind == Kind::refused) ++refused;
+                        if (verdict.kind == Kind::verified)
+                            ++(verdict.is_optimum ? optima : std::isinf(record.bound) ? infeasible : bounds);
+                    });
     fmt::print(
         "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
         optima, infeasible, bounds, refused, unverified, options.most_steps);
@@ -234,7 +248,8 @@ void add_certify_command(CLI::App& program) {
                     "labels and fronts for verifying a whole search; with more it is not verified")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
         ->capture_default_str();
-    add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
+    add_nearest_option(command, options->nearest,
+                       "the N nearest cones ahead only; without it all, or those that a certificate names");
     add_time_limit_option(command, options->time_limit_ms);
     add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { run(*options, options->parameters.load()); });

@@ -97,10 +97,13 @@ class Check {
           records_(read_solutions(options.solutions)) {
         for (const AnnotatedScene& scene : scenes_) scene_of_.emplace(scene.scene.id, &scene);
         if (records_.empty()) throw InputError(options.solutions, 0, "", "holds no solution");
+        const ClaimBasis checked{tag_of(options.parameters.name, parameters_), options.nearest};
         for (const SolutionRecord& record : records_) {
-            if (scene_of_.contains(record.scene)) continue;
-            throw InputError(options.solutions, record.line, "scene",
-                             "'" + record.scene + "' is not in the scenes file");
+            if (!scene_of_.contains(record.scene)) {
+                throw InputError(options.solutions, record.line, "scene",
+                                 "'" + record.scene + "' is not in the scenes file");
+            }
+            require_same_basis({record.parameters, record.nearest}, checked, options.solutions, record.line);
         }
     }
 

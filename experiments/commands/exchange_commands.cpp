@@ -60,13 +60,15 @@ class SceneProgram {
     explicit SceneProgram(const ProgramSource& source)
         : scene(load_scene(source)),
           formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
-          problem(make_problem(scene, source.parameters.load(), parts(formulation).extent)),
+          parameters(source.parameters.load()),
+          problem(make_problem(scene, parameters, parts(formulation).extent)),
           model(problem, formulation) {}
     SceneProgram(const SceneProgram&) = delete;
     SceneProgram& operator=(const SceneProgram&) = delete;
 
     const Scene scene;
     const Formulation formulation;
+    const RldParameters parameters;
     const LaneGraphProblem problem;
     const LaneGraphModel model;
 };
@@ -121,6 +123,7 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
     record.solver = options.solver;
     record.formulation = options.source.formulation;
     record.nearest = options.source.nearest;
+    record.parameters = tag_of(options.source.parameters.name, program.parameters);
     if (solution.status == Status::optimal) record.bound = solution.objective;
     if (solution.point.empty()) {
         record.status = solution.status == Status::infeasible ? "infeasible" : "error";

@@ -1,5 +1,6 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scenes/scene_set.hpp"
 
@@ -23,8 +24,9 @@ struct Options {
 };
 
 void make_scenes(const Options& options) {
-    const SceneSet set = make_scene_set(options.tracks, options.scenes);
-    write_scene_set(options.out, set);
+    LeftOutScenes left_out;
+    const SceneSet set = make_scene_set(options.tracks, options.scenes, {}, left_out);
+    write_scene_set(options.out, set, left_out);
     fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(),
                options.out, track_boundaries_path(options.out).string());
 }

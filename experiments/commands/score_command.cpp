@@ -7,6 +7,7 @@
 #include "experiments/outside/finished_lanes.hpp"
 #include "experiments/outside/outside_method.hpp"
 #include "experiments/outside/point_snapping.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/score_table.hpp"
 
@@ -70,7 +71,11 @@ void score_all(const Options& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     TrackBoundariesByName tracks;
-    if (std::filesystem::exists(companion)) tracks = read_track_boundaries(companion);
+    LeftOutScenes left_out;
+    if (std::filesystem::exists(companion)) {
+        tracks = read_track_boundaries(companion);
+        left_out = read_left_out(companion);
+    }
     std::vector<LanesFile> files = read_all(options, scenes);
     OutsideMethods outside;
     RecordScorer scorer(scenes, tracks,
@@ -94,7 +99,7 @@ void score_all(const Options& options) {
         if (!options.methods.empty()) run["lanes_of_methods"] = options.methods;
         write_results(options.json, rows, scored, outside, run.dump());
     }
-    fmt::print("{}{}", score_table(rows), outside_notes(scored, outside));
+    fmt::print("{}{}{}", score_table(rows), outside_notes(scored, outside), table_note_on(left_out));
     if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
 }
 

@@ -54,6 +54,7 @@ void solve_all(const Options& options) {
         throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
     }
     const RldParameters parameters = options.parameters.load();
+    const ParameterTag tag = tag_of(options.parameters.name, parameters);
     const std::unique_ptr<RldSolver> solver =
         entry->make(options.formulation == "paper" ? Formulation::paper : Formulation::tight);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
@@ -80,7 +81,8 @@ void solve_all(const Options& options) {
                               report.build_ms,
                               report.solve_ms,
                               report.stopped_by,
-                              options.nearest};
+                              options.nearest,
+                              tag};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);

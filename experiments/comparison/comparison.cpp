@@ -7,6 +7,8 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/outside/finished_lanes.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
+#include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -93,7 +95,8 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
     const std::vector<ScoreRow> rows = summarise(scored);
     write_scores(directory / "scores.jsonl", scored);
     write_results(directory / "results.jsonl", rows, scored, outside, run_record);
-    const std::string table = score_table(rows) + outside_notes(scored, outside);
+    const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
+    const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
     write_text(directory / "table.txt", table);
     return table;
 }
@@ -109,13 +112,14 @@ std::string compare(const ComparisonOptions& options, const fs::path& directory)
         throw InvalidInput("method", "'" + entrant.method + "'" + cones + " is named twice");
     }
     const std::string record = run_record(options);
-    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard);
+    LeftOutScenes left_out;
+    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard, left_out);
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
     const auto finished = finished_lanes(options, set.scenes, directory);
 
     const FolderLock lock = open_run(directory, record, options.overwrite);
-    write_scene_set(directory / kScenesFile, set);
+    write_scene_set(directory / kScenesFile, set, left_out);
     if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {

@@ -2,6 +2,7 @@
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
 #include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
@@ -97,6 +98,7 @@ std::string merge(const std::vector<fs::path>& shards, const fs::path& directory
     }
     const ShardedRun run = sort_shards(shards);
     SceneSet set;
+    LeftOutScenes left_out;
     std::vector<std::vector<AnnotatedScene>> scenes;
     std::vector<std::vector<std::size_t>> starts;
     for (const fs::path& shard : run.directories) {
@@ -104,11 +106,12 @@ std::string merge(const std::vector<fs::path>& shards, const fs::path& directory
         scenes.push_back(read_scenes(scenes_file));
         starts.push_back(lap_starts(scenes.back()));
         set.tracks.merge(read_track_boundaries(track_boundaries_path(scenes_file)));
+        merge(left_out, read_left_out(track_boundaries_path(scenes_file)));
     }
     set.scenes = interleave<AnnotatedScene>(starts, scenes);
 
     const FolderLock lock = open_run(directory, run.record.dump(), overwrite);
-    write_scene_set(directory / "scenes.scenes.jsonl", set);
+    write_scene_set(directory / "scenes.scenes.jsonl", set, left_out);
     std::vector<std::string> lanes_files;
     for (const ordered_json& method : run.record.at("methods")) {
         Entrant entrant{method.at("name").get<std::string>()};

@@ -192,9 +192,12 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
     std::vector<const Truth*> truths;
     truths.reserve(records.size());
     std::map<std::string, std::size_t> answered;  // by method and cone-set size
+    std::set<std::string> optimising;             // of these, those that state an objective
     for (const LaneRecord& record : records) {
         truths.push_back(&truth_of(record, lanes_file));
-        ++answered[key_of(*truths.back()->scene, record).method_label()];
+        const std::string label = key_of(*truths.back()->scene, record).method_label();
+        ++answered[label];
+        if (record.answer.optimality) optimising.insert(label);
     }
     std::vector<ScoredRecord> all(records.size());
     std::vector<CentreLine> lines(records.size());
@@ -224,6 +227,10 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
             all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
         all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
+        if (records[i].answer.status == LaneStatus::none &&
+            optimising.contains(key_of(*truths[i]->scene, records[i]).method_label())) {
+            all[i].score.solved_to_optimality = records[i].latency_ms <= kRldTimeLimit_ms;
+        }
         scored.push_back(std::move(all[i]));
     }
     for (const auto& [name, count] : answered) {

@@ -42,6 +42,7 @@ class RecordScorer {
     /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
     /// records of one method and cone-set size must cover every scene once; a scene that does not count is
     /// left out. A lane is held steady against the record before where that is of the same method and lap.
+    /// Where a method states the objective of its lanes, its status none is a proof and counts as solved.
     /// `lanes_file` is named in errors; of several the first one is thrown. Throws InputError.
     [[nodiscard]] std::vector<ScoredRecord> score(std::span<const LaneRecord> records,
                                                   const std::filesystem::path& lanes_file);

@@ -37,6 +37,10 @@ CertificateRecord read_record(const JsonNode& json) {
         if (bound) bound->fail("must be left out where the scene is called infeasible");
         record.bound = kInfinity;
     }
+    if (const auto nearest = json.find("nearest")) {
+        record.nearest = static_cast<std::size_t>(nearest->non_negative_integer());
+    }
+    record.parameters = read_parameter_tag(json);
     record.heading_multiplier = json.member("heading_price").number();
     const JsonNode multipliers = json.member("cone_prices");
     for (std::size_t k = 0; k < multipliers.array_size(); ++k) {
@@ -63,6 +67,8 @@ ordered_json to_json(const CertificateRecord& record, const std::string& key) {
             {{"price", require_finite(clique.multiplier, key + "cliques")}, {"edges", std::move(edges)}});
     }
     ordered_json json{{"scene", record.scene}};
+    if (record.nearest) json["nearest"] = *record.nearest;
+    put_parameter_tag(json, record.parameters);
     if (record.bound == kInfinity) {
         json["infeasible"] = true;
     } else {

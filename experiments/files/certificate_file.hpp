@@ -1,10 +1,12 @@
 #pragma once
 
 #include "conelane/scene.hpp"
+#include "experiments/files/parameter_tag.hpp"
 
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,7 +29,9 @@ struct CertificateRecord {
     /// Infinite where the multipliers prove that no lane graph exists, minus infinity where nothing is
     /// claimed.
     double bound = -std::numeric_limits<double>::infinity();
-    std::size_t line = 0;  ///< in the file that was read; 0 where no file was read
+    std::optional<std::size_t> nearest;  ///< size of the cone set; absent: all cones, or it is not said
+    ParameterTag parameters = {};        ///< of the costs that it is about
+    std::size_t line = 0;                ///< in the file that was read; 0 where no file was read
 };
 
 /// Records in the order of the file. Throws InputError naming file, line and key.

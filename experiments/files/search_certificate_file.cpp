@@ -65,6 +65,10 @@ Record read_record(const JsonNode& json) {
     Record record;
     record.line = json.line();
     record.scene = json.member("scene").string();
+    if (const auto nearest = json.find("nearest")) {
+        record.nearest = static_cast<std::size_t>(nearest->non_negative_integer());
+    }
+    record.parameters = read_parameter_tag(json);
     if (const auto edges = json.find("edges")) record.edges = read_edges(*edges);
     if (const auto objective = json.find("objective")) record.objective = objective->number();
     const auto bound = json.find("bound");
@@ -102,6 +106,8 @@ ordered_json to_json(const Record::Part& part) {
 
 ordered_json to_json(const Record& record) {
     ordered_json json{{"scene", record.scene}};
+    if (record.nearest) json["nearest"] = *record.nearest;
+    put_parameter_tag(json, record.parameters);
     if (record.edges) json["edges"] = pairs_to_json(*record.edges);
     if (record.objective) json["objective"] = *record.objective;
     if (record.bound == kInfinity) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
+#include "experiments/files/parameter_tag.hpp"
 #include "model/search_certificate.hpp"
 
 #include <cstddef>
@@ -35,7 +36,9 @@ struct SearchCertificateRecord {
     /// Infinite where it is claimed that no lane graph exists, minus infinity where nothing is claimed.
     double bound = 0.0;
     std::vector<Part> parts;
-    std::size_t line = 0;  ///< in the file that was read; 0 where no file was read
+    std::optional<std::size_t> nearest;  ///< size of the cone set; absent: all cones, or it is not said
+    ParameterTag parameters = {};        ///< of the costs that it is about
+    std::size_t line = 0;                ///< in the file that was read; 0 where no file was read
 };
 
 [[nodiscard]] SearchCertificateRecord to_search_record(const Scene& scene,

@@ -53,6 +53,7 @@ SolutionRecord read_record(const JsonNode& json) {
     if (const auto nearest = json.find("nearest")) {
         record.nearest = static_cast<std::size_t>(nearest->non_negative_integer());
     }
+    record.parameters = read_parameter_tag(json);
     return record;
 }
 
@@ -71,6 +72,7 @@ ordered_json to_json(const SolutionRecord& record, const std::string& key) {
     json["solve_ms"] = require_finite(record.solve_ms, key + "solve_ms");
     if (record.stopped_by) json["stopped_by"] = to_string(*record.stopped_by);
     if (record.nearest) json["nearest"] = *record.nearest;
+    put_parameter_tag(json, record.parameters);
     if (!record.message.empty()) json["message"] = record.message;
     return json;
 }

@@ -2,6 +2,7 @@
 
 #include "conelane/scene.hpp"
 #include "conelane/stop_reason.hpp"
+#include "experiments/files/parameter_tag.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -30,6 +31,7 @@ struct SolutionRecord {
     double solve_ms = 0.0;
     std::optional<StopReason> stopped_by;  ///< the limit that ended the search, where one did
     std::optional<std::size_t> nearest;    ///< size of the cone set that was solved; absent: all cones
+    ParameterTag parameters = {};          ///< that were minimised by
     std::size_t line = 0;                  ///< in the file that was read; 0: none was
 };
 

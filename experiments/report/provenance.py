@@ -50,6 +50,9 @@ def html(results, data, conditions):
             "methods hold it.</li>")
     parameters = next((method["rld_parameters"] for method in results.run.get("methods", ())
                        if isinstance(method, dict) and "rld_parameters" in method), {})
+    left_out = sum(len(track.get("left_out", ())) for track in results.tracks.values())
+    degenerate = (f"<li>{left_out} scene{'s are' if left_out > 1 else ' is'} left out everywhere: the ground truth is degenerate, "
+                  "it covers less than half of the area that its length and width ask for.</li>\n" if left_out else "")
     if data.missing:
         shown = "There are no scenes on this page."
     else:
@@ -74,7 +77,7 @@ side of the car, no edges cross, the width is 2.5 m to 6.5 m.</li>
 alike; with few tracks they are rough. There are none where there is one track only.</li>
 {_conditions(results, conditions)}{kept}
 <li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
-<li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
+{degenerate}<li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
 </ul>
 <h3>Run</h3>{listed(results.run)}
 <h3>Parameters of RLD</h3>{listed(parameters) if parameters else "<p>No method of this run has them.</p>"}"""

@@ -4,6 +4,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
 
 #include <array>
 #include <string>
@@ -239,6 +240,11 @@ TrackBoundariesByName read_track_boundaries(const std::filesystem::path& file) {
 }
 
 void write_track_boundaries(const std::filesystem::path& file, const TrackBoundariesByName& tracks) {
+    write_track_boundaries(file, tracks, {});
+}
+
+void write_track_boundaries(const std::filesystem::path& file, const TrackBoundariesByName& tracks,
+                            const LeftOutScenes& left_out) {
     AtomicFile output(file);
     ordered_json json = ordered_json::object();
     for (const auto& [name, boundaries] : tracks) {
@@ -246,6 +252,7 @@ void write_track_boundaries(const std::filesystem::path& file, const TrackBounda
                       {"right", to_json(boundaries.right, name + ".right")},
                       {"closed", boundaries.closed}};
         if (!boundaries.driven.empty()) json[name]["driven"] = to_json(boundaries.driven, name + ".driven");
+        if (const auto ids = left_out.find(name); ids != left_out.end()) json[name]["left_out"] = ids->second;
     }
     output.stream() << to_line(json) << '\n';
     output.commit();

@@ -1,6 +1,7 @@
 #include "experiments/scenes/scene_generation.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "experiments/scenes/degenerate_truth.hpp"
 #include "experiments/scenes/ground_truth.hpp"
 #include "experiments/scenes/half_disc.hpp"
 #include "experiments/scenes/persistent_points.hpp"
@@ -271,7 +272,8 @@ class SceneMaker {
           pose_index_(pose_index),
           places_(places_of(course, viewpoint)) {}
 
-    /// Nothing where a run of the ground truth has fewer than two cones, or no cone is seen.
+    /// Nothing where a run of the ground truth has fewer than two cones, or no cone is seen. A degenerate
+    /// ground truth is left out of its scene.
     [[nodiscard]] std::optional<AnnotatedScene> make() const {
         AnnotatedScene result;
         result.track = course_.track.name;
@@ -308,6 +310,7 @@ class SceneMaker {
             if (known && !result.ground_truth) return std::nullopt;
             scene = nearest_ahead(scene, *options_.nearest);
         }
+        if (result.ground_truth && is_degenerate(*result.ground_truth, scene)) result.ground_truth.reset();
         return result;
     }
 
@@ -650,18 +653,21 @@ bool TrackLaps::is_empty(std::size_t lap) const {
     if (!course_) return true;
     const Lap shared = lap_of(*course_, options_, conditions_, lap);
     for (std::size_t pose = 0; pose < viewpoints_.size(); ++pose) {
-        if (SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make()) return false;
+        const auto scene = SceneMaker(*course_, options_, shared, viewpoints_[pose], pose).make();
+        if (scene && (scene->ground_truth || !course_->track.driven.empty())) return false;
     }
     return true;
 }
 
 namespace {
 
-std::vector<AnnotatedScene> all_scenes(const TrackLaps& laps) {
+std::vector<AnnotatedScene> all_scenes(const Track& track, const TrackLaps& laps) {
     std::vector<AnnotatedScene> scenes;
     for (std::size_t lap = 0; lap < laps.size(); ++lap) {
         std::ranges::move(laps.make(lap), std::back_inserter(scenes));
     }
+    if (track.driven.empty())
+        std::erase_if(scenes, [](const AnnotatedScene& scene) { return !scene.ground_truth; });
     return scenes;
 }
 
@@ -669,11 +675,11 @@ std::vector<AnnotatedScene> all_scenes(const TrackLaps& laps) {
 
 std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
                                             const SceneOptions& options) {
-    return all_scenes(TrackLaps(track, poses, options));
+    return all_scenes(track, TrackLaps(track, poses, options));
 }
 
 std::vector<AnnotatedScene> generate_scenes(const Track& track, const SceneOptions& options) {
-    return all_scenes(TrackLaps(track, options));
+    return all_scenes(track, TrackLaps(track, options));
 }
 
 }  // namespace conelane::experiments

@@ -48,8 +48,8 @@ void validate(const SceneOptions& options);
 /// Their names, for records of a run; empty where none is named.
 [[nodiscard]] std::vector<std::string> condition_names(const SceneOptions& options);
 
-/// The scenes that a car sees along a track, with their ground truth; those without one (a run shorter than
-/// two cones) are left out. Where the track has none but a driven path, all scenes with a cone are made.
+/// The scenes that a car sees along a track, with their ground truth; those with none (a run below two cones)
+/// or a degenerate one are left out. Where the track has but a driven path, all scenes with a cone are made.
 /// Order: condition, range, rate, pose, so that the scenes of a lap follow one another.
 ///
 /// The pose with index i in `poses` gives the scene "TRACK/pose_i/fp_RATE/range_RANGE", with a part more for
@@ -87,9 +87,9 @@ class TrackLaps {
     TrackLaps& operator=(const TrackLaps&) = delete;
 
     [[nodiscard]] std::size_t size() const;  ///< conditions times ranges times rates
-    /// The scenes of a lap in the order of its poses, maybe none. Precondition: lap < size().
+    /// The scenes of a lap by pose, maybe none, degenerate ground truths absent. Precondition: lap < size().
     [[nodiscard]] std::vector<AnnotatedScene> make(std::size_t lap) const;
-    /// Whether `make` would give nothing, found out without making more than its first scene.
+    /// Whether `make` would give none with a ground truth, found out with as few scenes as possible.
     [[nodiscard]] bool is_empty(std::size_t lap) const;
 
   private:

@@ -1,12 +1,12 @@
 #include "experiments/scenes/scene_set.hpp"
 
 #include "experiments/files/input_error.hpp"
+#include "experiments/scenes/left_out_scenes.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/tracks/track_spec.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <iterator>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -14,7 +14,14 @@ namespace conelane::experiments {
 
 SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
                         const Shard& shard) {
+    LeftOutScenes left_out;
+    return make_scene_set(track_specs, options, shard, left_out);
+}
+
+SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
+                        const Shard& shard, LeftOutScenes& left_out) {
     validate(options);
+    left_out.clear();
     SceneSet set;
     std::size_t laps_with_scenes = 0;
     for (const std::string& spec : track_specs) {
@@ -25,25 +32,43 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
                 fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
             }
             const TrackLaps laps(track, options);
+            std::vector<std::string> of_track;  // left out
             for (std::size_t lap = 0; lap < laps.size(); ++lap) {
                 // Laps without a scene are not counted: no reader of a scenes file can know of them.
                 if (laps_with_scenes % shard.count != shard.index) {
                     if (!laps.is_empty(lap)) ++laps_with_scenes;
                     continue;
                 }
-                std::vector<AnnotatedScene> scenes = laps.make(lap);
-                if (!scenes.empty()) ++laps_with_scenes;
-                std::ranges::move(scenes, std::back_inserter(set.scenes));
+                const std::size_t scenes_before = set.scenes.size();
+                for (AnnotatedScene& scene : laps.make(lap)) {
+                    if (scene.ground_truth || !track.driven.empty()) {
+                        set.scenes.push_back(std::move(scene));
+                    } else {
+                        of_track.push_back(scene.scene.id);
+                    }
+                }
+                if (set.scenes.size() > scenes_before) ++laps_with_scenes;
             }
+            if (!of_track.empty()) merge(left_out, {{track.name, of_track}});
         }
     }
-    if (laps_with_scenes == 0)
-        throw InputError("", 0, "--tracks", "no pose sees two cones of both boundaries");
+    if (laps_with_scenes == 0) {
+        throw InputError("", 0, "--tracks",
+                         left_out.empty() ? "no pose sees two cones of both boundaries"
+                                          : "the ground truth of every scene is degenerate: are left and "
+                                            "right the wrong way round?");
+    }
+    if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     return set;
 }
 
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set) {
-    write_track_boundaries(track_boundaries_path(scenes_file), set.tracks);
+    write_scene_set(scenes_file, set, {});
+}
+
+void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set,
+                     const LeftOutScenes& left_out) {
+    write_track_boundaries(track_boundaries_path(scenes_file), set.tracks, left_out);
     write_scenes(scenes_file, set.scenes);
 }
 

@@ -80,8 +80,8 @@ struct SceneScore {
     bool divergence_known = false;  ///< annotated boundaries, or the path that was driven, were given
     std::optional<double> divergence_distance_m;  ///< absent where the lane does not diverge or it is unknown
     std::optional<Accuracy> accuracy;             ///< absent where the cone set holds no ground truth
-    /// Solved within kRldTimeLimit_ms with an absolute gap of at most kRldAbsoluteGap; absent where the
-    /// answer states no objective.
+    /// Within kRldTimeLimit_ms a gap of at most kRldAbsoluteGap, or the proof that there is no lane (which
+    /// RecordScorer fills in); absent where the answer states no objective.
     std::optional<bool> solved_to_optimality;
     std::optional<EnumerationScore> enumeration;
     double latency_ms = 0.0;

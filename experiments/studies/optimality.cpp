@@ -173,7 +173,7 @@ struct Sums {
         ++scenes;
         candidates += row.candidates;
         feasible += row.feasible;
-        if (row.status == SolveStatus::optimal) ++proven;
+        if (row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible) ++proven;
         const auto gap = row.gap();
         if (!gap) return;
         ++compared;

@@ -282,6 +282,21 @@ class ReportPage(unittest.TestCase):
                 self.assertEqual(stream.read(), self.text)
             self.assertEqual(os.listdir(folder), ["again.html"])
 
+    def test_says_how_many_scenes_are_left_out(self):
+        self.assertNotIn("left out everywhere", self.text)
+        with tempfile.TemporaryDirectory() as folder:
+            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
+            shutil.copytree(RESULTS, copy)
+            tracks = os.path.join(copy, "scenes.tracks.json")
+            with open(tracks, encoding="utf-8") as stream:
+                stored = json.load(stream)
+            stored["circle"]["left_out"] = ["circle/pose_0001/fp_0.00/range_30", "circle/pose_0002/fp_0.00/range_30"]
+            with open(tracks, "w", encoding="utf-8") as stream:
+                json.dump(stored, stream)
+            self.assertEqual(report(copy, page).returncode, 0)
+            with open(page, encoding="utf-8") as stream:
+                self.assertIn("<li>2 scenes are left out everywhere: the ground truth is degenerate", stream.read())
+
     def refused(self, results, page, *options):
         done = report(results, page, *options)
         self.assertEqual(done.returncode, 2, done.stderr)

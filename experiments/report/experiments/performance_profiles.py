@@ -1,8 +1,8 @@
 """Performance profiles
 
 Claim: Which exact method is fastest on most scenes, and how far behind are the others?
-Protocol: Dolan and Moré: the share of scenes that a method solves to proven optimality within a multiple of the \
-fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set and \
+Protocol: Dolan and Moré: the share of scenes that a method solves, be it that it proves the optimum or that there is \
+no lane, within a multiple of the fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set and \
 the same objective only; \
 what is unproven after 0.4 s counts as unsolved. Where the methods of the comparison saw different cone sets, those \
 of the sweep stand in.

@@ -40,7 +40,7 @@ def quality_table(results):
     columns = keys(results) + [Column("usable %"), Column("success %"), Column("mean IoU %"), Column("accurate %"), Column("solved %"),
                                Column("complete %")]
     return table("quality", "", columns, rows, row_attributes=attributes(results),
-                 note="Small: 95 % interval. Solved: proven optimal within 0.4 s. Complete: the enumeration came to "
+                 note="Small: 95 % interval. Solved: within 0.4 s proven optimal, or proven to have no lane. Complete: the enumeration came to "
                  f"its end.{note_on_training(results)}")
 
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "conelane/rld_parameters.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace conelane::experiments {
+
+class JsonNode;
+
+/// By which parameters a claim was made, so that nobody checks it by others. Files of earlier versions and of
+/// other programs may not say it: then a part is absent.
+struct ParameterTag {
+    std::optional<std::string> name;  ///< for people: a shipped set or a file, `default` without --params
+    std::optional<std::string> hash;  ///< of all parameters but the pairing, 16 hexadecimal digits
+    std::optional<Pairing> pairing;
+
+    bool operator==(const ParameterTag&) const = default;
+};
+
+/// `source`: what --params was given, empty where nothing was. Of a file the tag holds the name without its
+/// folder.
+[[nodiscard]] ParameterTag tag_of(const std::string& source, const RldParameters& parameters);
+
+/// The keys `parameters`, `parameters_hash` and `pairing`; each may be absent.
+[[nodiscard]] ParameterTag read_parameter_tag(const JsonNode& json);
+void put_parameter_tag(nlohmann::ordered_json& json, const ParameterTag& tag);
+
+/// How a claim was made, or is checked.
+struct ClaimBasis {
+    ParameterTag parameters;
+    std::optional<std::size_t> nearest;  ///< size of the cone set
+};
+
+/// Throws InputError naming file, line and key where the claim of that line was made by other parameters, by
+/// another pairing or among other cones than `checked` says. What one of both does not say is no difference;
+/// a claim with a tag and no size was made among all cones.
+void require_same_basis(const ClaimBasis& made, const ClaimBasis& checked, const std::filesystem::path& file,
+                        std::size_t line);
+
+}  // namespace conelane::experiments
