@@ -2,6 +2,7 @@
 
 #include "experiments/files/input_error.hpp"
 #include "experiments/scenes/scene_file.hpp"
+#include "experiments/scenes/scene_pair.hpp"
 #include "experiments/tracks/track_spec.hpp"
 
 #include <algorithm>
@@ -43,8 +44,7 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
 }
 
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set) {
-    write_track_boundaries(track_boundaries_path(scenes_file), set.tracks);
-    write_scenes(scenes_file, set.scenes);
+    write_scene_pair(scenes_file, set.scenes, set.tracks);
 }
 
 }  // namespace conelane::experiments
