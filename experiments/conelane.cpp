@@ -2,6 +2,7 @@
 
 #include "experiments/commands/commands.hpp"
 #include "experiments/files/interruption.hpp"
+#include "experiments/options/argument_words.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/provenance.hpp"
 #include "solvers/registry.hpp"
@@ -11,7 +12,9 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <span>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
@@ -41,12 +44,18 @@ void open_standard_streams() {
     }
 }
 
+/// Why a write to standard output failed, where that is known; the stream itself forgets it.
+int write_error = 0;
+
 /// The exit code, or that of a failure where the output did not reach its place.
 int flushed(int exit_code) {
+    errno = 0;
     std::cout.flush();
     const bool failed_before = std::ferror(stdout) != 0 || !std::cout;
     if (std::fflush(stdout) == 0 && !failed_before) return exit_code;
-    fmt::print(stderr, "conelane: standard output cannot be written to its end\n");
+    if (errno == 0) errno = write_error;
+    fmt::print(stderr, "conelane: standard output cannot be written to its end{}\n",
+               errno == 0 ? "" : ": " + std::generic_category().message(errno));
     return kBadInput;
 }
 
@@ -105,6 +114,8 @@ int run(int argument_count, char** arguments) {
         for (CLI::App* command : program.get_subcommands()) experiments::refuse_lost_inputs(*command);
     });
     try {
+        experiments::refuse_misread_words(
+            program, std::span(arguments, static_cast<std::size_t>(argument_count)).subspan(1));
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& help) {
         return program.exit(help);
@@ -112,6 +123,13 @@ int run(int argument_count, char** arguments) {
         return failed.get_exit_code();
     } catch (const CLI::ParseError& bad_option) {
         fmt::print(stderr, "conelane: {}\n", one_line(bad_option.what()));
+        return kBadInput;
+    } catch (const std::system_error& failure) {
+        if (std::ferror(stdout) != 0) {
+            write_error = failure.code().value();
+            return kBadInput;  // `flushed` says it
+        }
+        fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
         return kBadInput;
     } catch (const std::exception& failure) {
         if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` says it

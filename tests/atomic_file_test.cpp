@@ -72,7 +72,7 @@ TEST_F(AtomicFileTest, WritesDevicesDirectlyAndReportsAFullOne) {
                   full.stream() << std::string(100'000, 'x');
                   full.commit();
               }),
-              "/dev/full: cannot be written to its end");
+              "/dev/full: cannot be written to its end: No space left on device");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "experiments/files/lane_file.hpp"
 #include "tests/program_fixture.hpp"
+#include "tests/small_disk.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +23,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
-#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -274,32 +274,6 @@ TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
     EXPECT_EQ(answers("shared/rld-cbc.n014.lanes.jsonl"), answers("whole/rld-cbc.n014.lanes.jsonl"));
     EXPECT_EQ(results("shared"), results("whole"));
 }
-
-/// A disk of its own that is soon full; gone with the test.
-class SmallDisk {
-  public:
-    SmallDisk(fs::path folder, const std::string& size) : folder_(std::move(folder)) {
-        fs::create_directories(folder_);
-        mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
-    }
-    ~SmallDisk() {
-        if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
-    }
-    SmallDisk(const SmallDisk&) = delete;
-    SmallDisk& operator=(const SmallDisk&) = delete;
-    [[nodiscard]] bool is_mounted() const { return mounted_; }
-    void grow(const std::string& size) const {
-        ASSERT_EQ(::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()), 0);
-    }
-    void make_read_only(bool read_only) const {
-        ASSERT_EQ(
-            ::mount("tmpfs", folder_.c_str(), "tmpfs", MS_REMOUNT | (read_only ? MS_RDONLY : 0), nullptr), 0);
-    }
-
-  private:
-    fs::path folder_;
-    bool mounted_ = false;
-};
 
 // The disk is full after the scenes, after half of the answers, or in the scores. What fits stays, and with
 // room the run goes on.

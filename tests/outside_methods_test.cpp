@@ -225,8 +225,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(OutsideMethods, AProgramThatIsNotThereGivesErrorsAtOnce) {
     const auto start = std::chrono::steady_clock::now();
-    const std::string table =
-        run_well(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
+    const Outcome outcome = run(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
+    EXPECT_EQ(outcome.exit_code, 1) << "nothing was answered";
+    const std::string& table = outcome.output;
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
     for (const LaneRecord& record : lanes("r/none")) EXPECT_EQ(record.answer.status, LaneStatus::error);
     const std::string count = std::to_string(lanes("r/none").size());

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,11 +105,17 @@ TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
     };
     for (const char* command :
          {"methods", "--version", "--help", "score --scenes s.scenes.jsonl --lanes l.lanes.jsonl"}) {
-        for (const char* stream : {" >/dev/full", " >&-"}) {
+        for (const auto& [stream, reason] : {std::pair{" >/dev/full", "No space left on device"},
+                                             std::pair{" >&-", "Bad file descriptor"}}) {
             EXPECT_EQ(exit_code(std::string(command) + stream), 2) << command << stream;
-            EXPECT_EQ(text_of(path("stderr")), "conelane: standard output cannot be written to its end\n");
+            EXPECT_EQ(text_of(path("stderr")),
+                      std::string("conelane: standard output cannot be written to its end: ") + reason + "\n")
+                << command << stream;
         }
     }
+    EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out - >/dev/full"), 2);
+    EXPECT_EQ(text_of(path("stderr")),
+              "conelane: --out: cannot be written to its end: No space left on device\n");
     // A closed output is not given to the next file that is opened.
     EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
     EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));

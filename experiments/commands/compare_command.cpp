@@ -1,7 +1,9 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/page.hpp"
+#include "experiments/commands/unanswered.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/scoring/statistics.hpp"
 #include "experiments/tracks/generated_tracks.hpp"
 
@@ -85,8 +87,12 @@ void compare_and_print(Options& options) {
     if (!any_rld) options.parameters.require_not_given("these methods have");
     options.parameters.apply_to(comparison.run.method);
     comparison.scenes.threads = comparison.run.threads;
-    fmt::print("{}\n", compare(comparison, options.directory));
-    if (comparison.shard.count == 1) write_page(options.directory);  // merge makes that of all shards
+    const bool is_whole = comparison.shard.count == 1;  // merge makes the page of all shards
+    if (is_whole) require_own_page(options.directory);
+    const ComparisonOutcome outcome = compare(comparison, options.directory);
+    fmt::print("{}\n", outcome.table);
+    if (is_whole) write_page(options.directory);
+    report_errors(outcome.errors);
 }
 
 }  // namespace
@@ -138,7 +144,7 @@ void add_sweep_command(CLI::App& program) {
     add_shared_options(command, *options);
     command.add_option("--sizes", *sizes, "cone-set sizes")
         ->delimiter(',')
-        ->check(CLI::Range(1, 100000))
+        ->check(whole_number(1, kMostCones))
         ->capture_default_str();
     command.callback([options, sizes] {
         for (const std::string& method : split_methods(options->methods)) {
@@ -158,8 +164,11 @@ void add_merge_command(CLI::App& program) {
     command.add_option("--out", *directory, "directory of the whole")->required();
     add_overwrite_flag(command, *overwrite);
     command.callback([shards, directory, overwrite] {
-        fmt::print("{}\n", merge(*shards, *directory, *overwrite));
+        require_own_page(*directory);
+        const ComparisonOutcome outcome = merge(*shards, *directory, *overwrite);
+        fmt::print("{}\n", outcome.table);
         write_page(*directory);
+        report_errors(outcome.errors);
     });
 }
 

@@ -1,6 +1,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/cross_check/cross_check.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 
 #include <memory>
 #include <string>
@@ -53,7 +54,7 @@ void add_cross_check_command(CLI::App& program) {
     command.add_option("--first", drawn.first, "number of the first case, to cut a run into parts")
         ->capture_default_str();
     command.add_option("--cases", drawn.cases, "how many, those of a stopped run included")
-        ->check(CLI::Range(1, 100'000'000))
+        ->check(whole_number(1, 100'000'000))
         ->capture_default_str();
     command.add_option("--solvers", drawn.solvers, "exact ones; the first one's objectives are kept")
         ->delimiter(',')
@@ -61,7 +62,7 @@ void add_cross_check_command(CLI::App& program) {
     add_time_limit_option(command, drawn.time_limit_ms);
     add_threads_option(command, drawn.threads, "more than one disturbs what is proven under tight limits");
     command.add_option("--repeat", options->repetitions, "replay as often, or until the solvers differ")
-        ->check(CLI::Range(1, 1'000'000))
+        ->check(whole_number(1, 1'000'000))
         ->capture_default_str();
     command.callback([options] {
         if (run(*options) > 0) throw CLI::RuntimeError(1);

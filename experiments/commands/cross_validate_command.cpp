@@ -1,7 +1,9 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/page.hpp"
+#include "experiments/commands/unanswered.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/outside/outside_method.hpp"
 
 #include <algorithm>
@@ -59,8 +61,11 @@ void run(Options& options) {
     learned.threads = options.threads;
     run.comparison.scenes.threads = options.threads;
     run.comparison.run.threads = options.threads;
-    fmt::print("{}\n", cross_validate(run, options.directory));
+    require_own_page(options.directory);
+    const ComparisonOutcome outcome = cross_validate(run, options.directory);
+    fmt::print("{}\n", outcome.table);
     write_page(options.directory);
+    report_errors(outcome.errors);
 }
 
 }  // namespace
@@ -96,10 +101,10 @@ void add_cross_validate_command(CLI::App& program) {
     command
         .add_option("--variants", options->run.learning.variants,
                     "of each course that networks learn from too: stretched, every second one reversed")
-        ->check(CLI::Range(0, 100))
+        ->check(whole_number(0, 100))
         ->capture_default_str();
     command.add_option("--evaluations", options->run.learning.evaluations, "of parameters that are tuned")
-        ->check(CLI::Range(1, 100'000))
+        ->check(whole_number(1, 100'000))
         ->capture_default_str();
     command
         .add_option("--front-steps", options->run.learning.front_steps,

@@ -1,5 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/unanswered.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/file_text.hpp"
@@ -11,12 +12,14 @@
 #include "experiments/outside/outside_method.hpp"
 #include "experiments/scenes/scene_file.hpp"
 
+#include <cerrno>
 #include <cstddef>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <ostream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -45,15 +48,21 @@ class LaneSink {
     }
     void put(const LaneRecord& record) {
         std::ostream& stream = file_ ? file_->stream() : std::cout;
+        errno = 0;
         stream << lane_line(record) << '\n' << std::flush;
-        if (!stream) throw InputError("", 0, "--out", "cannot be written to its end");
+        if (!stream)
+            throw InputError("", 0, "--out",
+                             "cannot be written to its end: " + std::generic_category().message(errno));
+        add_answer_of(errors_, record);
     }
     void commit() {
         if (file_) file_->commit();
+        report_errors(errors_);
     }
 
   private:
     std::optional<AtomicFile> file_;
+    AnswerErrors errors_;
 };
 
 /// A method and the name that its answers bear.
@@ -123,7 +132,11 @@ void detect(Options& options) {
         return;
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    write_lanes(options.out, run(method.name, method.make, scenes, options.run));
+    const std::vector<LaneRecord> lanes = run(method.name, method.make, scenes, options.run);
+    write_lanes(options.out, lanes);
+    AnswerErrors errors;
+    for (const LaneRecord& record : lanes) add_answer_of(errors, record);
+    report_errors(errors);
 }
 
 }  // namespace

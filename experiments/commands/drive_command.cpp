@@ -1,6 +1,7 @@
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/unanswered.hpp"
 #include "experiments/files/drivable_lane_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
@@ -65,6 +66,12 @@ DrivableRecord drive(const LaneRecord& record, const Scene& scene, const Options
     }
 }
 
+AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
+    AnswerErrors errors;
+    for (const LaneRecord& record : records) add_answer_of(errors, record);
+    return errors;
+}
+
 void drive_all(const Options& options) {
     const std::vector<LaneRecord> records = chosen_lanes(options);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
@@ -81,6 +88,7 @@ void drive_all(const Options& options) {
     }
     if (options.format == "json") {
         write_drivable_lanes(options.out, lanes);
+        report_errors(errors_among(records));
         return;
     }
     const LaneRecord& only = records.front();

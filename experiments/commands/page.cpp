@@ -1,21 +1,58 @@
 #include "experiments/commands/page.hpp"
 
+#include "experiments/files/input_error.hpp"
+#include "experiments/report/package.hpp"
 #include "experiments/report/report.hpp"
 
-#include <exception>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace conelane::experiments {
+namespace {
 
-void write_page(const std::filesystem::path& directory) {
-    const std::filesystem::path page = directory / "report.html";
+namespace fs = std::filesystem;
+
+fs::path page_in(const fs::path& directory) {
+    return directory / "report.html";
+}
+
+}  // namespace
+
+void require_own_page(const fs::path& directory) {
+    // As report/page.py writes it, near the beginning.
+    constexpr std::string_view kTitle = "<title>conelane: ";
+    constexpr std::size_t kBeginning = 2000;
+    const fs::path page = page_in(directory);
+    std::error_code ignored;
+    if (!fs::is_regular_file(page, ignored) || fs::file_size(page, ignored) == 0) return;
+    std::string beginning(kBeginning, ' ');
+    std::ifstream(page, std::ios::binary).read(beginning.data(), kBeginning);
+    if (beginning.find(kTitle) != std::string::npos) return;
+    throw InputError(page, 0, "",
+                     "is no page of conelane and would be replaced; move it, or name another directory");
+}
+
+void write_page(const fs::path& directory) {
+    const fs::path page = page_in(directory);
     try {
         write_report(directory, page);
-        fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
-    } catch (const std::exception& failure) {
-        fmt::print("all of it in {}; no page: {}\n", directory.string(), failure.what());
+    } catch (const NoPython& missing) {
+        fmt::print("all of it in {}; no page: {}\n", directory.string(), missing.what());
+        return;
+    } catch (const PackageRefused&) {
+        fmt::print("all of it in {}, but no page\n", directory.string());
+        constexpr int kFailed = 2;
+        throw CLI::RuntimeError(kFailed);  // it has said why
+    } catch (const std::exception&) {
+        fmt::print("all of it in {}, but no page\n", directory.string());
+        throw;
     }
+    fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
 }
 
 }  // namespace conelane::experiments

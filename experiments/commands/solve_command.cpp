@@ -1,6 +1,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/unanswered.hpp"
 #include "experiments/files/solution_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress.hpp"
@@ -93,7 +94,16 @@ void solve_all(const Options& options) {
         progress.advance();
     }
     write_solutions(options.out, records);
+    AnswerErrors errors;
+    for (const SolutionRecord& record : records) {
+        if (record.status == to_string(SolveStatus::error)) {
+            errors.add_error(record.solver, record.scene, record.message);
+        } else {
+            errors.add_answer(record.solver);
+        }
+    }
     fmt::print("{} scenes: {}, in {}\n", records.size(), status_counts(records), options.out);
+    report_errors(errors);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "experiments/files/rank_net_file.hpp"
 #include "experiments/files/step_score_file.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/training/training_run.hpp"
 #include "graph_search/clc_detector.hpp"
 
@@ -121,7 +122,9 @@ constexpr int kMost = 1'000'000;
 
 CLI::Option& add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
                               const std::string& meaning, int least = 1) {
-    return *command.add_option(name, count, meaning)->check(CLI::Range(least, kMost))->capture_default_str();
+    return *command.add_option(name, count, meaning)
+                ->check(whole_number(static_cast<std::size_t>(least), kMost))
+                ->capture_default_str();
 }
 
 void add_number_option(CLI::App& command, const std::string& name, double& number,
@@ -193,14 +196,16 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
 
 void add_train_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
-        "train", "trains the ranking network of clc, or the step scores of its beam search");
+        "train",
+        "trains the ranking network of clc, or the step scores of its beam search; `train front` the "
+        "networks of front, see `conelane train front --help`");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     CLI::Option& variants = add_track_options(command, run);
     add_count_option(command, "--candidates", run.candidates.most_per_scene,
                      "of a scene at most, drawn at random; 0 for all", 0);
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
-        ->check(CLI::Range(1, kMost))
+        ->check(whole_number(1, kMost))
         ->capture_default_str();
     add_kind_options(command, *options, variants);
     add_step_options(command, options->step_training);

@@ -3,6 +3,7 @@
 #include "experiments/files/front_weights_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/training/front_training_run.hpp"
 
 #include <cstdint>
@@ -60,7 +61,9 @@ void train(const Options& options) {
 void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
                       const std::string& meaning, int least = 1) {
     constexpr int kMost = 10'000'000;
-    command.add_option(name, count, meaning)->check(CLI::Range(least, kMost))->capture_default_str();
+    command.add_option(name, count, meaning)
+        ->check(whole_number(static_cast<std::size_t>(least), kMost))
+        ->capture_default_str();
 }
 
 void add_number_option(CLI::App& command, const std::string& name, double& number,

@@ -5,6 +5,7 @@
 #include "experiments/files/json_node.hpp"
 #include "experiments/files/parameter_file.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_options_json.hpp"
@@ -201,14 +202,19 @@ void run(Options& options) {
         };
         tuned = tune(evaluate, start, options.tuner, propose);
     }
-    write_rld_parameters(options.out, tuned.parameters);
     ordered_json record = record_of(options, start, tuned);
     const FailureCounts failures = count_failures(evaluation.scenes(), tuned.parameters, options.evaluation);
     record["losses"] = failures.causes;  // the name in all records so far
     record["wrong_cones"] = failures.places;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
-    file.commit();
+    file.finish();
+    {
+        // Both or neither: what is left is to give the record its name.
+        const auto held = hold_interruption();
+        write_rld_parameters(options.out, tuned.parameters);
+        file.commit();
+    }
 
     fmt::print("{} on {} scenes: {:.2f} % before, {:.2f} % after\n", to_string(options.evaluation.objective),
                evaluation.scenes().size(), 100.0 * mean_over_scenes(tuned.laps_of_start),
@@ -251,29 +257,29 @@ void add_tune_command(CLI::App& program) {
             "--context", [options](std::size_t count) { options->evaluation.context = count; },
             "find the lane among this many nearest cones, then cut it to --nearest")
         ->needs("--nearest")
-        ->check(CLI::Range(1, 100'000));
+        ->check(whole_number(1, 100'000));
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
         .add_option("--most-nodes", options->evaluation.most_nodes,
                     "of a scene's search; one that takes more counts as wrong")
-        ->check(CLI::Range(1, 1'000'000'000))
+        ->check(whole_number(1, 1'000'000'000))
         ->capture_default_str();
     command
         .add_option("--folds", options->tuner.folds,
                     "groups of tracks, each of which is held out once; 1 holds none out")
-        ->check(CLI::Range(1, 1000))
+        ->check(whole_number(1, 1000))
         ->capture_default_str();
     command
         .add_option("--rounds", options->rounds,
                     "of fitting the weights to the lane graphs found so far, before the search of each fit; "
                     "not in the log")
-        ->check(CLI::Range(0, 1000))
+        ->check(whole_number(0, 1000))
         ->capture_default_str();
     command
         .add_option("--evaluations", options->tuner.evaluations,
                     "parameters that the search evaluates in each fit, at most")
-        ->check(CLI::Range(0, 1'000'000))
+        ->check(whole_number(0, 1'000'000))
         ->capture_default_str();
     command.add_option(
         "--start", options->start,

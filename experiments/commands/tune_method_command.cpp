@@ -2,12 +2,14 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_options_json.hpp"
 #include "experiments/scenes/scene_set.hpp"
 #include "experiments/tuning/method_tuning.hpp"
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -46,12 +48,6 @@ ordered_json record_of(const Options& options, const TunedMethod& tuned) {
     return json;
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-    AtomicFile output(file);
-    output.stream() << text;
-    output.commit();
-}
-
 void run(Options& options) {
     const TunableMethod& method = find_tunable_method(options.method);
     options.scenes.threads = options.tuning.threads;
@@ -62,9 +58,11 @@ void run(Options& options) {
         Progress progress("tune " + options.method, options.tuning.evaluations);
         tuned = tune_method(method, set, options.tuning, [&] { progress.advance(); });
     }
-    write(options.out, to_json_text(method, tuned.values));
-    write(std::filesystem::path(options.out).replace_extension(".record.json"),
-          record_of(options, tuned).dump(2) + "\n");
+    AtomicFile record(std::filesystem::path(options.out).replace_extension(".record.json"));
+    record.stream() << record_of(options, tuned).dump(2) << '\n';
+    AtomicFile parameters(options.out);
+    parameters.stream() << to_json_text(method, tuned.values);
+    commit_together(std::array{&record, &parameters});
     const auto text = [](const MethodFigure& figure) {
         return fmt::format("{:.1f} % usable, IoU {:.1f} %", 100.0 * figure.usable, 100.0 * figure.iou);
     };
@@ -89,7 +87,7 @@ void add_tune_method_command(CLI::App& program) {
         ->required();
     add_scene_options(command, options->scenes);
     command.add_option("--evaluations", options->tuning.evaluations, "parameters that the search evaluates")
-        ->check(CLI::Range(1, 1'000'000))
+        ->check(whole_number(1, 1'000'000))
         ->capture_default_str();
     add_threads_option(command, options->tuning.threads, "scenes answered at a time");
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();

@@ -69,6 +69,14 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
     return lanes;
 }
 
+AnswerErrors errors_among(const std::vector<std::vector<LaneRecord>>& files) {
+    AnswerErrors errors;
+    for (const std::vector<LaneRecord>& records : files) {
+        for (const LaneRecord& record : records) add_answer_of(errors, record);
+    }
+    return errors;
+}
+
 void write_text(const fs::path& file, const std::string& text) {
     AtomicFile output(file);
     output.stream() << text;
@@ -77,8 +85,9 @@ void write_text(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-std::string score_directory(const fs::path& directory, const SceneSet& set,
-                            const std::vector<std::string>& lanes_files, const std::string& run_record) {
+ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set,
+                                  const std::vector<std::string>& lanes_files,
+                                  const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
     const OutsideMethods outside{outside_methods_of_record(run_record),
@@ -98,10 +107,10 @@ std::string score_directory(const fs::path& directory, const SceneSet& set,
     const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
     const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
     write_text(directory / "table.txt", table);
-    return table;
+    return {table, errors_among(records)};
 }
 
-std::string compare(const ComparisonOptions& options, const fs::path& directory) {
+ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
     std::set<std::string> lanes_of_entrants;
     bool any_program = false;
     for (const Entrant& entrant : options.entrants) {

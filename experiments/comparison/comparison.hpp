@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/comparison/answer_errors.hpp"
 #include "experiments/comparison/run_record.hpp"
 #include "experiments/scenes/scene_set.hpp"
 
@@ -8,6 +9,12 @@
 #include <vector>
 
 namespace conelane::experiments {
+
+/// What a comparison has to say beside its files.
+struct ComparisonOutcome {
+    std::string table;
+    AnswerErrors errors;
+};
 
 /// The main job. Every entrant on the same scenes, scored in the same way, everything on file in the
 /// directory:
@@ -20,20 +27,20 @@ namespace conelane::experiments {
 ///   results.jsonl          a line per method, rate and range, with provenance
 ///   table.txt              the same for reading
 ///
-/// A run that was stopped goes on after its last whole lap. Returns the table. Throws InputError or
+/// A run that was stopped goes on after its last whole lap. Throws InputError or
 /// InvalidInput, so where the directory holds another run (see open_run).
-[[nodiscard]] std::string compare(const ComparisonOptions& options, const std::filesystem::path& directory);
+[[nodiscard]] ComparisonOutcome compare(const ComparisonOptions& options,
+                                        const std::filesystem::path& directory);
 
 /// Joins the shards of one run into what the whole run would have written, but for the times. Throws
 /// InputError where they are not all shards of one run: other commit, compiler or options, one missing, one
 /// twice; where the directory is one of them, or holds another run that may not be overwritten.
-[[nodiscard]] std::string merge(const std::vector<std::filesystem::path>& shards,
-                                const std::filesystem::path& directory, bool overwrite = false);
+[[nodiscard]] ComparisonOutcome merge(const std::vector<std::filesystem::path>& shards,
+                                      const std::filesystem::path& directory, bool overwrite = false);
 
-/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there. Returns the
-/// table.
-[[nodiscard]] std::string score_directory(const std::filesystem::path& directory, const SceneSet& set,
-                                          const std::vector<std::string>& lanes_files,
-                                          const std::string& run_record);
+/// Scores the lanes in a directory and writes scores.jsonl, results.jsonl and table.txt there.
+[[nodiscard]] ComparisonOutcome score_directory(const std::filesystem::path& directory, const SceneSet& set,
+                                                const std::vector<std::string>& lanes_files,
+                                                const std::string& run_record);
 
 }  // namespace conelane::experiments

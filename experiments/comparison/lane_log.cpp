@@ -2,7 +2,9 @@
 
 #include "experiments/files/input_error.hpp"
 
+#include <cerrno>
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -34,7 +36,7 @@ LaneLog::LaneLog(const fs::path& file) : file_(file), part_(file.string() + ".pa
 }
 
 void LaneLog::keep(std::size_t count) {
-    stream_.close();
+    if (stream_.is_open()) stream_.close();
     std::error_code failure;
     if (fs::exists(part_)) {
         const Lines lines = whole_lines(part_, count);
@@ -42,17 +44,19 @@ void LaneLog::keep(std::size_t count) {
         stored_ = lines.count;
     }
     stream_.open(part_, std::ios::binary | std::ios::app);
-    if (failure || !stream_) throw InputError(part_, 0, "", "cannot be written");
+    if (!stream_) failure = std::error_code(errno, std::generic_category());
+    if (failure) throw InputError(part_, 0, "", "cannot be written: " + failure.message());
 }
 
 void LaneLog::append(std::span<const LaneRecord> records) {
     for (const LaneRecord& record : records) stream_ << lane_line(record) << '\n';
     stream_.flush();
-    if (!stream_) throw InputError(part_, 0, "", "cannot be written to its end");
+    stream_.require_written(part_);
 }
 
 void LaneLog::finish() {
     stream_.close();
+    stream_.require_written(part_);
     std::error_code failure;
     fs::rename(part_, file_, failure);
     if (failure) throw InputError(file_, 0, "", "cannot be written: " + failure.message());

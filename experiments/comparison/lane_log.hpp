@@ -1,10 +1,10 @@
 #pragma once
 
 #include "experiments/files/lane_file.hpp"
+#include "experiments/files/output_stream.hpp"
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <vector>
 
@@ -32,7 +32,7 @@ class LaneLog {
     std::filesystem::path file_;
     std::filesystem::path part_;
     std::size_t stored_ = 0;
-    std::ofstream stream_;
+    OutputStream stream_;
 };
 
 }  // namespace conelane::experiments

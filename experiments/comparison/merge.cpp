@@ -89,7 +89,7 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
 
 }  // namespace
 
-std::string merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
+ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& directory, bool overwrite) {
     for (const fs::path& shard : shards) {
         std::error_code ignored;
         if (fs::equivalent(shard, directory, ignored)) {

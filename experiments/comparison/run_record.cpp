@@ -5,6 +5,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/file_hash.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/json_node.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_options_json.hpp"
 
@@ -173,9 +174,7 @@ std::string read_run_record(const fs::path& directory) {
     std::ifstream stream(file);
     std::string record;
     if (!std::getline(stream, record)) throw InputError(file, 0, "", "cannot be read");
-    const nlohmann::json json = nlohmann::json::parse(record, nullptr, false);
-    if (json.is_discarded()) throw InputError(file, 1, "", "is no JSON");
-    if (!json.is_object()) throw InputError(file, 1, "", "must be an object");
+    with_json_line(record, file, 1, [](const JsonNode& /*checked*/) {});
     return record;
 }
 

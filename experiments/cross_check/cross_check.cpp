@@ -6,6 +6,7 @@
 #include "experiments/files/folder_lock.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
+#include "experiments/files/output_stream.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/provenance.hpp"
 #include "experiments/scenes/scene_file.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -72,7 +74,8 @@ class CaseLog {
         std::error_code failure;
         if (fs::exists(file)) fs::resize_file(file, whole, failure);
         stream_.open(file, std::ios::binary | std::ios::app);
-        if (failure || !stream_) throw InputError(file, 0, "", "cannot be written");
+        if (!stream_) failure = std::error_code(errno, std::generic_category());
+        if (failure) throw InputError(file, 0, "", "cannot be written: " + failure.message());
         if (whole == 0) write(to_line(record));
     }
 
@@ -109,12 +112,12 @@ class CaseLog {
     void write(const std::string& line) {
         stream_ << line << '\n';
         stream_.flush();
-        if (!stream_) throw InputError(file_, 0, "", "cannot be written to its end");
+        stream_.require_written(file_);
     }
 
     fs::path file_;
     CrossCheckSummary& summary_;
-    std::ofstream stream_;
+    OutputStream stream_;
 };
 
 /// Who a finding is about, and whether it is an error or a claim: "glpk (tight)", "cbc (paper): error".

@@ -74,7 +74,7 @@ void check(const CrossValidationOptions& options) {
 
 }  // namespace
 
-std::string cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
+ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs::path& directory) {
     check(options);
     const auto family_of =
         std::make_shared<const std::map<std::string, std::string>>(family_of_courses(options));

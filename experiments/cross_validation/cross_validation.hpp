@@ -29,7 +29,7 @@ struct CrossValidationOptions {
 /// them as it is. Writes what `compare` writes to the directory, and what was learned to
 /// folds/FAMILY/ below it. A run that was stopped goes on. Returns the table. Throws InputError or
 /// InvalidInput, so where a course belongs to two families, or to one and to those always learned from.
-[[nodiscard]] std::string cross_validate(const CrossValidationOptions& options,
-                                         const std::filesystem::path& directory);
+[[nodiscard]] ComparisonOutcome cross_validate(const CrossValidationOptions& options,
+                                               const std::filesystem::path& directory);
 
 }  // namespace conelane::experiments

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -35,17 +36,49 @@ bool is_open_descriptor(const fs::path& target) {
     throw InputError(target, 0, "", "cannot be written: " + std::generic_category().message(error));
 }
 
+/// A name beside `place` that no other process takes.
+fs::path temporary_name(const fs::path& place, int attempt) {
+    fs::path name = place;
+    name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+    return name;
+}
+
 /// Creates an empty file beside `place` under a name that no other file has.
 fs::path create_temporary(const fs::path& place, const fs::path& target) {
     for (int attempt = 0;; ++attempt) {
-        fs::path name = place;
-        name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
+        fs::path name = temporary_name(place, attempt);
         const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             ::close(descriptor);
             return name;
         }
         if (errno != EEXIST) fail(target, errno);
+    }
+}
+
+/// Keeps the file that stands at `place` under another name too; no name where there is none, or where the
+/// file system has no hard links.
+fs::path kept_aside(const fs::path& place) {
+    for (int attempt = 0;; ++attempt) {
+        fs::path name = temporary_name(place, attempt);
+        if (::link(place.c_str(), name.c_str()) == 0) return name;
+        if (errno != EEXIST) return {};
+    }
+}
+
+/// A file that has its name already, and what it replaced.
+struct Renamed {
+    fs::path place;
+    fs::path aside;
+    bool is_new;
+};
+
+void undo(const Renamed& renamed) {
+    std::error_code ignored;
+    if (!renamed.aside.empty()) {
+        fs::rename(renamed.aside, renamed.place, ignored);
+    } else if (renamed.is_new) {
+        fs::remove(renamed.place, ignored);
     }
 }
 
@@ -99,17 +132,42 @@ AtomicFile::~AtomicFile() {
     fs::remove(temporary_, ignored);
 }
 
+void AtomicFile::finish() {
+    if (is_open_) stream_.close();
+    is_open_ = false;
+    stream_.require_written(target_);
+}
+
 void AtomicFile::commit() {
-    stream_.close();
-    // The stream does not keep the reason of a write that failed before.
-    if (!stream_) throw InputError(target_, 0, "", "cannot be written to its end");
-    if (temporary_.empty()) return;
+    AtomicFile* const only = this;
+    commit_together({&only, 1});
+}
+
+void commit_together(std::span<AtomicFile* const> files) {
+    for (AtomicFile* file : files) file->finish();
     const auto held = hold_interruption();
-    std::error_code error;
-    fs::rename(temporary_, place_, error);
-    if (error) fail(target_, error.value());
-    temporary_.clear();
-    clearing_.reset();
+    std::vector<Renamed> done;
+    std::error_code ignored;
+    for (AtomicFile* file : files) {
+        if (file->temporary_.empty()) continue;
+        const bool is_new = !fs::exists(fs::symlink_status(file->place_, ignored));
+        done.push_back(
+            {file->place_, is_new || files.size() == 1 ? fs::path{} : kept_aside(file->place_), is_new});
+        std::error_code error;
+        fs::rename(file->temporary_, file->place_, error);
+        if (!error) continue;
+        if (!done.back().aside.empty()) fs::remove(done.back().aside, ignored);
+        done.pop_back();
+        for (const Renamed& renamed : done | std::views::reverse) undo(renamed);
+        fail(file->target_, error.value());
+    }
+    for (const Renamed& renamed : done) {
+        if (!renamed.aside.empty()) fs::remove(renamed.aside, ignored);
+    }
+    for (AtomicFile* file : files) {
+        file->temporary_.clear();
+        file->clearing_.reset();
+    }
 }
 
 void require_writable(const fs::path& target) {

@@ -1,11 +1,12 @@
 #pragma once
 
 #include "experiments/files/interruption.hpp"
+#include "experiments/files/output_stream.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <ostream>
+#include <span>
 
 namespace conelane::experiments {
 
@@ -23,17 +24,25 @@ class AtomicFile {
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
 
-    /// Closes the file and gives it its name. Throws InputError naming the target where that fails, be it
-    /// that the disk is full.
+    /// Closes the file, which is then whole under its temporary name. Throws InputError naming the target
+    /// where it could not be written to its end, be it that the disk is full.
+    void finish();
+    /// Finishes the file and gives it its name. Throws InputError naming the target where that fails.
     void commit();
+    /// Finishes all files, and only then gives them their names, in their order. No signal comes in between.
+    /// Where one cannot have its name, those before it get back what was there.
+    friend void commit_together(std::span<AtomicFile* const> files);
 
   private:
     std::filesystem::path target_;     ///< as the caller spelled it, for messages
     std::filesystem::path place_;      ///< where the file goes: the target with symbolic links followed
     std::filesystem::path temporary_;  ///< empty where the target is written directly or is in place
     std::optional<ClearOnInterruption> clearing_;  ///< of the temporary file
-    std::ofstream stream_;
+    bool is_open_ = true;
+    OutputStream stream_;
 };
+
+void commit_together(std::span<AtomicFile* const> files);
 
 /// Removes what a program that was killed left in a folder under temporary names. Precondition: no other
 /// program writes there.

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <set>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +21,130 @@ namespace conelane::experiments {
 namespace {
 
 using nlohmann::json;
+
+/// Builds the value that a text holds. Of a key that an object has twice nlohmann's own parser keeps the last
+/// value in silence; here reading ends at the second.
+class ValueBuilder : public nlohmann::json_sax<json> {
+  public:
+    bool null() override { return put(nullptr); }
+    bool boolean(bool value) override { return put(value); }
+    bool number_integer(number_integer_t value) override { return put(value); }
+    bool number_unsigned(number_unsigned_t value) override { return put(value); }
+    bool number_float(number_float_t value, const string_t& /*text*/) override { return put(value); }
+    bool string(string_t& value) override { return put(std::move(value)); }
+    bool binary(binary_t& /*value*/) override { return false; }
+    bool start_object(std::size_t /*size*/) override { return open(json::object()); }
+    bool key(string_t& name) override {
+        const auto [member, is_new] =
+            open_.back()->get_ref<json::object_t&>().emplace(std::move(name), nullptr);
+        member_ = &member->second;
+        has_duplicate = !is_new;
+        return is_new;
+    }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t /*size*/) override { return open(json::array()); }
+    bool end_array() override { return close(); }
+    bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
+                     const json::exception& /*error*/) override {
+        return false;
+    }
+
+    json built;
+    bool has_duplicate = false;
+
+  private:
+    json& place(json&& part) {
+        if (open_.empty()) return built = std::move(part);
+        if (!open_.back()->is_array()) return *member_ = std::move(part);
+        open_.back()->push_back(std::move(part));
+        return open_.back()->back();
+    }
+    bool put(json part) {
+        place(std::move(part));
+        return true;
+    }
+    bool open(json part) {
+        open_.push_back(&place(std::move(part)));
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    std::vector<json*> open_;  ///< the arrays and objects around what comes next
+    json* member_ = nullptr;   ///< of the innermost one, where that is an object
+};
+
+/// Walks through JSON up to the first key that its object has already.
+class DuplicateFinder : public nlohmann::json_sax<json> {
+  public:
+    explicit DuplicateFinder(std::string_view text) : stream_(std::string(text)) {
+        json::sax_parse(stream_, this);
+    }
+    bool null() override { return next(); }
+    bool boolean(bool /*value*/) override { return next(); }
+    bool number_integer(number_integer_t /*value*/) override { return next(); }
+    bool number_unsigned(number_unsigned_t /*value*/) override { return next(); }
+    bool number_float(number_float_t /*value*/, const string_t& /*text*/) override { return next(); }
+    bool string(string_t& /*value*/) override { return next(); }
+    bool binary(binary_t& /*value*/) override { return next(); }
+    bool start_object(std::size_t /*size*/) override {
+        open_.push_back({});
+        return true;
+    }
+    bool key(string_t& name) override {
+        open_.back().key = name;
+        if (open_.back().keys.insert(name).second) return true;
+        // The stream was read to the end of this key and no further.
+        position_ = static_cast<std::size_t>(stream_.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in));
+        return false;
+    }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t /*size*/) override {
+        open_.push_back({.is_array = true});
+        return true;
+    }
+    bool end_array() override { return close(); }
+    bool parse_error(std::size_t /*position*/, const std::string& /*token*/,
+                     const json::exception& /*error*/) override {
+        return false;
+    }
+
+    [[nodiscard]] std::size_t position() const { return position_; }
+    /// Such as "cones[3].x".
+    [[nodiscard]] std::string path() const {
+        std::string path;
+        for (const Level& level : open_) {
+            if (level.is_array) {
+                path += fmt::format("[{}]", level.index);
+            } else {
+                path += (path.empty() ? "" : ".") + level.key;
+            }
+        }
+        return path;
+    }
+
+  private:
+    struct Level {
+        bool is_array = false;
+        std::size_t index = 0;
+        std::string key = {};
+        std::set<std::string> keys = {};
+    };
+    bool next() {
+        if (!open_.empty()) ++open_.back().index;
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return next();
+    }
+
+    std::istringstream stream_;
+    std::vector<Level> open_;
+    std::size_t position_ = 0;
+};
 
 /// Walks through JSON only to see where it goes wrong.
 class ErrorFinder : public nlohmann::json_sax<json> {
@@ -84,13 +210,20 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
     throw InputError(file, line, finder.last_key, reason);
 }
 
-/// Throws InputError where the text is not one JSON value.
+[[noreturn]] void fail_on_duplicate(std::string_view text, const std::filesystem::path& file,
+                                    std::size_t first_line) {
+    const DuplicateFinder finder(text);
+    const auto lines_before = std::ranges::count(text.substr(0, finder.position()), '\n');
+    throw InputError(file, first_line + static_cast<std::size_t>(lines_before), finder.path(),
+                     "is there twice");
+}
+
+/// Throws InputError where the text is not one JSON value, or an object of it has a key twice.
 json parse(std::string_view text, const std::filesystem::path& file, std::size_t first_line) {
-    try {
-        return json::parse(text);
-    } catch (const json::exception&) {
-        fail_on_invalid_json(text, file, first_line);
-    }
+    ValueBuilder builder;
+    if (json::sax_parse(text, &builder)) return std::move(builder.built);
+    if (builder.has_duplicate) fail_on_duplicate(text, file, first_line);
+    fail_on_invalid_json(text, file, first_line);
 }
 
 std::ifstream open(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/files/atomic_file.hpp"
+#include "experiments/files/folder_lock.hpp"
 #include "experiments/files/gzip.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/scenes/scene_set.hpp"
@@ -16,7 +17,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -108,10 +111,46 @@ std::string name_of(const std::string& id, const std::optional<std::size_t>& nea
     return name;
 }
 
-void write(const std::filesystem::path& file, const std::string& content) {
-    AtomicFile output(file);
-    output.stream() << content;
-    output.commit();
+constexpr const char* kList = "conelane.test";
+constexpr const char* kSolutions = "conelane.solu";
+constexpr std::string_view kProgramEnding = ".mps.gz";
+
+/// Files that get their names together, when all of them are whole. Until then no more than one is open.
+class Files {
+  public:
+    void add(const std::filesystem::path& file, const std::string& content) {
+        AtomicFile& output = *files_.emplace_back(std::make_unique<AtomicFile>(file));
+        output.stream() << content;
+        output.finish();
+    }
+    void commit() const {
+        std::vector<AtomicFile*> all;
+        for (const auto& file : files_) all.push_back(file.get());
+        commit_together(all);
+    }
+
+  private:
+    std::vector<std::unique_ptr<AtomicFile>> files_;
+};
+
+/// The programs of the library that a folder holds, by the names in its list. Throws InputError where the
+/// folder holds a program that its list does not name: nobody could tell it from those of another library.
+std::vector<std::filesystem::path> listed_programs(const std::filesystem::path& folder) {
+    std::set<std::string> names;
+    std::ifstream list(folder / kList);
+    for (std::string name; std::getline(list, name);) names.insert(name);
+    std::vector<std::filesystem::path> programs;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.ends_with(kProgramEnding)) continue;
+        if (!names.contains(name)) {
+            throw InputError(
+                folder, 0, "",
+                fmt::format("holds {}, which its {} does not name; name another folder", name, kList));
+        }
+        programs.push_back(entry.path());
+    }
+    return programs;
 }
 
 std::string mps_text(const Instance& instance) {
@@ -178,7 +217,12 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
+    const FolderLock lock(folder);
+    remove_abandoned_files(folder);
+    const std::vector<std::filesystem::path> earlier = listed_programs(folder);
     InstanceCounts counts;
+    Files files;
+    std::set<std::filesystem::path> written;
     std::string list;
     std::string solutions;
     for (const InstanceScene& set : scenes) {
@@ -190,16 +234,24 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
                 ++counts.too_large;
                 continue;
             }
-            write(folder / (name + ".mps.gz"), gzipped(mps_text(*instance)));
-            list += name + ".mps.gz\n";
+            const std::string file = name + std::string(kProgramEnding);
+            files.add(folder / file, gzipped(mps_text(*instance)));
+            written.insert(folder / file);
+            list += file + '\n';
             solutions += solution_lines(*instance);
             ++counts.written;
             counts.optimal += instance->optimum.status == KnownOptimum::Status::optimal ? 1 : 0;
             counts.infeasible += instance->optimum.status == KnownOptimum::Status::infeasible ? 1 : 0;
         }
     }
-    write(folder / "conelane.test", list);
-    write(folder / "conelane.solu", solutions);
+    files.add(folder / kSolutions, solutions);
+    files.add(folder / kList, list);
+    // A signal finds the old library or the new one.
+    const auto held = hold_interruption();
+    files.commit();
+    for (const std::filesystem::path& file : earlier) {
+        if (!written.contains(file)) std::filesystem::remove(file);
+    }
     return counts;
 }
 

@@ -77,7 +77,9 @@ struct InstanceCounts {
 /// conelane.test, the list of these files, and conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or where the
 /// optimum is open `=best= NAME VALUE` and `=bestdual= NAME VALUE`, each where it is known. The same scenes
 /// give the same files, but for open ones, which depend on the clock. `advance` is called after each program.
-/// Throws InputError.
+/// The library that the folder held is replaced by its list when all files of the new one are whole; until
+/// then it stays. Throws InputError, so where the folder holds a program that no list names, or another
+/// process writes there.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,
                                              std::span<const InstanceScene> scenes,
                                              const InstanceOptions& options,

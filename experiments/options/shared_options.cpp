@@ -5,6 +5,7 @@
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/parameter_file.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/scenes/scene_file.hpp"
 
 #include <algorithm>
@@ -211,7 +212,7 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, 
     command
         .add_option_function<std::size_t>(
             "--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
-        ->check(CLI::Range(1, 100000));
+        ->check(whole_number(1, kMostCones));
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
@@ -249,7 +250,7 @@ void refuse_lost_inputs(CLI::App& command) {
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
     command.add_option("--threads", threads, meaning)
-        ->check(CLI::Range(1U, kMostThreads))
+        ->check(whole_number(1, kMostThreads))
         ->capture_default_str();
 }
 

@@ -2,12 +2,14 @@
 
 #include "experiments/files/atomic_file.hpp"
 #include "experiments/files/input_error.hpp"
+#include "experiments/files/output_stream.hpp"
 #include "experiments/report/archive.hpp"
 
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <system_error>
 
 #include <fcntl.h>
@@ -64,17 +66,18 @@ std::string find_python(const std::string& wished) {
             "sys.exit(not (sys.version_info >= (3, 10) and find_spec('numpy') and find_spec('matplotlib')))";
         if (run({python, "-c", probe}, true) == 0) return python;
     }
-    throw std::runtime_error("the report takes Python 3.10 or newer with matplotlib, which " +
-                             (wished.empty() ? "python3" : wished) +
-                             " has not (Debian: apt-get install python3-matplotlib)");
+    throw NoPython("the report takes Python 3.10 or newer with matplotlib, which " +
+                   (wished.empty() ? "python3" : wished) +
+                   " has not (Debian: apt-get install python3-matplotlib)");
 }
 
 void write_archive(const std::filesystem::path& file) {
     const auto bytes = report_archive();
-    std::ofstream stream(file, std::ios::binary);
+    OutputStream stream;
+    stream.open(file, std::ios::binary);
     stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     stream.close();
-    if (!stream) throw InputError(file, 0, "", "cannot be written");
+    stream.require_written(file);
 }
 
 }  // namespace
@@ -82,7 +85,9 @@ void write_archive(const std::filesystem::path& file) {
 TemporaryFolder::TemporaryFolder() {
     std::string name = std::filesystem::temp_directory_path() / "conelane-XXXXXX";
     const auto held = hold_interruption();
-    if (mkdtemp(name.data()) == nullptr) throw InputError(name, 0, "", "cannot be made");
+    if (mkdtemp(name.data()) == nullptr) {
+        throw InputError(name, 0, "", "cannot be made: " + std::generic_category().message(errno));
+    }
     path_ = name;
     clearing_.emplace([this] { remove(); });
 }
@@ -109,11 +114,16 @@ void run_package(const std::string& module, const std::vector<std::string>& argu
     if (code != 0) throw std::runtime_error("drawing failed, see above");
 }
 
-void put_in_place(const std::filesystem::path& file, const std::filesystem::path& place) {
-    std::ifstream from(file, std::ios::binary);
-    AtomicFile to(place);
-    to.stream() << from.rdbuf();
-    to.commit();
+void put_in_place(const std::vector<MadeFile>& files) {
+    std::vector<std::unique_ptr<AtomicFile>> outputs;
+    std::vector<AtomicFile*> all;
+    for (const auto& [file, place] : files) {
+        std::ifstream from(file, std::ios::binary);
+        all.push_back(outputs.emplace_back(std::make_unique<AtomicFile>(place)).get());
+        all.back()->stream() << from.rdbuf();
+        all.back()->finish();
+    }
+    commit_together(all);
 }
 
 }  // namespace conelane::experiments

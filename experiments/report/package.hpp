@@ -27,6 +27,12 @@ class TemporaryFolder {
     std::optional<ClearOnInterruption> clearing_;
 };
 
+/// There is no Python with what the package takes.
+class NoPython : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 /// The Python package that the program carries refused its input and has said why on stderr.
 class PackageRefused : public std::runtime_error {
   public:
@@ -35,12 +41,16 @@ class PackageRefused : public std::runtime_error {
 
 /// Runs a module of the Python package `report` (this folder, carried by the program) with arguments.
 /// `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws PackageRefused where
-/// the module ends with exit code 2, std::runtime_error where it fails otherwise, or where Python or
-/// matplotlib is missing.
+/// the module ends with exit code 2, NoPython where Python or matplotlib is missing, std::runtime_error where
+/// it fails otherwise.
 void run_package(const std::string& module, const std::vector<std::string>& arguments,
                  const std::string& wished_python);
 
-/// Puts a file in its place whole or not at all. Throws InputError naming the place.
-void put_in_place(const std::filesystem::path& file, const std::filesystem::path& place);
+struct MadeFile {
+    std::filesystem::path file;
+    std::filesystem::path place;
+};
+/// Puts all files in their places whole or none of them. Throws InputError naming the place that fails.
+void put_in_place(const std::vector<MadeFile>& files);
 
 }  // namespace conelane::experiments

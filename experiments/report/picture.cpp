@@ -76,7 +76,7 @@ void write_picture(const Picture& picture, const std::filesystem::path& file,
         {"overlays", overlays}}.dump();
     description.commit();
     run_package("report.plot", {scene, track_boundaries_path(scene), lanes, how, made}, wished_python);
-    put_in_place(made, file);
+    put_in_place({{made, file}});
 }
 
 }  // namespace conelane::experiments

@@ -9,6 +9,7 @@
 
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -72,15 +73,17 @@ void write_report(const std::filesystem::path& results, const std::filesystem::p
     const std::filesystem::path made_pictures = pictures.empty() ? "" : folder.path() / "pictures";
     run_package("report", {results.string(), made_page, published(), made_pictures, viewer_tracks},
                 wished_python);
+    std::vector<MadeFile> files;
     if (!pictures.empty()) {
         std::error_code failure;
         std::filesystem::create_directories(pictures, failure);
         if (failure) throw InputError(pictures, 0, "", "cannot be made: " + failure.message());
         for (const auto& picture : std::filesystem::directory_iterator(made_pictures)) {
-            put_in_place(picture.path(), pictures / picture.path().filename());
+            files.push_back({picture.path(), pictures / picture.path().filename()});
         }
     }
-    put_in_place(made_page, page);
+    files.push_back({made_page, page});
+    put_in_place(files);
 }
 
 }  // namespace conelane::experiments

@@ -5,8 +5,10 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
 #include "experiments/scenes/left_out_scenes.hpp"
+#include "experiments/scenes/scene_pair.hpp"
 
 #include <array>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -202,8 +204,9 @@ std::string scene_line(const Scene& scene) {
     return to_line(to_json(bare, ""));
 }
 
-void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {
-    AtomicFile output(file);
+namespace {
+
+void put_scenes(std::ostream& stream, std::span<const AnnotatedScene> scenes) {
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const std::string key = "scenes[" + std::to_string(i) + "]";
         try {
@@ -211,9 +214,38 @@ void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedSc
         } catch (const InvalidInput& error) {
             throw InvalidInput(key + "." + error.key(), reason_of(error));
         }
-        output.stream() << to_line(to_json(scenes[i], key)) << '\n';
+        stream << to_line(to_json(scenes[i], key)) << '\n';
     }
+}
+
+void put_track_boundaries(std::ostream& stream, const TrackBoundariesByName& tracks,
+                          const LeftOutScenes& left_out) {
+    ordered_json json = ordered_json::object();
+    for (const auto& [name, boundaries] : tracks) {
+        json[name] = {{"left", to_json(boundaries.left, name + ".left")},
+                      {"right", to_json(boundaries.right, name + ".right")},
+                      {"closed", boundaries.closed}};
+        if (!boundaries.driven.empty()) json[name]["driven"] = to_json(boundaries.driven, name + ".driven");
+        if (const auto ids = left_out.find(name); ids != left_out.end()) json[name]["left_out"] = ids->second;
+    }
+    stream << to_line(json) << '\n';
+}
+
+}  // namespace
+
+void write_scenes(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes) {
+    AtomicFile output(file);
+    put_scenes(output.stream(), scenes);
     output.commit();
+}
+
+void write_scene_pair(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes,
+                      const TrackBoundariesByName& tracks, const LeftOutScenes& left_out) {
+    AtomicFile companion(track_boundaries_path(file));
+    put_track_boundaries(companion.stream(), tracks, left_out);
+    AtomicFile output(file);
+    put_scenes(output.stream(), scenes);
+    commit_together(std::array{&companion, &output});
 }
 
 std::filesystem::path track_boundaries_path(const std::filesystem::path& scenes) {
@@ -246,15 +278,7 @@ void write_track_boundaries(const std::filesystem::path& file, const TrackBounda
 void write_track_boundaries(const std::filesystem::path& file, const TrackBoundariesByName& tracks,
                             const LeftOutScenes& left_out) {
     AtomicFile output(file);
-    ordered_json json = ordered_json::object();
-    for (const auto& [name, boundaries] : tracks) {
-        json[name] = {{"left", to_json(boundaries.left, name + ".left")},
-                      {"right", to_json(boundaries.right, name + ".right")},
-                      {"closed", boundaries.closed}};
-        if (!boundaries.driven.empty()) json[name]["driven"] = to_json(boundaries.driven, name + ".driven");
-        if (const auto ids = left_out.find(name); ids != left_out.end()) json[name]["left_out"] = ids->second;
-    }
-    output.stream() << to_line(json) << '\n';
+    put_track_boundaries(output.stream(), tracks, left_out);
     output.commit();
 }
 

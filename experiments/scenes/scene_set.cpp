@@ -3,6 +3,7 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/scenes/left_out_scenes.hpp"
 #include "experiments/scenes/scene_file.hpp"
+#include "experiments/scenes/scene_pair.hpp"
 #include "experiments/tracks/track_spec.hpp"
 
 #include <cstdio>
@@ -68,8 +69,7 @@ void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& s
 
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set,
                      const LeftOutScenes& left_out) {
-    write_track_boundaries(track_boundaries_path(scenes_file), set.tracks, left_out);
-    write_scenes(scenes_file, set.scenes);
+    write_scene_pair(scenes_file, set.scenes, set.tracks, left_out);
 }
 
 }  // namespace conelane::experiments

@@ -79,8 +79,10 @@ Line line_of(const ScoreRow& row) {
     line[Column::range] = number(row.key.range_m, 0);
     line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
     line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
-    line[Column::none] = percent(summary.share(Category::none));
-    line[Column::error] = percent(static_cast<double>(summary.errors) / static_cast<double>(summary.scenes));
+    // An error counts as no lane everywhere else; side by side each scene stands in one column.
+    const double error_share = static_cast<double>(summary.errors) / static_cast<double>(summary.scenes);
+    line[Column::none] = percent(std::max(0.0, summary.share(Category::none) - error_share));
+    line[Column::error] = percent(error_share);
     // Divergence that is unknown everywhere is not a share of zero, and what rests on it is unknown too.
     if (summary.divergence_unknown < summary.scenes) {
         line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));

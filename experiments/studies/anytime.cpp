@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/files/json_node.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
@@ -81,7 +82,7 @@ class AnytimeStudy : public Study {
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
                 "scenes at most, evenly spread")
-            ->check(CLI::Range(1, 1'000'000));
+            ->check(whole_number(1, 1'000'000));
     }
 
     StudyResult run() override {

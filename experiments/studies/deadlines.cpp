@@ -2,6 +2,7 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
@@ -164,13 +165,13 @@ class DeadlinesStudy : public Study {
             ->check(CLI::Range(0.1, 1e6))
             ->capture_default_str();
         command.add_option("--repeats", options_.repeats, "calls for each scene and limit")
-            ->check(CLI::Range(1, 1'000'000))
+            ->check(whole_number(1, 1'000'000))
             ->capture_default_str();
         command
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
                 "scenes at most, evenly spread")
-            ->check(CLI::Range(1, 1'000'000));
+            ->check(whole_number(1, 1'000'000));
     }
 
     StudyResult run() override {

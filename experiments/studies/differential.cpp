@@ -4,6 +4,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "experiments/files/json_node.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/seeded_random.hpp"
@@ -107,7 +108,7 @@ class DifferentialStudy : public Study {
         command.add_option("--first", options_.first, "number of the first case, to cut a run into parts")
             ->capture_default_str();
         command.add_option("--cases", options_.cases, "how many")
-            ->check(CLI::Range(1, 10'000'000))
+            ->check(whole_number(1, 10'000'000))
             ->capture_default_str();
         command.add_option("--reference", options_.reference, "the other solver, an exact one of any size")
             ->capture_default_str();

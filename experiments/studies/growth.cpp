@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/scoring/statistics.hpp"
@@ -121,7 +122,7 @@ class GrowthStudy : public Study {
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
                 "scenes at most, evenly spread")
-            ->check(CLI::Range(1, 1'000'000));
+            ->check(whole_number(1, 1'000'000));
         add_time_limit_option(command, options_.time_limit_ms);
     }
 

@@ -1,6 +1,7 @@
 #include "experiments/studies/memory.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress.hpp"
 #include "experiments/scenes/scene_file.hpp"
 #include "experiments/studies/study.hpp"
@@ -87,7 +88,7 @@ class MemoryStudy : public Study {
             ->delimiter(',')
             ->capture_default_str();
         command.add_option("--calls", options_.calls, "of each method")
-            ->check(CLI::Range(2, 100'000'000))
+            ->check(whole_number(2, 100'000'000))
             ->capture_default_str();
         command.add_option("--time-limit", options_.time_limit_ms, "of each call [ms]; none where not given")
             ->check(CLI::Range(0.1, 1e6));

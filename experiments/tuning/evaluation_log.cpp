@@ -4,6 +4,8 @@
 #include "experiments/files/input_error.hpp"
 #include "experiments/files/json_node.hpp"
 
+#include <cerrno>
+#include <fstream>
 #include <iterator>
 #include <system_error>
 #include <utility>
@@ -83,8 +85,10 @@ EvaluationLog::EvaluationLog(fs::path file, const std::string& header, Evaluate 
     }
     const bool has_header = !is_new && fs::file_size(file_) > 0;
     stream_.open(file_, std::ios::binary | std::ios::app);
+    if (!stream_)
+        throw InputError(file_, 0, "", "cannot be written: " + std::generic_category().message(errno));
     if (!has_header) stream_ << header << std::endl;
-    if (!stream_) throw InputError(file_, 0, "", "cannot be written");
+    stream_.require_written(file_);
 }
 
 void EvaluationLog::read() {
@@ -108,7 +112,7 @@ std::vector<LapFigure> EvaluationLog::operator()(const RldParameters& parameters
     std::vector<LapFigure> laps = evaluate_(parameters);
     if (!file_.empty()) {
         stream_ << line_of(key, laps) << std::endl;
-        if (!stream_) throw InputError(file_, 0, "", "cannot be written to its end");
+        stream_.require_written(file_);
     }
     figures_.emplace(std::move(key), laps);
     return laps;

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "experiments/files/output_stream.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/tuner.hpp"
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -34,7 +34,7 @@ class EvaluationLog {
     std::filesystem::path file_;
     Evaluate evaluate_;
     std::map<Key, std::vector<LapFigure>> figures_;
-    std::ofstream stream_;
+    OutputStream stream_;
 };
 
 }  // namespace conelane::experiments

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "experiments/comparison/answer_errors.hpp"
+
+namespace conelane::experiments {
+
+/// The end of every command that answers scenes: a line on stderr for each method with errors among its
+/// answers. Throws CLI::RuntimeError of exit code 1 where a method answered nothing at all. What the command
+/// writes is in place by then.
+void report_errors(const AnswerErrors& errors);
+
+}  // namespace conelane::experiments

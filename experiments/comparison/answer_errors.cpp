@@ -1,0 +1,52 @@
+#include "experiments/comparison/answer_errors.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+
+AnswerErrors::Count& AnswerErrors::count_of(std::string_view method) {
+    const auto known = std::ranges::find(counts_, method, &Count::method);
+    if (known != counts_.end()) return *known;
+    Count& count = counts_.emplace_back();
+    count.method = method;
+    return count;
+}
+
+void AnswerErrors::add_error(std::string_view method, const std::string& scene, const std::string& message) {
+    Count& count = count_of(method);
+    ++count.answers;
+    if (++count.errors == 1) count.first = scene + ": " + message;
+}
+
+std::vector<std::string> AnswerErrors::lines() const {
+    std::vector<std::string> lines;
+    for (const Count& count : counts_) {
+        if (count.errors == 0) continue;
+        std::string line = fmt::format("{}: {} of {} answers are errors, the first to {}", count.method,
+                                       count.errors, count.answers, count.first);
+        // A message may hold what a program from outside said.
+        std::ranges::replace_if(
+            line, [](char letter) { return letter == '\n' || letter == '\r'; }, ' ');
+        lines.push_back(std::move(line));
+    }
+    return lines;
+}
+
+bool AnswerErrors::any_answered_nothing() const {
+    return std::ranges::any_of(
+        counts_, [](const Count& count) { return count.answers > 0 && count.errors == count.answers; });
+}
+
+void add_answer_of(AnswerErrors& errors, const LaneRecord& record) {
+    const std::string method =
+        record.nearest ? fmt::format("{} n={}", record.method, *record.nearest) : record.method;
+    if (record.answer.status == LaneStatus::error) {
+        errors.add_error(method, record.scene, record.answer.message);
+    } else {
+        errors.add_answer(method);
+    }
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "experiments/files/lane_file.hpp"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// Answers of status error, by the method or solver that gave them.
+class AnswerErrors {
+  public:
+    void add_answer(std::string_view method) { ++count_of(method).answers; }
+    void add_error(std::string_view method, const std::string& scene, const std::string& message);
+
+    /// One line for each method with errors: how many, and what the first of them was.
+    [[nodiscard]] std::vector<std::string> lines() const;
+    /// Whether there is a method all of whose answers are errors.
+    [[nodiscard]] bool any_answered_nothing() const;
+
+  private:
+    struct Count {
+        std::string method;
+        std::size_t answers = 0;  ///< errors among them
+        std::size_t errors = 0;
+        std::string first;
+    };
+    Count& count_of(std::string_view method);
+    std::vector<Count> counts_;  ///< in the order in which the methods are met
+};
+
+/// Counts a lane, or an error where that is what its method answered.
+void add_answer_of(AnswerErrors& errors, const LaneRecord& record);
+
+}  // namespace conelane::experiments

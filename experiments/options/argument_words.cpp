@@ -1,0 +1,74 @@
+#include "experiments/options/argument_words.hpp"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace conelane::experiments {
+namespace {
+
+bool has_empty_part(std::string_view list, char delimiter) {
+    const std::string twice(2, delimiter);
+    return list.starts_with(delimiter) || list.ends_with(delimiter) ||
+           list.find(twice) != std::string_view::npos;
+}
+
+void require_whole_list(const CLI::Option* option, std::string_view text) {
+    if (option == nullptr || option->get_delimiter() == '\0') return;
+    if (has_empty_part(text, option->get_delimiter()))
+        throw CLI::ValidationError(option->get_name(),
+                                   fmt::format("'{}' is a list with an empty part", text));
+}
+
+/// The sub-command of that name; null where there is none.
+CLI::App* find_command(CLI::App& app, const std::string& name) {
+    for (CLI::App* command : app.get_subcommands({})) {
+        if (!command->get_name().empty() && command->check_name(name)) return command;
+    }
+    return nullptr;
+}
+
+bool takes_positionals(const CLI::App& app) {
+    return std::ranges::any_of(app.get_options({}),
+                               [](const CLI::Option* option) { return option->get_positional(); });
+}
+
+[[noreturn]] void refuse_name(CLI::App& app, const std::string& name) {
+    std::vector<std::string> known;
+    for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+    throw CLI::ValidationError(app.get_name(),
+                               fmt::format("there is no '{}', it has {}", name, fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+void refuse_misread_words(CLI::App& program, std::span<char* const> arguments) {
+    CLI::App* app = &program;
+    const CLI::Option* option = nullptr;  // the one that was named last
+    bool names_a_command = true;          // the next word, directly behind that of a command
+    for (const std::string word : arguments) {
+        if (word.starts_with("-") && word.size() > 1) {
+            const std::size_t equals = word.find('=');
+            option = app->get_option_no_throw(word.substr(0, equals));
+            if (equals != std::string::npos) require_whole_list(option, word.substr(equals + 1));
+            names_a_command = false;
+            continue;
+        }
+        if (CLI::App* const command = find_command(*app, word)) {
+            app = command;
+            option = nullptr;
+            names_a_command = true;
+            continue;
+        }
+        if (names_a_command && !app->get_subcommands({}).empty() && !takes_positionals(*app))
+            refuse_name(*app, word);
+        names_a_command = false;
+        require_whole_list(option, word);
+    }
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,119 @@
+// Methods and solvers all of whose answers are errors: every command says so on stderr and ends by 1. What it
+// writes is there all the same.
+
+#include "tests/program_on_scenes.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+class Unanswered : public Program {
+  protected:
+    /// Exit code 1, and one line on stderr that begins and goes on so.
+    static void expect_unanswered(const Outcome& outcome, const std::string& begin, const std::string& more) {
+        EXPECT_EQ(outcome.exit_code, 1);
+        EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+        EXPECT_TRUE(outcome.errors.starts_with("conelane: " + begin)) << outcome.errors;
+        EXPECT_THAT(outcome.errors, HasSubstr(more));
+    }
+};
+
+TEST_F(Unanswered, ADetectionOfErrorsAloneEndsBy1) {
+    make_scenes("");
+    const auto scenes = std::ranges::count(text_of(path("s.scenes.jsonl")), '\n');
+    const std::string count = std::to_string(scenes) + " of " + std::to_string(scenes);
+    expect_unanswered(run("detect --method exec:mine=false --scenes s.scenes.jsonl --out l.lanes.jsonl"),
+                      "mine: " + count + " answers are errors, the first to kidney/pose_0000", "false");
+    EXPECT_EQ(read_lanes(path("l.lanes.jsonl")).size(), static_cast<std::size_t>(scenes));
+    const Outcome streamed = run("detect --method exec:mine=false --scenes s.scenes.jsonl --out -");
+    expect_unanswered(streamed, "mine: " + count, "false");
+    EXPECT_EQ(std::ranges::count(streamed.output, '\n'), scenes);
+    // No lane of them can be driven either.
+    expect_unanswered(run("drive --lanes l.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl"),
+                      "mine: " + count, "kidney/pose_0000");
+    EXPECT_EQ(std::ranges::count(text_of(path("d.jsonl")), '\n'), scenes);
+}
+
+TEST_F(Unanswered, AStreamOfLinesThatAreNoScenesEndsBy1) {
+    file_with("{}\n5\n", "bad");
+    expect_unanswered(run("detect --method clc --scenes - --out - <bad"),
+                      "clc: 2 of 2 answers are errors, the first to 1", "pose");
+    file_with("{}\n" + std::string(kScene) + "\n", "half");
+    const Outcome half = run("detect --method clc --scenes - --out - <half");
+    EXPECT_EQ(half.exit_code, 0);
+    EXPECT_THAT(half.errors, HasSubstr("clc: 1 of 2 answers are errors"));
+}
+
+TEST_F(Unanswered, ASolverThatTakesNoneOfTheScenesEndsBy1) {
+    make_scenes("--fp 0.3");
+    expect_unanswered(run("solve --solver exhaustive --scenes s.scenes.jsonl --out s.solutions.jsonl"),
+                      "exhaustive: ", "answers are errors");
+    EXPECT_THAT(text_of(path("s.solutions.jsonl")), HasSubstr("\"status\":\"error\""));
+    const Outcome solved = run("solve --solver path-pair --scenes s.scenes.jsonl --out s.solutions.jsonl");
+    EXPECT_EQ(solved.exit_code, 0);
+    EXPECT_EQ(solved.errors, "");
+}
+
+TEST_F(Unanswered, AComparisonInWhichOneMethodAnswersNothingEndsBy1) {
+    const Outcome outcome = run(
+        "compare --tracks generated:circle --condition paper --fp 0 --every 30 --methods exec:mine=false clc "
+        "--out r");
+    expect_unanswered(outcome, "mine: ", "answers are errors, the first to circle/pose_0000");
+    EXPECT_THAT(outcome.output, HasSubstr("clc"));
+    EXPECT_TRUE(std::filesystem::exists(path("r/results.jsonl")));
+    // In the table each scene stands in one column: error, not none as well.
+    std::istringstream table(text_of(path("r/table.txt")));
+    std::vector<std::string> header;
+    for (std::string line; std::getline(table, line);) {
+        const bool is_header = header.empty();
+        if (!is_header && !line.starts_with("mine ")) continue;
+        // Titles are parted by two blanks, since some of them hold one.
+        std::vector<std::string> cells;
+        for (std::size_t begin = 0; begin < line.size();) {
+            const std::size_t end = std::min(line.find("  ", begin), line.size());
+            cells.push_back(line.substr(begin, end - begin));
+            begin = std::min(line.find_first_not_of(' ', end), line.size());
+        }
+        if (is_header) {
+            header = cells;
+            continue;
+        }
+        ASSERT_EQ(cells.size(), header.size()) << line;
+        const auto cell = [&](const std::string& title) {
+            return cells[static_cast<std::size_t>(std::ranges::find(header, title) - header.begin())];
+        };
+        EXPECT_EQ(cell("error %"), "100.0");
+        EXPECT_EQ(cell("none %"), "0.0");
+        return;
+    }
+    FAIL() << "no line of the method";
+}
+
+TEST_F(Unanswered, AnErrorAmongAnswersIsSaidAndIsNoFailure) {
+    make_scenes("");
+    ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
+    const std::string lanes = text_of(path("l.lanes.jsonl"));
+    const std::string first = read_lanes(path("l.lanes.jsonl")).front().scene;
+    file_with(R"({"scene":")" + first +
+                  R"(","method":"clc","status":"error","left":[],"right":[],"closed":false,"latency_ms":1,)"
+                  R"("message":"two\nlines"})" +
+                  lanes.substr(lanes.find('\n')),
+              "l.lanes.jsonl");
+    const Outcome outcome = run("drive --lanes l.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl");
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_THAT(outcome.errors, HasSubstr("clc: 1 of "));
+    EXPECT_THAT(outcome.errors, HasSubstr(first + ": two lines\n"));
+}
+
+}  // namespace
+}  // namespace conelane::experiments

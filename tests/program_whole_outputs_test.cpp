@@ -1,0 +1,217 @@
+// Outputs of several files: all of them are written, or all are as they were, be the disk full or the program
+// ended by a signal. Nothing that the program did not write is replaced without being asked for.
+
+#include "experiments/files/atomic_file.hpp"
+#include "tests/program_on_scenes.hpp"
+#include "tests/small_disk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace conelane::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class WholeOutputs : public Program {
+  protected:
+    /// Every file of a folder by its name, but for the lock.
+    [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
+        std::map<std::string, std::string> files;
+        if (!fs::exists(path(folder))) return files;
+        for (const auto& entry : fs::directory_iterator(path(folder))) {
+            const std::string name = entry.path().filename().string();
+            if (name != ".lock") files[name] = text_of(entry.path());
+        }
+        return files;
+    }
+
+    /// Starts the program and ends it by the signal once a file whose name holds `part` is in the folder.
+    void interrupt(const std::string& arguments, int signal, const std::string& folder,
+                   const std::string& part) {
+        const std::string command =
+            "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + arguments + " >stdout 2>stderr";
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::setpgid(0, 0);
+            ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            ::_exit(127);
+        }
+        ::setpgid(child, child);
+        const auto begun = [&] {
+            return std::ranges::any_of(contents(folder), [&](const auto& file) {
+                return file.first.find(part) != std::string::npos;
+            });
+        };
+        int status = 0;
+        for (int wait = 0; wait < 12000 && !begun(); ++wait) {
+            ASSERT_EQ(::waitpid(child, &status, WNOHANG), 0) << text_of(path("stderr"));
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        ::kill(-child, signal);
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << "it was done too early";
+        fs::remove(path("stdout"));
+        fs::remove(path("stderr"));
+    }
+};
+
+TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
+    file_with("old a", "a");
+    AtomicFile a(path("a"));
+    AtomicFile b(path("b"));
+    AtomicFile c(path("c"));
+    for (AtomicFile* file : {&a, &b, &c}) file->stream() << "new";
+    fs::create_directory(path("c"));  // no file can have this name now
+    EXPECT_THAT(error_of([&] {
+                    commit_together(std::array{&a, &b, &c});
+                }),
+                HasSubstr("c: cannot be written"));
+    EXPECT_EQ(text_of(path("a")), "old a");
+    EXPECT_FALSE(fs::exists(path("b")));
+    fs::remove(path("c"));
+    EXPECT_EQ(std::ranges::count_if(
+                  fs::directory_iterator(path("")),
+                  [](const auto& entry) { return entry.path().filename().string().starts_with("a.tmp"); }),
+              0)
+        << "what was kept aside is left";
+}
+
+TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNone) {
+    const SmallDisk disk(path("disk"), "200k");
+    if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+    const std::string scenes = "scenes --tracks generated:kidney --out disk/s.scenes.jsonl --every ";
+    const Outcome full = run(scenes + "1.1");
+    EXPECT_EQ(full.exit_code, 2);
+    EXPECT_EQ(full.errors,
+              "conelane: disk/s.scenes.jsonl: cannot be written to its end: No space left on device\n");
+    EXPECT_THAT(contents("disk"), testing::IsEmpty()) << "a companion alone";
+    ASSERT_EQ(run(scenes + "40").exit_code, 0);
+    const auto before = contents("disk");
+    EXPECT_EQ(before.size(), 2U);
+    EXPECT_EQ(run(scenes + "1.1 --fp 0.4").exit_code, 2);
+    EXPECT_EQ(contents("disk"), before) << "the old pair";
+}
+
+/// Few programs at first, and more of other names.
+constexpr const char* kInstances =
+    "instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --seed 3 --out made";
+constexpr const char* kMoreInstances =
+    "instances --tracks generated:curvy --fp 0.5 --every 30 --nearest 12,16 --seed 3 --out made";
+
+TEST_F(WholeOutputs, OfInstancesThatASignalEndedAreNone) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        interrupt(kMoreInstances, signal, "made", ".mps.gz");
+        EXPECT_THAT(contents("made"), testing::IsEmpty());
+    }
+    ASSERT_EQ(run(kInstances).exit_code, 0);
+    const auto before = contents("made");
+    EXPECT_EQ(before.size(), 4U);
+    interrupt(kMoreInstances, SIGINT, "made", "curvy");
+    EXPECT_EQ(contents("made"), before) << "the old library";
+}
+
+TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
+    ASSERT_EQ(run(kInstances).exit_code, 0);
+    file_with("mine", "made/notes.txt");
+    ASSERT_EQ(
+        run("instances --tracks generated:straight --fp 0.5 --every 1000 --nearest 12 --out made").exit_code,
+        0);
+    const auto files = contents("made");
+    EXPECT_EQ(files.at("notes.txt"), "mine");
+    std::size_t programs = 0;
+    for (const auto& [name, text] : files) {
+        if (!name.ends_with(".mps.gz")) continue;
+        ++programs;
+        EXPECT_TRUE(name.starts_with("straight")) << name << " is of the library before";
+        EXPECT_THAT(files.at("conelane.test"), HasSubstr(name));
+    }
+    EXPECT_EQ(programs, 2U);
+    // What no list names is of nobody knows which library.
+    file_with("x", "made/stray.tight.mps.gz");
+    expect_refused(kInstances, {"made", "stray.tight.mps.gz", "conelane.test"});
+    fs::remove(path("made/conelane.test"));
+    fs::remove(path("made/stray.tight.mps.gz"));
+    expect_refused(kInstances, {"made", "straight"});
+}
+
+TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNone) {
+    const SmallDisk disk(path("made"), "24k");
+    if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+    const Outcome full = run(kMoreInstances);
+    EXPECT_EQ(full.exit_code, 2);
+    EXPECT_THAT(full.errors, HasSubstr("No space left on device"));
+    EXPECT_THAT(contents("made"), testing::IsEmpty());
+}
+
+constexpr const char* kCompare =
+    "compare --tracks generated:circle --condition paper --fp 0 --every 30 --methods clc --out ";
+
+TEST_F(WholeOutputs, AComparisonDoesNotReplaceAPageOfAnother) {
+    fs::create_directory(path("r"));
+    file_with("<html>my thesis</html>\n", "r/report.html");
+    expect_refused(kCompare + std::string("r"), {"r/report.html", "is no page of conelane"});
+    expect_refused(kCompare + std::string("r --overwrite"), {"r/report.html"});
+    EXPECT_EQ(contents("r").size(), 1U) << "refused before the work";
+    EXPECT_EQ(text_of(path("r/report.html")), "<html>my thesis</html>\n");
+}
+
+TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
+    ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
+    if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
+    std::uintmax_t results = 0;
+    for (const auto& [name, text] : contents("r")) {
+        if (name != "report.html") results += 4096 * (text.size() / 4096 + 1);
+    }
+    const SmallDisk disk(path("disk"), std::to_string(results + 32768));
+    if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+    const Outcome full = run(kCompare + std::string("disk/r"));
+    EXPECT_EQ(full.exit_code, 2) << full.output;
+    EXPECT_THAT(full.errors,
+                HasSubstr("disk/r/report.html: cannot be written to its end: No space left on device"));
+    EXPECT_THAT(full.output, HasSubstr("all of it in disk/r, but no page"));
+    EXPECT_FALSE(fs::exists(path("disk/r/report.html")));
+    disk.grow("64m");
+    EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0);
+    EXPECT_TRUE(fs::exists(path("disk/r/report.html")));
+    EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0) << "its own page is replaced";
+}
+
+TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
+    ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
+    if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
+    const SmallDisk disk(path("disk"), "200k");
+    if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
+    EXPECT_EQ(run("report --results r --out page.html --png disk").exit_code, 2);
+    EXPECT_THAT(contents("disk"), testing::IsEmpty()) << "some pictures";
+    EXPECT_FALSE(fs::exists(path("page.html")));
+}
+
+/// /dev/full takes nothing.
+TEST_F(WholeOutputs, AFailureSaysWhy) {
+    make_scenes("");
+    for (const char* command :
+         {"detect --method clc", "solve --solver path-pair", "certify", "export --id kidney/pose_0000"}) {
+        const std::string full =
+            std::string(command) == "export --id kidney/pose_0000" ? "full.mps" : "/dev/full";
+        if (full == "full.mps") fs::create_symlink("/dev/full", path("full.mps"));
+        const Outcome outcome = run(std::string(command) + " --scenes s.scenes.jsonl --out " + full);
+        EXPECT_EQ(outcome.exit_code, 2) << command;
+        EXPECT_THAT(outcome.errors, HasSubstr(": No space left on device\n")) << command;
+    }
+}
+
+}  // namespace
+}  // namespace conelane::experiments

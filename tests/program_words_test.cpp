@@ -1,0 +1,111 @@
+// What the program says where a word of the command line or a key of a file is not what it takes: the word
+// itself, and what would be right.
+
+#include "experiments/files/json_node.hpp"
+#include "tests/program_on_scenes.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class Words : public Program {};
+
+TEST_F(Words, AListWithAnEmptyPartIsRefused) {
+    for (const char* option : {"--fp", "--range", "--condition"}) {
+        for (const char* list : {",", "0,", ",0", "0,,0.3"}) {
+            const std::string begin =
+                std::string("scenes --tracks generated:circle --out s.scenes.jsonl ") + option;
+            for (const char* between : {" ", "="}) {
+                expect_refused(begin + between + list,
+                               {std::string(option) + ": '" + list + "' is a list with an empty part"});
+            }
+            // What follows is no part of the list.
+            expect_refused(std::string("scenes --tracks generated:circle ") + option + " " + list +
+                               " --out s.scenes.jsonl",
+                           {option, "empty part"});
+        }
+    }
+    expect_refused("sweep --sizes , --out r", {"--sizes: ',' is a list with an empty part"});
+}
+
+TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
+    for (const char* count : {"2.5", "0", "-1", "many", "100001", "99999999999999999999", "12x"}) {
+        expect_refused(
+            "scenes --tracks generated:circle --out s.scenes.jsonl --nearest=" + std::string(count),
+            {"--nearest: '" + std::string(count) + "' is no whole number from 1 to 100000"});
+    }
+    expect_refused("sweep --sizes 6,2.5 --out r", {"--sizes: '2.5' is no whole number from 1 to 100000"});
+    expect_refused("compare --threads 2.5 --out r", {"--threads: '2.5' is no whole number from 1 to 1024"});
+    expect_refused("train --tracks generated:circle --epochs 2.5 --out w.json", {"--epochs: '2.5'"});
+    expect_refused("study growth --scenes s.scenes.jsonl --sizes 2.5", {"--sizes: '2.5'"});
+}
+
+TEST_F(Words, ANameThatIsNoCommandIsAnsweredByThoseThereAre) {
+    expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "memory"});
+    expect_refused("study nope --scenes s.scenes.jsonl --out x", {"study: there is no 'nope'", "optimality"});
+    expect_refused("nope", {"there is no 'nope'", "compare", "solve"});
+    expect_refused("train fornt --tracks generated:circle --out w", {"train: there is no 'fornt'", "front"});
+}
+
+TEST_F(Words, HelpOfTrainSaysWhatItTrains) {
+    const Outcome help = run("train --help");
+    EXPECT_THAT(help.output.substr(0, help.output.find("Usage")), HasSubstr("train front"));
+    EXPECT_THAT(run("--help").output, HasSubstr("train front"));
+}
+
+TEST_F(Words, AKeyThatIsThereTwiceIsNamedWithItsLine) {
+    file_with(std::string(kScene) + "\n" +
+                  R"({"id": "b", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}, )"
+                  R"({"id": 2, "x": 4, "y": 2, "x": 9}]})" +
+                  "\n",
+              "s.scenes.jsonl");
+    expect_refused("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl",
+                   {"s.scenes.jsonl:2: cones[1].x: is there twice"});
+    // Of keys that nobody reads, too: which of the two was meant?
+    file_with(R"({"note": {"a": [1, {"b": 1}, {"b": 2, "b": 3}]}})"
+              "\n",
+              "s.scenes.jsonl");
+    expect_refused("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl",
+                   {"s.scenes.jsonl:1: note.a[2].b: is there twice"});
+    file_with(std::string(kScene) + "\n", "s.scenes.jsonl");
+    file_with("{\n  \"w_bb\": 1,\n  \"pairing\": \"paper\",\n  \"w_bb\": 2\n}\n", "p.json");
+    expect_refused("solve --scenes s.scenes.jsonl --params p.json --out o.solutions.jsonl",
+                   {"p.json:4: w_bb: is there twice"});
+    const Outcome streamed = run("detect --method clc --scenes - --out - <p.json");
+    EXPECT_THAT(streamed.output, Not(HasSubstr("\"status\":\"found\"")));
+}
+
+/// What is read is what nlohmann's own parser reads.
+TEST_F(Words, AnyOtherJsonIsReadAsItWas) {
+    for (const char* text :
+         {R"({})", R"({"a": [], "b": {}, "c": null, "d": true, "e": false})",
+          R"({"a": -1, "b": 18446744073709551615, "c": 1.5e-3, "d": "x\n\u00e9"})",
+          R"({"a": [[1, 2], [{"b": [3, {"c": 4}]}], "s"], "d": {"a": {"a": {"a": 1}}}})"}) {
+        with_json_text(text, "file", [&](const JsonNode& read) {
+            const nlohmann::json expected = nlohmann::json::parse(text);
+            for (const std::string& key : read.keys()) EXPECT_TRUE(expected.contains(key)) << key;
+            EXPECT_EQ(read.keys().size(), expected.size());
+        });
+    }
+    with_json_text(R"({"a": [[1, 2], [{"b": [3, {"c": 4}]}], "s"], "d": {"a": {"a": {"a": 7}}}})", "file",
+                   [&](const JsonNode& read) {
+                       const JsonNode a = read.member("a");
+                       ASSERT_EQ(a.array_size(), 3U);
+                       EXPECT_EQ(a.element(0).element(1).integer(), 2);
+                       const JsonNode b = a.element(1).element(0).member("b");
+                       EXPECT_EQ(b.element(0).integer(), 3);
+                       EXPECT_EQ(b.element(1).member("c").integer(), 4);
+                       EXPECT_EQ(a.element(2).string(), "s");
+                       EXPECT_EQ(read.member("d").member("a").member("a").member("a").integer(), 7);
+                   });
+}
+
+}  // namespace
+}  // namespace conelane::experiments
