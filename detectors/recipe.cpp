@@ -1,6 +1,7 @@
 #include "detectors/recipe.hpp"
 
 #include "detectors/baseline_parameters.hpp"
+#include "detectors/drivable_answers.hpp"
 #include "graph_search/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
@@ -113,9 +114,9 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         RldDetectorOptions made{.parameters = rld_parameters(recipe, options),
                                 .cones = cone_set(recipe, options)};
         validate(made.parameters);
-        return make_rld_detector(rld->make_solver(), made);
+        return answer_drivable_lanes(make_rld_detector(rld->make_solver(), made));
     }
-    auto detector = std::get<OtherRecipe>(recipe.how).make();
+    auto detector = answer_drivable_lanes(std::get<OtherRecipe>(recipe.how).make());
     if (!options.nearest) return detector;
     return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
 }

@@ -149,7 +149,7 @@ class PathPlanner:
         mission: MissionTypes,
         experimental_performance_improvements: bool = False,
         *,
-        methods: Sequence[str] = ("front-warm", "clc"),
+        methods: Sequence[str] = ("front-warm", "front", "clc"),
         path_length_m: float = 20.0,
         points: int = 40,
         time_limit_ms: float = 50.0,
