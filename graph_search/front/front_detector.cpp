@@ -2,11 +2,9 @@
 
 #include "graph_search/front/front_boundary.hpp"
 #include "graph_search/front/front_judge.hpp"
-#include "graph_search/lane_closing.hpp"
 #include "graph_search/shipped_weights.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -21,9 +19,6 @@ constexpr double kRepeatBonus = 0.2;
 /// only, half have such a lane at best; of the others one in a thousand.
 constexpr double kLeastConfidence = 0.1;
 constexpr std::size_t kFewestInsteadOfALane = 5;  ///< cones of such a boundary: fewer are found in noise
-/// A boundary whose last cone is farther from its first one does not close: no longer segment goes without a
-/// reason.
-constexpr double kLongestClosing_m = kShortSegment_m;
 /// A wide lane may widen by a quarter before its far ends are dropped.
 constexpr double kWidestEnd = 1.25;
 
@@ -73,7 +68,7 @@ class FrontDetector final : public LaneDetector {
         answer.enumeration = {front_.expanded(), !answer.stopped_by && !front_.left_out(), {}};
         if (choose(budget.stopped_by.has_value())) {
             answer.status = LaneStatus::found;
-            answer.lane = lane(scene);
+            answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
             answer.confidence = judge_.confidence(chosen_);
             answer.trusted_m =
                 judge_.trusted_m(front_, chosen_, {cones_[kLeft].size(), cones_[kRight].size()});
@@ -136,11 +131,11 @@ class FrontDetector final : public LaneDetector {
     void add_best_lanes(const Scene& scene, Enumeration& best) {
         for (const std::size_t place : judge_.order()) {
             if (!take(contenders_[place].node)) continue;
-            Lane candidate = lane(scene);
-            if (std::ranges::find(best.candidates, candidate, &LaneCandidate::lane) != best.candidates.end())
+            Lane lane{ids(kLeft, scene), ids(kRight, scene)};
+            if (std::ranges::find(best.candidates, lane, &LaneCandidate::lane) != best.candidates.end())
                 continue;
             const auto number = static_cast<std::int64_t>(best.candidates.size() + 1);
-            best.candidates.push_back({std::move(candidate), number, judge_.confidence(place)});
+            best.candidates.push_back({std::move(lane), number, judge_.confidence(place)});
         }
     }
 
@@ -148,27 +143,6 @@ class FrontDetector final : public LaneDetector {
         front_.cones(node, cones_);
         even_far_ends(front_.map(), cones_);
         return cones_[kLeft].size() > 1 && cones_[kRight].size() > 1;
-    }
-
-    /// The lane of `cones_`.
-    [[nodiscard]] Lane lane(const Scene& scene) {
-        return {ids(kLeft, scene), ids(kRight, scene), returns_to_its_beginning()};
-    }
-
-    [[nodiscard]] bool returns_to_its_beginning() {
-        const FrontMap& map = front_.map();
-        for (const Side side : {kLeft, kRight}) {
-            const Point gap = map.position(cones_[side].front()) - map.position(cones_[side].back());
-            if (gap.norm() > kLongestClosing_m) return false;
-        }
-        for (const Side side : {kLeft, kRight}) {
-            ring_[side].clear();
-            for (const Vertex cone : cones_[side]) ring_[side].push_back(map.position(cone));
-        }
-        const LaneBounds bounds{.phi_max_rad = options_.rules.largest_turn_rad,
-                                .w_min_m = options_.rules.narrowest_m,
-                                .w_max_m = std::numeric_limits<double>::infinity()};
-        return can_be_closed(ring_[kLeft], ring_[kRight], kLongestClosing_m, bounds);
     }
 
     [[nodiscard]] std::vector<ConeId> ids(Side side, const Scene& scene) {
@@ -187,7 +161,6 @@ class FrontDetector final : public LaneDetector {
     std::size_t chosen_ = 0;
     BoundarySearch boundary_;
     std::array<std::vector<Vertex>, 2> cones_;
-    std::array<std::vector<Point>, 2> ring_;  ///< of a lane that may be closed
 };
 
 }  // namespace

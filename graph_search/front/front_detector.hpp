@@ -25,9 +25,8 @@ struct FrontOptions {
 /// Lane detection by one front: both boundaries grow together, one cone at a time, under a learned cost that
 /// sees both of them, and a beam search finds the lanes of the highest score. FrontJudge takes the best of
 /// them. A boundary may step over cones that were not seen. The far ends are evened (see even_far_ends); a
-/// lane has two cones a side at least, each cone at most once. It is closed where both boundaries end within
-/// 5.8 m of their first cones and the ring keeps the rules of a lane, one boundary around the other (see
-/// can_be_closed): where a circuit of up to 300 m is seen whole.
+/// lane has two cones a side at least, each cone at most once. It is never closed: it ends where the course
+/// comes back beside or behind the car, where no view that it has learned from shows cones.
 ///
 /// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
 /// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
@@ -42,9 +41,9 @@ struct FrontOptions {
 /// LaneAnswer::status: `none` where every lane that the rules allow was met and there is none, nor a boundary
 /// alone; `stopped` by iterations where none was found but the beam left some out; `stopped_by` time or
 /// memory is the best lane met until then. Once memory is warm, `detect` allocates the two boundaries of the
-/// answer and nothing else, but for lanes whose ends are near enough to close. With
-/// FrontOptions::repeat_bonus the last lane that was found is carried from scene to scene until `reset`;
-/// without it nothing is. Throws InvalidInput where an option is out of its range.
+/// answer and nothing else. With FrontOptions::repeat_bonus the last lane that was found is carried from
+/// scene to scene until `reset`; without it nothing is. Throws InvalidInput where an option is out of its
+/// range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 
 /// The cones of a lane without its far ends, as even_far_ends, on positions. Where kWidestLane_m would leave
