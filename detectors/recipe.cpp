@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "detectors/baseline_parameters.hpp"
+#include "detectors/drivable_answers.hpp"
 #include "graph_search/astar_lane/astar_lane_detector.hpp"
 #include "graph_search/clc_detector.hpp"
 #include "graph_search/delaunay_beam/delaunay_beam_detector.hpp"
@@ -139,7 +140,7 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
         RldDetectorOptions made{.parameters = rld_parameters(recipe, options),
                                 .cones = cone_set(recipe, options)};
         validate(made.parameters);
-        return make_rld_detector(rld->make_solver(), made);
+        return answer_drivable_lanes(make_rld_detector(rld->make_solver(), made));
     }
     std::unique_ptr<LaneDetector> detector;
     if (const auto* front = std::get_if<FrontRecipe>(&recipe.how)) {
@@ -149,6 +150,7 @@ std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe, const 
     } else {
         detector = std::get<OtherRecipe>(recipe.how).make();
     }
+    detector = answer_drivable_lanes(std::move(detector));
     if (!options.nearest) return detector;
     return std::make_unique<NearestCones>(std::move(detector), *options.nearest);
 }

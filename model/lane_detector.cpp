@@ -1,6 +1,7 @@
 #include "conelane/lane_detector.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "model/doubled_cones.hpp"
 
 #include <cmath>
 #include <exception>
@@ -8,13 +9,24 @@
 
 namespace conelane {
 
+struct LaneDetector::Workspace {
+    std::vector<ConeId> ids;
+    DoubledCones doubled;
+};
+
+LaneDetector::LaneDetector() : workspace_(std::make_unique<Workspace>()) {}
+LaneDetector::~LaneDetector() = default;
+
 LaneAnswer LaneDetector::detect(const Scene& scene, const DetectionLimits& limits) {
     LaneAnswer failed;
     failed.status = LaneStatus::error;
     try {
-        validate(scene, ids_);
+        validate(scene, workspace_->ids);
         if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "must be a number");
-        return search(scene, limits);
+        DoubledCones& doubled = workspace_->doubled;
+        LaneAnswer answer = search(doubled.merge(scene), limits);
+        if (!doubled.merged().empty()) answer.merged = doubled.merged();
+        return answer;
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& failure) {

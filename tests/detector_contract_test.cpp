@@ -97,9 +97,12 @@ void expect_consistent(const Scene& scene, const LaneAnswer& answer, bool may_be
     SCOPED_TRACE(to_string(answer.status));
     if (answer.status == LaneStatus::found) {
         expect_cones_of(scene, answer.lane, may_be_one_sided);
+        EXPECT_FALSE(drivable(answer, scene).points.empty()) << "found, yet it cannot be driven";
+        EXPECT_TRUE(answer.trusted_m);
     } else {
         EXPECT_EQ(answer.lane, Lane{});
         EXPECT_FALSE(answer.uncut);
+        EXPECT_FALSE(answer.trusted_m);
     }
     if (answer.status == LaneStatus::stopped) {
         EXPECT_TRUE(answer.stopped_by);

@@ -59,6 +59,7 @@ TEST(SummaryJson, HoldsWhatMethodsSayOfTheirLanesWhereTheyDo) {
     std::vector<KeyedScore> scores{keyed("silent", 0.3, 30, Category::ground_truth, 1),
                                    keyed("front", 0.3, 30, Category::ground_truth, 1),
                                    keyed("front", 0.3, 30, Category::diverging_below_20, 0.5)};
+    scores[0].score.trusted_m = 10.0;  // by a rule, without a probability
     scores[1].score.confidence = 0.96;
     scores[1].score.lane_length_m = 20.0;
     scores[1].score.trusted_m = 20.0;

@@ -5,6 +5,7 @@
 #include "experiments/outside/outside_program.hpp"
 #include "experiments/progress.hpp"
 #include "model/deadline.hpp"
+#include "model/doubled_cones.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -43,7 +44,7 @@ class TimedDetector : public TimedMethod {
         LaneAnswer answer = detector_->detect(scene, limits_);
         const double latency_ms = watch.elapsed_ms();
         LaneRecord record{scene.id, name_, std::move(answer), latency_ms, nearest_};
-        if (check_) check_answer(record, check_->cones.seen(scene), check_->parameters);
+        if (check_) check_answer(record, check_->cones.seen(doubled_.merge(scene)), check_->parameters);
         return record;
     }
     void warm_up(const Scene& scene) override {
@@ -58,6 +59,7 @@ class TimedDetector : public TimedMethod {
     std::unique_ptr<LaneDetector> detector_;
     std::optional<std::size_t> nearest_;
     std::optional<CheckedRld> check_;
+    DoubledCones doubled_;  ///< a detector answers for the scene without doubles
 };
 
 /// A program from outside, taken from those that run already and given back.

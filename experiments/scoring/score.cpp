@@ -415,7 +415,7 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
         steering.add(score);
         if (const auto usable = score.usable()) {
             if (score.confidence) result.calibration.add(*score.confidence, *usable);
-            if (score.trusted_m) {
+            if (score.confidence && score.trusted_m) {  // else it is a rule, which nothing calibrates
                 result.calibration.add_trust(*score.trusted_m, score.lane_length_m,
                                              score.divergence_distance_m);
             }

@@ -25,7 +25,8 @@ struct FrontOptions {
 /// Lane detection by one front: both boundaries grow together, one cone at a time, under a learned cost that
 /// sees both of them, and a beam search finds the lanes of the highest score. FrontJudge takes the best of
 /// them. A boundary may step over cones that were not seen. The far ends are evened (see even_far_ends); a
-/// lane has two cones a side at least, each cone at most once, and is never closed.
+/// lane has two cones a side at least, each cone at most once. It is never closed: it ends where the course
+/// comes back beside or behind the car, where no view that it has learned from shows cones.
 ///
 /// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
 /// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates

@@ -107,12 +107,13 @@ void add_answer(py::class_<LaneObject>& lane) {
     lane.def_property_readonly(
             "status", [](const LaneObject& l) { return to_string(l.record.answer.status); },
             R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit came before
-one was found; "error": see `message`.)")
+one that can be driven was found; "error": see `message`.)")
         .def_property_readonly(
             "found", [](const LaneObject& l) { return l.record.answer.status == LaneStatus::found; },
             "bool: whether the status is \"found\"")
         .def_property_readonly(
-            "message", [](const LaneObject& l) { return l.record.answer.message; }, "str: of an error")
+            "message", [](const LaneObject& l) { return l.record.answer.message; },
+            "str: of an error; of a lane that is stopped since it cannot be driven")
         .def_property_readonly(
             "stopped_by",
             [](const LaneObject& l) -> std::optional<std::string_view> {
@@ -125,7 +126,18 @@ one was found; "error": see `message`.)")
             "float or None: probability that the lane is right, where the detector knows one")
         .def_property_readonly(
             "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
-            "float or None: distance up to which the lane can be trusted [m], where the detector knows one")
+            R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
+with a `confidence` it follows from probabilities, without one it is a rule of 10 m at most. None where no
+lane was found, and where a file says nothing: trust none of that lane then.)")
+        .def_property_readonly(
+            "merged",
+            [](const LaneObject& l) {
+                py::dict merged;
+                for (const auto& [cone, into] : l.record.answer.merged) merged[py::int_(cone)] = into;
+                return merged;
+            },
+            R"(dict of int to int: ids of the cones that the detector did not look at, since each stands within 0.12 m of
+another one, and the id that stands for both; empty for a lane from a file)")
         .def_property_readonly("objective", objective, "float or None: of a detector that states one")
         .def_property_readonly(
             "bound",

@@ -53,6 +53,8 @@ _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _FARTHEST_START_M = 3.0  # a lane is wider than twice this nowhere, so the car is not in it
 _STEP_M = 0.1  # of the line that a path is read off
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
+_SHORTEST_REST_M = 1.0  # less of an old path is no path
+_SLACK_M = 2.0  # how much farther than the car has moved its place on an old path may be
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -101,6 +103,14 @@ class PathPlanner:
         M, rows of the path.
     time_limit_ms : float
         Of each call, all detectors together [ms].
+    max_path_age : int
+        Calls in a row without a lane of their own in which the last path is still returned; 0 for none.
+
+    Attributes
+    ----------
+    path_age : int or None
+        Of the path returned last: 0 where it is of that call's cones, n where its lane was found n calls before; None
+        where there was no path.
 
     Raises
     ------
@@ -111,6 +121,10 @@ class PathPlanner:
     -----
     What differs from ft-fsd-path-planning:
 
+    - **No path is an array of no rows**, shape (0, 4): where no lane was found yet, or none for more than
+      `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then.
+    - A path of an earlier call is flagged by `path_age`. It is what is left of it: it begins beside the car, and goes no
+      farther than it did.
     - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
       ahead of it.
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
@@ -135,22 +149,28 @@ class PathPlanner:
         mission: MissionTypes,
         experimental_performance_improvements: bool = False,
         *,
-        methods: Sequence[str] = ("front-warm", "clc"),
+        methods: Sequence[str] = ("front-warm", "front", "clc"),
         path_length_m: float = 20.0,
         points: int = 40,
         time_limit_ms: float = 50.0,
+        max_path_age: int = 5,
     ) -> None:
         if mission == MissionTypes.skidpad:
             raise ValueError("mission: skidpad is not supported: its circles cross, which is no lane")
         if not path_length_m > 0.0 or points < 2 or not methods:
             raise ValueError("path_length_m must be above 0, points at least 2, methods at least 1")
+        if max_path_age < 0:
+            raise ValueError("max_path_age: must not be below 0")
         self.mission = MissionTypes(mission)
         self._detectors = [Detector(method) for method in methods]
         self._length_m = path_length_m
         self._points = points
         self._time_limit_ms = time_limit_ms
         self._memory = _ConeMemory()
-        self._last_path: Optional[FloatArray] = None
+        self._max_path_age = max_path_age
+        self.path_age: Optional[int] = None
+        self._last_path = np.zeros((0, 4))  # what is left of it
+        self._last_place = np.zeros(2)  # of the car, where it was cut
 
     def calculate_path_in_global_frame(
         self,
@@ -175,8 +195,8 @@ class PathPlanner:
         Returns
         -------
         path : (M, 4) ndarray of float
-            s [m], x, y [m], curvature [1/m]. Where no lane is found, or none within 3 m of the car: the last path, or
-            straight ahead where there was none yet.
+            s [m], x, y [m], curvature [1/m]. Where no lane is found, or none within 3 m of the car: what is left of the
+            last path, see `path_age`; of shape (0, 4) where there is no path.
         sorted_left, sorted_right : (L, 2), (R, 2) ndarray of float
             Boundaries from the car outward [m]; empty where no lane is found.
         left_with_virtual, right_with_virtual : (L, 2), (R, 2) ndarray of float
@@ -193,12 +213,13 @@ class PathPlanner:
         pose = _pose(vehicle_position, vehicle_direction)
         planned = self._plan(places, colors, pose)
         if planned is None:
-            path = self._last_path if self._last_path is not None else self._straight(pose)
+            path = self._rest_of_last_path(pose)
             left = right = np.zeros((0, 2))
         else:
             path, lane = planned
             left, right = lane.left_points, lane.right_points
-            self._last_path = path
+            self.path_age = 0
+        self._last_path, self._last_place = path, np.array(pose[:2])
         path = path.copy()
         if not return_intermediate_results:
             return path
@@ -232,10 +253,29 @@ class PathPlanner:
         s = np.linspace(0.0, min(self._length_m, rows[-1, 0]), self._points)
         return np.column_stack([s] + [np.interp(s, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
 
-    def _straight(self, pose: Tuple[float, float, float]) -> FloatArray:
-        x, y, yaw = pose
-        s = np.linspace(0.0, self._length_m, self._points)
-        return np.column_stack([s, x + s * np.cos(yaw), y + s * np.sin(yaw), np.zeros_like(s)])
+    def _rest_of_last_path(self, pose: Tuple[float, float, float]) -> FloatArray:
+        """The last path from the car on, a call older; no rows where it is too old or nothing of it lies ahead."""
+        age = None if self.path_age is None else self.path_age + 1
+        self.path_age = None
+        if age is None or age > self._max_path_age:
+            return np.zeros((0, 4))
+        path, place = self._last_path, np.array(pose[:2])
+        along = np.array([np.cos(pose[2]), np.sin(pose[2])])
+        s = np.unique(np.append(np.arange(0.0, path[-1, 0], _STEP_M), path[-1, 0]))
+        line = np.column_stack([np.interp(s, path[:, 0], path[:, column]) for column in (1, 2, 3)])
+        # The car is not far along from where it was: the other leg of a hairpin may be nearer to it.
+        near = s <= np.linalg.norm(place - self._last_place) + _SLACK_M
+        distance = np.linalg.norm(line[:, :2] - place, axis=1)
+        foot = int(distance[near].argmin())
+        while foot + 1 < len(s) and (line[foot, :2] - place) @ along < 0.0:
+            foot += 1
+        if distance[foot] > _FARTHEST_START_M or s[-1] - s[foot] < _SHORTEST_REST_M:
+            return np.zeros((0, 4))
+        if (line[foot + 1, :2] - line[foot, :2]) @ along < 0.0:  # the car drives against it
+            return np.zeros((0, 4))
+        self.path_age = age
+        rest = np.linspace(s[foot], s[-1], self._points)
+        return np.column_stack([rest - rest[0]] + [np.interp(rest, s, line[:, column]) for column in range(3)])
 
 
 def _merge(cones: Sequence[FloatArray]) -> Tuple[FloatArray, IntArray]:

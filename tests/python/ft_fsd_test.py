@@ -85,18 +85,18 @@ class Interface(unittest.TestCase):
             for x, color in zip((0, 4, 8, 12), left_colors):
                 cones[ConeTypes[color]] = np.vstack([cones[ConeTypes[color]], [[x, 1.5]]])
             planner = PathPlanner(MissionTypes.trackdrive)
-            found = planner.calculate_path_in_global_frame(cones, HERE, AHEAD)[-1, 0]
-            return None if planner._last_path is None else round(found, 6)
+            found = planner.calculate_path_in_global_frame(cones, HERE, AHEAD)
+            return None if planner.path_age is None else round(found[-1, 0], 6)
 
         self.assertEqual(length(["BLUE", "BLUE", "BLUE", "BLUE"]), 12)
         self.assertEqual(length(["BLUE", "ORANGE_BIG", "UNKNOWN", "BLUE"]), 12)
         self.assertEqual(length(["BLUE", "BLUE", "YELLOW", "BLUE"]), 4)
-        self.assertIsNone(length(["BLUE", "YELLOW", "BLUE", "BLUE"]))  # the last path, of which there is none
+        self.assertIsNone(length(["BLUE", "YELLOW", "BLUE", "BLUE"]))  # no path
 
     def test_a_lane_beside_the_car_is_not_driven(self):
         planner = PathPlanner(MissionTypes.trackdrive)
-        planner.calculate_path_in_global_frame(STRAIGHT, np.array([0.0, 8.0]), AHEAD)
-        self.assertIsNone(planner._last_path)
+        path = planner.calculate_path_in_global_frame(STRAIGHT, np.array([0.0, 8.0]), AHEAD)
+        self.assertEqual((planner.path_age, path.shape), (None, (0, 4)))
 
     def test_the_next_detector_answers_where_the_first_does_not(self):
         # A lone boundary: clc finds no lane, front one of one boundary.
@@ -106,18 +106,60 @@ class Interface(unittest.TestCase):
             _, left, right, *_ = planner.calculate_path_in_global_frame(cones, HERE, AHEAD, True)
             self.assertEqual((len(left), len(right)), boundaries, methods)
 
-    def test_the_last_path_where_nothing_is_found(self):
+    def test_there_is_no_path_before_the_first_lane(self):
         planner = PathPlanner(MissionTypes.trackdrive)
-        nothing = by_type()
-        first = planner.calculate_path_in_global_frame(nothing, np.array([1.0, 2.0]), np.array([0.0, 1.0]))
-        np.testing.assert_allclose(first[:, 1], 1.0)  # none yet: straight ahead
-        np.testing.assert_allclose(first[:, 2], 2.0 + np.linspace(0, 20, 40))
+        self.assertIsNone(planner.path_age)
+        results = planner.calculate_path_in_global_frame(by_type(), np.array([100.0, 50.0]), AHEAD, True)
+        self.assertEqual(results[0].shape, (0, 4))
+        self.assertTrue(all(len(result) == 0 for result in results))
+        self.assertIsNone(planner.path_age)
+
+    def test_an_old_path_is_cut_at_the_car_and_flagged_and_ends(self):
+        planner = PathPlanner(MissionTypes.trackdrive)
         found = planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
-        lost = planner.calculate_path_in_global_frame(nothing, np.array([1.0, 0.0]), AHEAD, True)
-        np.testing.assert_array_equal(lost[0], found)
-        self.assertTrue(all(len(result) == 0 for result in lost[1:]))
-        lost[0][:] = 0.0  # what a caller does to its path stays with it
-        np.testing.assert_array_equal(planner.calculate_path_in_global_frame(nothing, HERE, AHEAD), found)
+        self.assertEqual(planner.path_age, 0)
+        for age in range(1, 6):
+            car = np.array([1.5 * age, 0.3])
+            results = planner.calculate_path_in_global_frame(by_type(), car, AHEAD, True)
+            path = results[0]
+            self.assertEqual((planner.path_age, path.shape), (age, (40, 4)))
+            self.assertAlmostEqual(path[0, 1], car[0], delta=0.1)  # beside the car
+            self.assertGreaterEqual(path[:, 1].min(), car[0] - 1e-9)  # nothing behind it
+            np.testing.assert_allclose(path[-1, 1:3], found[-1, 1:3], atol=1e-9)  # no farther than it was
+            np.testing.assert_allclose(path[:, 0], np.linspace(0, path[-1, 1] - path[0, 1], 40), atol=1e-9)
+            self.assertTrue(all(len(result) == 0 for result in results[1:]))
+            path[:] = 0.0  # what a caller does to its path stays with it
+        path = planner.calculate_path_in_global_frame(by_type(), np.array([9.0, 0.0]), AHEAD)
+        self.assertEqual((planner.path_age, path.shape), (None, (0, 4)))  # too old
+        path = planner.calculate_path_in_global_frame(by_type(), HERE, AHEAD)
+        self.assertEqual((planner.path_age, path.shape), (None, (0, 4)))  # and it stays gone
+        again = planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+        np.testing.assert_array_equal(again, found)
+        self.assertEqual(planner.path_age, 0)
+
+    def test_no_old_path_is_returned_where_none_of_it_lies_ahead(self):
+        for car, direction in (((100.0, 50.0), AHEAD), ((11.5, 0.0), AHEAD), ((14.0, 0.0), AHEAD),
+                               ((2.0, 4.0), AHEAD), ((2.0, 0.0), -AHEAD)):
+            planner = PathPlanner(MissionTypes.trackdrive)
+            planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+            path = planner.calculate_path_in_global_frame(by_type(), np.array(car), direction)
+            self.assertEqual((planner.path_age, path.shape), (None, (0, 4)), (car, direction))
+        planner = PathPlanner(MissionTypes.trackdrive, max_path_age=0)
+        planner.calculate_path_in_global_frame(STRAIGHT, HERE, AHEAD)
+        self.assertEqual(planner.calculate_path_in_global_frame(by_type(), HERE, AHEAD).shape, (0, 4))
+
+    def test_an_old_path_of_a_hairpin_goes_on_from_the_leg_of_the_car(self):
+        # Out along y = 0 and back along y = 6: the car has gone 1 m, and stands nearer to the way back.
+        angle = np.linspace(-np.pi / 2, np.pi / 2, 9)
+        middle = np.vstack([[[x, 0.0] for x in (0, 3)], np.column_stack([6 + 3 * np.cos(angle), 3 + 3 * np.sin(angle)]),
+                            [[x, 6.0] for x in (3, 0)]])
+        planner = PathPlanner(MissionTypes.trackdrive)
+        s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))])
+        planner.path_age, planner._last_path = 0, np.column_stack([s, middle, np.zeros(len(s))])
+        path = planner.calculate_path_in_global_frame(by_type(), np.array([1.0, 2.9]), AHEAD)
+        self.assertEqual(planner.path_age, 1)
+        self.assertAlmostEqual(path[0, 2], 0.0, delta=0.1)
+        self.assertAlmostEqual(path[-1, 2], 6.0, delta=0.1)
 
     def test_cones_keep_their_ids_while_they_move_a_little(self):
         planner = PathPlanner(MissionTypes.trackdrive)
@@ -135,6 +177,8 @@ class Interface(unittest.TestCase):
             PathPlanner(MissionTypes.trackdrive, methods=["fsd"])
         with self.assertRaisesRegex(ValueError, "methods at least 1"):
             PathPlanner(MissionTypes.trackdrive, methods=[])
+        with self.assertRaisesRegex(ValueError, "max_path_age"):
+            PathPlanner(MissionTypes.trackdrive, max_path_age=-1)
         plan = PathPlanner(MissionTypes.trackdrive).calculate_path_in_global_frame
         broken = by_type(BLUE=[[0, np.nan]])
         for message, arguments in (("4 arrays, not 5", (STRAIGHT[:4], HERE, AHEAD)),
@@ -181,18 +225,42 @@ class RecordedRuns(unittest.TestCase):
         count = at_car = both = 0
         for i, (cones, position, direction) in enumerate(frames("fsg_19_2_laps")):
             path, left, right, *_ = planner.calculate_path_in_global_frame(cones, position, direction, True)
-            self.assertEqual(path.shape, (40, 4))
+            count += 1
+            self.assertEqual(path.shape, (0 if planner.path_age is None else 40, 4))
             self.assertTrue(np.isfinite(path).all())
             places = path[:, 1:3]
+            if planner.path_age:  # of an earlier frame: it goes on from beside the car
+                self.assertLessEqual(planner.path_age, 5)
+                self.assertGreaterEqual((places[0] - position) @ direction, -1e-9, f"frame {i}")
+                self.assertGreater((places[-1] - position) @ direction, 0.0, f"frame {i}")
+            if len(path) == 0:
+                continue
             inside = Polygon(walls[0]).contains_points(places) != Polygon(walls[1]).contains_points(places)
             self.assertTrue(inside.all(), f"frame {i}")
             self.assertFalse(crosses(places, walls[0]) or crosses(places, walls[1]), f"frame {i}")
-            count += 1
             at_car += np.linalg.norm(path[0, 1:3] - position) < 1.0  # no path of an earlier frame
             both += len(left) > 0 and len(right) > 0
         self.assertEqual(count, 440)
-        self.assertGreater(at_car, 400)
-        self.assertGreater(both, 400)
+        self.assertGreater(at_car, 430)
+        self.assertGreater(both, 390)
+
+    def test_every_lane_that_is_found_can_be_driven_and_says_how_far(self):
+        detector = conelane.Detector("front")
+        found = of_one_boundary = 0
+        for i, (cones, position, direction) in enumerate(frames("fsg_19_2_laps")):
+            pose = (*position, np.arctan2(direction[1], direction[0]))
+            lane = detector.detect(np.vstack(cones), pose, time_limit_ms=5000.0)
+            if not lane.found:
+                self.assertEqual((len(lane.centre_line()), lane.trusted_m), (0, None), f"frame {i}")
+                continue
+            found += 1
+            of_one_boundary += lane.confidence is None
+            self.assertGreater(len(lane.centre_line()), 0, f"frame {i}")
+            self.assertIsNotNone(lane.trusted_m, f"frame {i}")
+            if lane.confidence is None:
+                self.assertLessEqual(lane.trusted_m, 10.0)
+        self.assertGreater(found, 435)
+        self.assertGreater(of_one_boundary, 10)
 
     def test_every_frame_of_a_real_turn_has_a_path(self):
         planner = PathPlanner(MissionTypes.trackdrive, time_limit_ms=5000.0)

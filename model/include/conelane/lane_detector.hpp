@@ -5,6 +5,7 @@
 #include "conelane/stop_reason.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ namespace conelane {
 enum class LaneStatus {
     found,
     none,     ///< by proof or complete search: the scene has no feasible lane
-    stopped,  ///< nothing found before a limit, see LaneAnswer::stopped_by
+    stopped,  ///< no lane that can be driven was found before a limit, see LaneAnswer::stopped_by
     error,    ///< see LaneAnswer::message
 };
 [[nodiscard]] std::string_view to_string(LaneStatus status);
@@ -47,6 +48,18 @@ struct UncutLane {
     std::optional<Optimality> optimality;
 };
 
+/// Cones of a scene that stand at most this far apart [m] are one cone that a map holds twice: the base of
+/// the smallest cone of the rules is 0.228 m wide, so the middles of two cones cannot be that near.
+inline constexpr double kDoubledCone_m = 0.12;
+
+/// A cone that a detector did not look at, since it stands within kDoubledCone_m of another one.
+struct MergedCone {
+    ConeId cone;
+    ConeId into;  ///< the smaller id, which stands for both in the lane
+
+    bool operator==(const MergedCone&) const = default;
+};
+
 /// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, but for detectors
 /// that say otherwise of scenes which show one boundary alone (front). What a method does not know stays
 /// absent.
@@ -56,11 +69,15 @@ struct LaneAnswer {
     std::string message;
     /// The limit that ended the search. Absent where it ran to its end: then a lane is the detector's best.
     std::optional<StopReason> stopped_by;
-    std::optional<double> confidence;      ///< probability that the lane is right
-    std::optional<double> trusted_m;       ///< distance up to which the lane can be trusted
+    std::optional<double> confidence;  ///< probability that the lane is right
+    /// Distance up to which the lane can be trusted. Of a detector that `make_detector` makes every lane has
+    /// one. With a confidence it follows from probabilities; without one it is a rule and no probability: as
+    /// far as both boundaries were seen without a gap, and 10 m at most.
+    std::optional<double> trusted_m;
     std::optional<Optimality> optimality;  ///< of `lane` itself; absent where it was cut
     std::optional<UncutLane> uncut;        ///< where `lane` was cut; no file holds it
     std::optional<Enumeration> enumeration;
+    std::vector<MergedCone> merged;  ///< by `cone`; empty where no cone is doubled; no file holds it
 };
 
 struct DetectionLimits {
@@ -68,11 +85,16 @@ struct DetectionLimits {
     bool keep_candidates = false;  ///< fill Enumeration::candidates
 };
 
-/// A way from a scene to a lane. An instance may carry state from one scene of a lap to the next and serves
+/// A way from a scene to a lane. It looks at each cone once: of cones that are doubled it sees the one with
+/// the smallest id, and what it says, proofs as well, is said of the scene without the others, which
+/// LaneAnswer::merged names. An instance may carry state from one scene of a lap to the next and serves
 /// one thread; instances are independent of each other.
 class LaneDetector {
   public:
-    virtual ~LaneDetector() = default;
+    LaneDetector();
+    LaneDetector(const LaneDetector&) = delete;
+    LaneDetector& operator=(const LaneDetector&) = delete;
+    virtual ~LaneDetector();
 
     /// Throws nothing but std::bad_alloc: a scene that `validate` refuses, a limit that is NaN and whatever a
     /// search or its backend throws give status error and a message.
@@ -82,10 +104,11 @@ class LaneDetector {
     virtual void reset() {}
 
   private:
-    /// Precondition: the scene is valid and the limit is a number.
+    /// Precondition: the scene is valid and has no doubles, and the limit is a number.
     [[nodiscard]] virtual LaneAnswer search(const Scene& scene, const DetectionLimits& limits) = 0;
 
-    std::vector<ConeId> ids_;  ///< workspace of `validate`
+    struct Workspace;
+    std::unique_ptr<Workspace> workspace_;
 };
 
 }  // namespace conelane

@@ -1,0 +1,90 @@
+#include "model/doubled_cones.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace conelane {
+namespace {
+
+/// Cells are a power of two wide, so that dividing by it does not round, and wider than kDoubledCone_m, so
+/// that doubles are in the same or in neighbouring cells.
+constexpr double kCellsPerMetre = 4.0;
+static_assert(kDoubledCone_m * kCellsPerMetre < 1.0);
+/// Positions farther away share the last cell.
+constexpr double kLastCell = 1e15;
+
+}  // namespace
+
+const Scene& DoubledCones::merge(const Scene& scene) {
+    merged_.clear();
+    const std::vector<Cone>& cones = scene.cones;
+    by_id_.resize(cones.size());
+    for (std::size_t i = 0; i < cones.size(); ++i) by_id_[i] = i;
+    std::ranges::sort(by_id_, {}, [&](std::size_t i) { return cones[i].id; });
+    slots_.assign(std::bit_ceil(2 * cones.size() + 1), Slot{{0, 0}, kNone});
+    kept_.assign(cones.size(), true);
+    for (const std::size_t cone : by_id_) {
+        const std::size_t into = kept_near(scene, cones[cone].position);
+        if (into == kNone) {
+            keep(cones[cone].position, cone);
+        } else {
+            kept_[cone] = false;
+            merged_.push_back({cones[cone].id, cones[into].id});
+        }
+    }
+    if (merged_.empty()) return scene;
+    once_.id = scene.id;
+    once_.pose = scene.pose;
+    once_.cones.clear();
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+        if (kept_[i]) once_.cones.push_back(cones[i]);
+    }
+    return once_;
+}
+
+DoubledCones::Cell DoubledCones::cell_of(const Point& position) {
+    const auto of = [](double coordinate_m) {
+        const double cell = std::floor(coordinate_m * kCellsPerMetre);
+        return static_cast<std::int64_t>(std::clamp(cell, -kLastCell, kLastCell));
+    };
+    return {of(position.x()), of(position.y())};
+}
+
+std::size_t DoubledCones::first_slot(const Cell& cell) const {
+    std::uint64_t hash = static_cast<std::uint64_t>(cell.x) * 0x9E3779B97F4A7C15U;
+    hash = (hash ^ (hash >> 32U) ^ static_cast<std::uint64_t>(cell.y)) * 0xD6E8FEB86659FD93U;
+    return static_cast<std::size_t>(hash ^ (hash >> 32U)) & (slots_.size() - 1);
+}
+
+std::size_t DoubledCones::kept_near(const Scene& scene, const Point& position) const {
+    const Cell centre = cell_of(position);
+    std::size_t nearest = kNone;
+    double nearest_m = kDoubledCone_m;
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+        for (std::int64_t dy = -1; dy <= 1; ++dy) {
+            const Cell cell{centre.x + dx, centre.y + dy};
+            for (std::size_t at = first_slot(cell); slots_[at].cone != kNone;
+                 at = (at + 1) & (slots_.size() - 1)) {
+                if (slots_[at].cell != cell) continue;
+                const Cone& kept = scene.cones[slots_[at].cone];
+                const double distance_m = (kept.position - position).norm();
+                if (distance_m > nearest_m) continue;
+                if (distance_m == nearest_m && nearest != kNone && scene.cones[nearest].id < kept.id)
+                    continue;
+                nearest = slots_[at].cone;
+                nearest_m = distance_m;
+            }
+        }
+    }
+    return nearest;
+}
+
+void DoubledCones::keep(const Point& position, std::size_t cone) {
+    const Cell cell = cell_of(position);
+    std::size_t at = first_slot(cell);
+    while (slots_[at].cone != kNone) at = (at + 1) & (slots_.size() - 1);
+    slots_[at] = {cell, cone};
+}
+
+}  // namespace conelane

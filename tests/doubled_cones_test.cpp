@@ -1,0 +1,206 @@
+// Cones that a map holds twice: merged before any detector looks at them (see LaneDetector and DoubledCones).
+
+#include "model/doubled_cones.hpp"
+
+#include "conelane/detectors.hpp"
+#include "graph_search/clc_detector.hpp"
+#include "graph_search/front/front_detector.hpp"
+#include "tests/counted_allocations.hpp"
+#include "tests/front_fixture.hpp"
+#include "tests/no_time_limit.hpp"
+#include "tests/random_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+constexpr ConeId kDouble = 1000;  ///< id of a cone's double, less that of the cone
+
+/// Every cone of the scene again at that distance, each in another direction, ahead of all others in the
+/// list.
+Scene doubled(const Scene& scene, double distance_m) {
+    Scene twice = scene;
+    twice.cones.clear();
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        Cone cone = scene.cones[i];
+        const double direction_rad = 2.4 * static_cast<double>(i);
+        cone.id += kDouble;
+        cone.position += distance_m * Point(std::cos(direction_rad), std::sin(direction_rad));
+        twice.cones.push_back(cone);
+    }
+    twice.cones.insert(twice.cones.end(), scene.cones.begin(), scene.cones.end());
+    return twice;
+}
+
+std::vector<ConeId> ids(const Scene& scene) {
+    std::vector<ConeId> all;
+    for (const Cone& cone : scene.cones) all.push_back(cone.id);
+    return all;
+}
+
+class DoubledConesOf : public testing::TestWithParam<std::string> {
+  protected:
+    static LaneAnswer detect(const Scene& scene) {
+        return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);
+    }
+};
+
+TEST_P(DoubledConesOf, UpToTenCentimetresAreOneCone) {
+    const Scene once = tests::straight_front_scene(5);
+    const LaneAnswer expected = detect(once);
+    ASSERT_EQ(expected.status, LaneStatus::found);
+    ASSERT_GT(expected.trusted_m.value_or(0.0), 0.0);
+    EXPECT_TRUE(expected.merged.empty());
+    for (const double distance_m : {0.0, 0.01, 0.05, 0.1}) {
+        SCOPED_TRACE(distance_m);
+        const LaneAnswer answer = detect(doubled(once, distance_m));
+        EXPECT_EQ(answer.status, LaneStatus::found) << answer.message;
+        EXPECT_EQ(answer.lane, expected.lane) << "by the smaller ids";
+        EXPECT_EQ(answer.confidence, expected.confidence);
+        EXPECT_EQ(answer.trusted_m, expected.trusted_m);
+        ASSERT_EQ(answer.merged.size(), once.cones.size());
+        EXPECT_TRUE(std::ranges::is_sorted(answer.merged, {}, &MergedCone::cone));
+        for (const MergedCone& merged : answer.merged) EXPECT_EQ(merged.cone, merged.into + kDouble);
+    }
+}
+
+TEST_P(DoubledConesOf, FartherApartTheyAreCones) {
+    const Scene once = tests::straight_front_scene(5);
+    for (const double distance_m : {0.2, 0.3}) {
+        SCOPED_TRACE(distance_m);
+        const LaneAnswer answer = detect(doubled(once, distance_m));
+        EXPECT_NE(answer.status, LaneStatus::error) << answer.message;
+        EXPECT_TRUE(answer.merged.empty());
+    }
+}
+
+std::vector<std::string> all_names() {
+    std::vector<std::string> names;
+    for (const DetectorInfo& detector : detectors()) names.emplace_back(detector.name);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), [](const auto& detector) {
+    std::string words = detector.param;
+    std::ranges::replace(words, '-', '_');
+    return words;
+});
+
+TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
+    DoubledCones doubles;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Scene scene = tests::straight_front_scene(10);
+        EXPECT_EQ(&doubles.merge(scene), &scene);
+        EXPECT_TRUE(doubles.merged().empty());
+    }
+    const Scene none;
+    EXPECT_EQ(&doubles.merge(none), &none);
+}
+
+TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
+    DoubledCones doubles;
+    std::size_t merged = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(seed);
+        boost::random::mt19937_64 random(seed);
+        // From crowds to few doubles; about the origin, and where cells have large numbers.
+        boost::random::uniform_real_distribution<double> along(0.0, 0.2 * static_cast<double>(1 + seed));
+        const Point origin = seed % 2 == 0 ? Point(-0.5, -0.5) : Point(-1e6, 1e6);
+        Scene scene;
+        for (ConeId id = 0; id < 60; ++id) {
+            const double x = along(random);
+            // 37 and 60 have no common divisor: each id once, in no order.
+            scene.cones.push_back({(id * 37) % 60, origin + Point(x, along(random))});
+        }
+        const Scene& once = doubles.merge(scene);
+        const std::vector<ConeId> kept = ids(once);
+        merged += doubles.merged().size();
+        EXPECT_EQ(kept.size() + doubles.merged().size(), scene.cones.size());
+        for (const Cone& a : once.cones) {
+            for (const Cone& b : once.cones) {
+                if (a.id == b.id) continue;
+                EXPECT_GT((a.position - b.position).norm(), kDoubledCone_m);
+            }
+        }
+        const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
+        for (const MergedCone& cone : doubles.merged()) {
+            EXPECT_EQ(std::ranges::count(kept, cone.cone), 0);
+            EXPECT_EQ(std::ranges::count(kept, cone.into), 1);
+            EXPECT_LT(cone.into, cone.cone);
+            EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), kDoubledCone_m);
+        }
+        // The order of the list does not count.
+        std::vector<MergedCone> before = doubles.merged();
+        std::ranges::reverse(scene.cones);
+        std::vector<ConeId> reversed = ids(doubles.merge(scene));
+        std::ranges::reverse(reversed);
+        EXPECT_EQ(reversed, kept);
+        EXPECT_EQ(doubles.merged(), before);
+    }
+    EXPECT_GT(merged, 200U) << "scenes without doubles show little";
+}
+
+TEST(DoubledCones, ARowOfConesDoesNotCollapse) {
+    Scene scene;
+    for (ConeId id = 0; id < 10; ++id) scene.cones.push_back({id, {0.08 * static_cast<double>(id), 2.0}});
+    DoubledCones doubles;
+    EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 2, 4, 6, 8}));
+}
+
+TEST(DoubledCones, FarthestPositionsAreNoTrouble) {
+    const double most = std::numeric_limits<double>::max();
+    Scene scene;
+    scene.cones = {{0, {most, -most}}, {1, {-most, most}}, {2, {1e300, 0.0}}, {3, {1e300, 0.0}}};
+    DoubledCones doubles;
+    EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 1, 2}));
+}
+
+TEST(DoubledCones, ManyAtOnePlaceTakeNoLongerThanManyApart) {
+    Scene scene;
+    boost::random::mt19937_64 random(1);
+    boost::random::uniform_real_distribution<double> near(0.0, 0.05);
+    for (ConeId id = 0; id < 200'000; ++id) {
+        const double x = near(random);
+        scene.cones.push_back({id, {x, near(random)}});
+    }
+    DoubledCones doubles;  // each against each other would be 2e10 distances, which no test waits for
+    EXPECT_EQ(doubles.merge(scene).cones.size(), 1U);
+}
+
+TEST(DoubledCones, NothingIsAllocatedButTheAnswerOnceMemoryIsWarm) {
+    const Scene once = tests::straight_front_scene(10);
+    const Scene twice = doubled(once, 0.05);
+    std::vector<std::unique_ptr<LaneDetector>> all;
+    all.push_back(make_front_detector(shipped_front_options()));
+    all.push_back(make_clc_detector(extended_clc_options()));
+    for (const std::unique_ptr<LaneDetector>& detector : all) {
+        for (int warm = 0; warm < 2; ++warm) {
+            (void)detector->detect(once, tests::kNoTimeLimit);
+            (void)detector->detect(twice, tests::kNoTimeLimit);
+        }
+        const auto allocated = [&](const Scene& scene) {
+            const std::size_t before = allocations;
+            const LaneAnswer answer = detector->detect(scene, tests::kNoTimeLimit);
+            const std::size_t count = allocations - before;
+            EXPECT_EQ(answer.status, LaneStatus::found);
+            return count;
+        };
+        EXPECT_EQ(allocated(once), 2U) << "the boundaries";
+        EXPECT_EQ(allocated(twice), 3U) << "the boundaries and the list of what was merged";
+    }
+}
+
+}  // namespace
+}  // namespace conelane
