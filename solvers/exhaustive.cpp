@@ -1,7 +1,6 @@
 #include "solvers/exhaustive.hpp"
 
 #include "model/deadline.hpp"
-#include "solvers/detail/guarded_solve.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -145,21 +144,18 @@ class Enumeration {
 };
 
 class ExhaustiveSolver : public RldSolver {
-  public:
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* start) override {
+    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* /*start*/,
+             RldReport& report) override {
         const Deadline deadline(limits.time_limit_ms);
-        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
-            if (problem.cone_count > kExhaustiveMostCones) {
-                report.message = "exhaustive takes at most " + std::to_string(kExhaustiveMostCones) +
-                                 " cones, not " + std::to_string(problem.cone_count);
-                return;
-            }
-            const Stopwatch watch;
-            Enumeration(problem, deadline).run(report);
-            report.rounds = 1;
-            report.solve_ms = watch.elapsed_ms();
-        });
+        if (problem.cone_count > kExhaustiveMostCones) {
+            report.message = "exhaustive takes at most " + std::to_string(kExhaustiveMostCones) +
+                             " cones, not " + std::to_string(problem.cone_count);
+            return;
+        }
+        const Stopwatch watch;
+        Enumeration(problem, deadline).run(report);
+        report.rounds = 1;
+        report.solve_ms = watch.elapsed_ms();
     }
 };
 

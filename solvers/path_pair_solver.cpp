@@ -1,7 +1,6 @@
 #include "solvers/path_pair_solver.hpp"
 
 #include "model/deadline.hpp"
-#include "solvers/detail/guarded_solve.hpp"
 #include "solvers/path_pair/arc_graph.hpp"
 #include "solvers/path_pair/branch_and_bound.hpp"
 #include "solvers/path_pair/incumbent.hpp"
@@ -26,26 +25,6 @@ class PathPairSolver : public RldSolver {
   public:
     explicit PathPairSolver(const PathPairOptions& options)
         : options_(options), search_(graph_, incumbent_, options_) {}
-
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* start) override {
-        const Deadline deadline(limits.time_limit_ms);
-        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
-            const Stopwatch build_watch;
-            report.status = SolveStatus::stopped;
-            SearchClock clock([&deadline] { return deadline.passed(); });
-            if (is_too_large(problem)) {
-                report.stopped_by = StopReason::memory;
-            } else if (clock.out_of_time() || !graph_.build(problem, clock)) {
-                report.stopped_by = StopReason::time;
-            }
-            report.build_ms = build_watch.elapsed_ms();
-            if (report.stopped_by) return;
-            const Stopwatch solve_watch;
-            search(problem, limits, start, deadline, report);
-            report.solve_ms = solve_watch.elapsed_ms();
-        });
-    }
 
     BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
         const Deadline deadline(time_limit_ms);
@@ -89,6 +68,24 @@ class PathPairSolver : public RldSolver {
   private:
     using Outcome = BranchAndBound::Outcome;
 
+    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
+             RldReport& report) override {
+        const Deadline deadline(limits.time_limit_ms);
+        const Stopwatch build_watch;
+        report.status = SolveStatus::stopped;
+        SearchClock clock([&deadline] { return deadline.passed(); });
+        if (is_too_large(problem)) {
+            report.stopped_by = StopReason::memory;
+        } else if (clock.out_of_time() || !graph_.build(problem, clock)) {
+            report.stopped_by = StopReason::time;
+        }
+        report.build_ms = build_watch.elapsed_ms();
+        if (report.stopped_by) return;
+        const Stopwatch solve_watch;
+        search(problem, limits, start, deadline, report);
+        report.solve_ms = solve_watch.elapsed_ms();
+    }
+
     void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
                 const Deadline& deadline, RldReport& report) {
         // No two lane graphs differ by more: beyond it a wider gap means the same.
@@ -120,12 +117,13 @@ class PathPairSolver : public RldSolver {
         }
     }
 
-    /// Precondition: the lane graph is feasible.
+    /// Legs from near to far cones, however the paths of the start run. Precondition: it is feasible.
     void offer(const LaneGraphProblem& problem, const LaneGraph& start) {
         std::array<std::vector<int>, 2> legs;
         const auto boundaries = paths(start, problem.cone_count);
         for (std::size_t leg = 0; leg < 2; ++leg) {
-            const std::vector<std::size_t>& path = (*boundaries)[leg];
+            std::vector<std::size_t> path = (*boundaries)[leg];
+            if (!problem.near[path.front()]) std::ranges::reverse(path);
             for (std::size_t k = 0; k + 1 < path.size(); ++k) {
                 legs[leg].push_back(graph_.arc(static_cast<int>(path[k]), static_cast<int>(path[k + 1])));
             }

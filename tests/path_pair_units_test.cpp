@@ -122,13 +122,31 @@ class Offers {
 
 TEST(PathPairIncumbent, TakesLaneGraphsThatCostLess) {
     Offers lane(six_cone_lane(), {});
-    EXPECT_TRUE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_TRUE(lane.offer({1, 2}, {3, 4, 5}));
     EXPECT_NEAR(lane.incumbent.cutoff(), -3.0, 1e-9);
     EXPECT_TRUE(lane.offer({0, 1, 2}, {3, 4, 5}));
     EXPECT_NEAR(lane.incumbent.cutoff(), -4.0, 1e-9);
     EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 4, 5})) << "no cheaper";
-    EXPECT_FALSE(lane.offer({0, 1}, {3, 4, 5}));
+    EXPECT_FALSE(lane.offer({1, 2}, {3, 4, 5}));
     EXPECT_EQ(lane.incumbent.edges().size(), 4U);
+}
+
+/// Windows take the first cone of a leg for its near end, whoever offered the legs.
+TEST(PathPairIncumbent, TakesNoLegFromFarToNear) {
+    Offers lane(six_cone_lane(), {});
+    EXPECT_FALSE(lane.offer({2, 1, 0}, {3, 4, 5}));
+    EXPECT_FALSE(lane.offer({0, 1, 2}, {5, 4, 3}));
+    EXPECT_FALSE(lane.offer({2, 1, 0}, {5, 4, 3}));
+    EXPECT_FALSE(lane.incumbent.goes_far()) << "there is none";
+    EXPECT_TRUE(lane.offer({0, 1, 2}, {3, 4, 5}));
+    EXPECT_TRUE(lane.incumbent.goes_far());
+}
+
+TEST(PathPairIncumbent, TakesNoLaneGraphWithoutTwoFarEndsThatFit) {
+    EXPECT_FALSE(Offers(six_cone_lane(), {}).offer({0, 1}, {3, 4})) << "four near ends";
+    RldParameters parameters;
+    parameters.d_max = 3.4;  // 2 and 5 are 3.5 m apart
+    EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too far apart";
 }
 
 TEST(PathPairIncumbent, PaysForEveryTurn) {

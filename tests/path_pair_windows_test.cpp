@@ -258,5 +258,31 @@ TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
     EXPECT_LT(with, without);
 }
 
+/// Its own lane graph, far ends first in one of its paths or not, stays one when windows improve it.
+TEST(PathPairWindows, AStartIsImprovedAsWhatItIs) {
+    int started = 0;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", pairing " << static_cast<int>(pairing));
+            const Scene scene = strewn_scene(seed, 70, 25.0);
+            RldParameters parameters;
+            parameters.pairing = pairing;
+            const LaneGraphProblem problem = make_problem(scene, parameters);
+            const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+            const RldReport first = solver->solve(problem, {.time_limit_ms = 150.0});
+            if (!first.lane_graph) continue;
+            const RldReport again = solver->solve(problem, {.time_limit_ms = 300.0}, &*first.lane_graph);
+            EXPECT_EQ(again.message, "");
+            ASSERT_TRUE(again.lane_graph);
+            EXPECT_LE(*again.objective, *first.objective + 1e-9);
+            EXPECT_TRUE(check(scene, parameters, *again.lane_graph,
+                              {again.status == SolveStatus::optimal, *again.objective, again.bound})
+                            .violations.empty());
+            ++started;
+        }
+    }
+    EXPECT_GT(started, 4);
+}
+
 }  // namespace
 }  // namespace conelane::path_pair

@@ -14,6 +14,8 @@
 #include <memory>
 #include <utility>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
 #include <fmt/format.h>
 
 namespace conelane::experiments {
@@ -25,12 +27,36 @@ constexpr std::size_t kMostCertifiedCones = 12;
 constexpr std::int64_t kMostCertificateSteps = 20'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What someone claims, and under which limit.
+enum class Asked { generously, tightly, from_a_start };
+
+/// What someone claims, and how it was asked.
 struct Answer {
     std::string by;
-    bool is_generous;
+    Asked asked;
     RldReport report;
 };
+
+struct NamedStart {
+    std::string name;
+    LaneGraph graph;
+};
+
+/// Most edges of a lane graph and a few others: hardly ever a lane graph itself.
+LaneGraph random_edges(const LaneGraph& from, std::size_t cones, std::size_t seed) {
+    boost::random::mt19937_64 random(seed);
+    const auto one_in = [&](int count) {
+        return boost::random::uniform_int_distribution<int>(1, count)(random) == 1;
+    };
+    LaneGraph graph;
+    for (std::size_t i = 0; i < cones; ++i) {
+        for (std::size_t j = i + 1; j < cones; ++j) {
+            const bool is_in_answer = std::ranges::find(from.edges, Edge{i, j}) != from.edges.end();
+            if (is_in_answer ? !one_in(4) : one_in(static_cast<int>(2 * cones)))
+                graph.edges.push_back({i, j});
+        }
+    }
+    return graph;
+}
 
 bool is_proof(const RldReport& report) {
     return report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
@@ -42,8 +68,9 @@ class Judgement {
         : drawn_(drawn), contestants_(contestants), time_limit_ms_(time_limit_ms) {}
 
     CrossCheckVerdict run() {
-        ask(time_limit_ms_, true);
-        ask(drawn_.tight_limit_ms, false);
+        ask(time_limit_ms_, Asked::generously);
+        ask(drawn_.tight_limit_ms, Asked::tightly);
+        ask_from_starts();
         for (const Answer& answer : answers_) hold_against_itself(answer);
         hold_against_each_other();
         conclude();
@@ -59,12 +86,65 @@ class Judgement {
         verdict_.findings.push_back(fmt::format(text, std::forward<Values>(values)...));
     }
 
-    void ask(double limit_ms, bool is_generous) {
+    void ask(double limit_ms, Asked asked) {
         for (const Contestant& contestant : contestants_) {
             if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
-            answers_.push_back({fmt::format("{} within {} ms", contestant.name, limit_ms), is_generous,
+            answers_.push_back({fmt::format("{} within {} ms", contestant.name, limit_ms), asked,
                                 contestant.solve(drawn_.scene, drawn_.parameters, limit_ms)});
         }
+    }
+
+    /// What there is to start from for the contestant of this name.
+    [[nodiscard]] std::vector<NamedStart> starts(const std::string& name) const {
+        std::vector<NamedStart> all;
+        const std::size_t cones = drawn_.scene.cones.size();
+        const LaneGraph* known = nullptr;
+        for (const Answer& answer : answers_) {
+            if (answer.asked != Asked::generously || !answer.report.lane_graph) continue;
+            const bool is_own = answer.by.starts_with(name + " within ");
+            if (known == nullptr || is_own) known = &*answer.report.lane_graph;
+            const bool has_other = !all.empty() && all.back().name == "another's answer";
+            if (!is_own && !has_other) all.push_back({"another's answer", *answer.report.lane_graph});
+        }
+        all.push_back({"random edges", random_edges(known ? *known : LaneGraph{}, cones, drawn_.number)});
+        if (known == nullptr || known->edges.empty()) return all;
+        all.push_back({"its own answer", *known});
+        LaneGraph shorter = *known;
+        shorter.edges.pop_back();
+        all.push_back({"an answer without its last edge", std::move(shorter)});
+        LaneGraph with_gone = *known;
+        with_gone.edges.push_back({cones - 1, cones});
+        all.push_back({"an answer with a cone that is gone", std::move(with_gone)});
+        return all;
+    }
+
+    void ask_from_starts() {
+        const LaneGraphProblem problem = make_problem(drawn_.scene, drawn_.parameters);
+        for (const Contestant& contestant : contestants_) {
+            if (!contestant.solve_from) continue;
+            if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
+            for (const NamedStart& start : starts(contestant.name)) {
+                const bool is_feasible_start = is_feasible(problem, start.graph);
+                std::vector<double> limits{drawn_.tight_limit_ms};
+                if (start.name == "its own answer") limits.push_back(time_limit_ms_);
+                for (const double limit_ms : limits) {
+                    Answer answer{
+                        fmt::format("{} within {} ms from {}", contestant.name, limit_ms, start.name),
+                        Asked::from_a_start,
+                        contestant.solve_from(drawn_.scene, drawn_.parameters, limit_ms, start.graph)};
+                    if (is_feasible_start) hold_against_start(answer, objective(problem, start.graph));
+                    answers_.push_back(std::move(answer));
+                }
+            }
+        }
+    }
+
+    void hold_against_start(const Answer& answer, double known) {
+        // A scene whose making hit the limit is answered without a look at the start.
+        if (answer.report.status == SolveStatus::stopped) return;
+        if (!answer.report.objective ||
+            *answer.report.objective > known + kTolerance * std::max(1.0, std::abs(known)))
+            find("{}: {}, worse than the start's {}", answer.by, to_string(answer.report.status), known);
     }
 
     void hold_against_itself(const Answer& answer) {
@@ -107,10 +187,10 @@ class Judgement {
         bool all_optimal = true;
         bool all_infeasible = true;
         for (const Answer& answer : answers_) {
-            if (answer.is_generous) {
+            if (answer.asked == Asked::generously) {
                 all_optimal = all_optimal && answer.report.status == SolveStatus::optimal;
                 all_infeasible = all_infeasible && answer.report.status == SolveStatus::infeasible;
-            } else {
+            } else if (answer.asked == Asked::tightly) {
                 ++verdict_.tight_answers;
                 if (is_proof(answer.report)) ++verdict_.tight_proofs;
             }
@@ -166,7 +246,11 @@ std::vector<Contestant> make_contestants(std::span<const std::string> names, For
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
                  return solve_scene(*solver, scene, parameters, {time_limit_ms}).report;
              },
-             entry->most_cones});
+             entry->most_cones,
+             [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms,
+                      const LaneGraph& start) {
+                 return solve_scene(*solver, scene, parameters, {time_limit_ms}, &start).report;
+             }});
     }
     return contestants;
 }

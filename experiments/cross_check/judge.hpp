@@ -18,6 +18,9 @@ struct Contestant {
     std::string name;
     std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms)> solve;
     std::optional<std::size_t> most_cones{};  ///< it is not asked about more
+    /// The same from a start; it is not asked from starts where this is empty.
+    std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms, const LaneGraph& start)>
+        solve_from = {};
 };
 
 /// The names of the exact solvers of this build.
@@ -44,11 +47,14 @@ struct CrossCheckVerdict {
     std::size_t tight_proofs = 0;  ///< of these claimed optimal or infeasible, and not refuted
 };
 
-/// Asks each contestant under the generous limit, then each again under the case's tight limit, and holds
-/// everything claimed against everything known, whoever said it and under which limit:
+/// Asks each contestant under the generous limit, then each again under the case's tight limit, and from
+/// starts: its own answer under both limits, and under the tight one the answer of another, an answer without
+/// its last edge, edges drawn at random, and an answer with an edge of a cone that is gone. Holds everything
+/// claimed against everything known, whoever said it, under which limit and from which start:
 /// - a status comes with what belongs to it: a lane graph with `optimal` and `feasible` alone, a bound that
 ///   meets the objective with `optimal`;
 /// - the independent checker accepts each lane graph and its objective;
+/// - an answer from a feasible start is a lane graph that costs no more;
 /// - no bound is above any accepted lane graph's objective by more than 1e-6 of max(1, |objective|), so no
 ///   objective is below what was proven; `infeasible` counts as an infinite bound;
 /// - where all say `infeasible`, a search by the checker alone finds no lane graph in the 20 ms it has;

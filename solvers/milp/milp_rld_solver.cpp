@@ -2,7 +2,6 @@
 
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
-#include "solvers/detail/guarded_solve.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -19,27 +18,25 @@ class MilpRldSolver : public RldSolver {
 
     EdgeExtent extent() const override { return parts(formulation_).extent; }
 
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* start) override {
+  private:
+    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
+             RldReport& report) override {
         const Deadline deadline(limits.time_limit_ms);
-        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
-            if (problem.edges.empty()) {
-                report.status = SolveStatus::infeasible;
-                return;
-            }
-            const Stopwatch build_watch;
-            const std::unique_ptr<MilpSession> session = load(problem, deadline, report);
-            report.build_ms = build_watch.elapsed_ms();
-            if (!session) return;
-            const Stopwatch solve_watch;
-            const bool has_start = start != nullptr && is_feasible(problem, *start);
-            if (has_start) take(problem, *start, report);
-            solve_and_separate(problem, *session, limits, deadline, report);
-            report.solve_ms = solve_watch.elapsed_ms();
-        });
+        if (problem.edges.empty()) {
+            report.status = SolveStatus::infeasible;
+            return;
+        }
+        const Stopwatch build_watch;
+        const std::unique_ptr<MilpSession> session = load(problem, deadline, report);
+        report.build_ms = build_watch.elapsed_ms();
+        if (!session) return;
+        const Stopwatch solve_watch;
+        const bool has_start = start != nullptr && is_feasible(problem, *start);
+        if (has_start) take(problem, *start, report);
+        solve_and_separate(problem, *session, limits, deadline, report);
+        report.solve_ms = solve_watch.elapsed_ms();
     }
 
-  private:
     /// Nothing where a limit was struck before the program was loaded, which is in the report then.
     std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, const Deadline& deadline,
                                       RldReport& report) {

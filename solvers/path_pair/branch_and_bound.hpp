@@ -108,7 +108,6 @@ class BranchAndBound {
     [[nodiscard]] bool may_improve(double gap) const;
     void enter_windows(const ResidualGraph& alive);
     void leave_windows();
-    [[nodiscard]] bool incumbent_goes_far() const;
     void begin_phase();
     bool search_window();
     Verdict explore(Node& node);

@@ -72,7 +72,7 @@ void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound)
     state.known_cost = incumbent_.cutoff();
     const double gap = (incumbent_.cutoff() - bound) / std::max(1.0, std::abs(incumbent_.cutoff()));
     if (!options_.search_windows || !options_.search_fronts || whole_system_->kind_count != 1) return;
-    if (is_new && incumbent_goes_far()) {
+    if (is_new && incumbent_.goes_far()) {
         state.pair = incumbent_;
         state.window_arcs = kWindowArcs;
         state.is_new = true;
@@ -127,19 +127,12 @@ void BranchAndBound::leave_windows() {
     ascent_ = state.ascent;
 }
 
-/// Whether both legs go from near to far: the start of a warm search may have any direction.
-bool BranchAndBound::incumbent_goes_far() const {
-    return incumbent_.found() && std::ranges::all_of(incumbent_.legs(), [&](const std::vector<int>& leg) {
-               return whole_system_->kinds[0].start[at(graph_.tail(leg.front()))] != 0 &&
-                      whole_system_->kinds[0].end[at(graph_.head(leg.back()))] != 0;
-           });
-}
-
 void BranchAndBound::begin_phase() {
     Improvement& state = improvement_;
     const Phase& phase = kPhases[state.phase++];
     if (phase.beam.width == 0) {
-        if (!state.best.found()) return;
+        // Windows are of the system from near to far: a start of another system cannot be improved there.
+        if (!state.best.goes_far()) return;
         incumbent_ = state.best;
     } else {
         incumbent_.reset(graph_, 0.0);

@@ -1,5 +1,7 @@
 #include "solvers/path_pair/incumbent.hpp"
 
+#include <algorithm>
+
 namespace conelane::path_pair {
 
 void Incumbent::reset(const ArcGraph& graph, double cutoff) {
@@ -18,10 +20,31 @@ double Incumbent::leg_cost(std::span<const int> leg) const {
     return sum;
 }
 
+bool Incumbent::goes_far() const {
+    return found_ && std::ranges::all_of(legs_, [&](const std::vector<int>& leg) {
+               return graph_->near(graph_->tail(leg.front())) && !graph_->near(graph_->head(leg.back()));
+           });
+}
+
+/// Two ends are near and two are far, these are not too far apart (17), and no leg runs from far to near.
+bool Incumbent::has_ends_of_a_lane(std::span<const int> first, std::span<const int> second) const {
+    std::array<int, 4> far_ends{};
+    std::size_t far_count = 0;
+    for (const std::span<const int> leg : {first, second}) {
+        const int start = graph_->tail(leg.front());
+        const int end = graph_->head(leg.back());
+        if (!graph_->near(start) && graph_->near(end)) return false;
+        for (const int cone : {start, end}) {
+            if (!graph_->near(cone)) far_ends[far_count++] = cone;
+        }
+    }
+    return far_count == 2 && graph_->are_partners(far_ends[0], far_ends[1]);
+}
+
 bool Incumbent::offer(std::span<const int> first, std::span<const int> second) {
     if (first.empty() || second.empty()) return false;
     const double cost = leg_cost(first) + leg_cost(second);
-    if (!(cost < cutoff_)) return false;
+    if (!(cost < cutoff_) || !has_ends_of_a_lane(first, second)) return false;
     visited_.assign(static_cast<std::size_t>(graph_->cone_count()), 0);
     candidate_.clear();
     int along_heading = 0;

@@ -8,14 +8,14 @@
 
 namespace conelane::path_pair {
 
-/// The best lane graph so far. Takes nothing that breaks a constraint.
+/// The best lane graph so far. Takes nothing that breaks a constraint, whatever offers it.
 class Incumbent {
   public:
     void reset(const ArcGraph& graph, double cutoff);
 
-    /// Legs as arcs of the arc graph, each from its start to its end. True where they are a lane graph, near
-    /// cones at the starts and (17) at the ends apart, that costs less than the incumbent or the first
-    /// cutoff.
+    /// Legs as arcs of the arc graph. A leg between a near cone and a far one runs to the far one: one in the
+    /// other direction is not taken. True where the legs are a lane graph that costs less than the incumbent
+    /// or the first cutoff. Whether the pairing allows its ends is for the caller to know.
     bool offer(std::span<const int> first, std::span<const int> second);
 
     [[nodiscard]] bool found() const { return found_; }
@@ -26,11 +26,16 @@ class Incumbent {
     [[nodiscard]] std::span<const int> edges() const { return edges_; }
     /// Arcs of the arc graph, as they were offered.
     [[nodiscard]] const std::array<std::vector<int>, 2>& legs() const { return legs_; }
+    /// Whether both legs run from a near cone to a far one. Else one is between near cones and one between
+    /// far ones, which only the pairing `paper` allows: not a pair of legs of the system from near to far.
+    [[nodiscard]] bool goes_far() const;
 
     /// (29) of a leg.
     [[nodiscard]] double leg_cost(std::span<const int> leg) const;
 
   private:
+    [[nodiscard]] bool has_ends_of_a_lane(std::span<const int> first, std::span<const int> second) const;
+
     const ArcGraph* graph_ = nullptr;
     double cutoff_ = 0.0;
     bool found_ = false;

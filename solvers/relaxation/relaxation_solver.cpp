@@ -1,7 +1,6 @@
 #include "solvers/relaxation/relaxation_solver.hpp"
 
 #include "model/deadline.hpp"
-#include "solvers/detail/guarded_solve.hpp"
 #include "solvers/path_pair_solver.hpp"
 #include "solvers/relaxation/lp_relaxation.hpp"
 #include "solvers/relaxation/rounding.hpp"
@@ -15,20 +14,18 @@ class RelaxationSolver : public RldSolver {
   public:
     explicit RelaxationSolver(Relax relax) : relax_(std::move(relax)) {}
 
-    RldReport solve(const LaneGraphProblem& problem, const SolveLimits& limits,
-                    const LaneGraph* start) override {
+  private:
+    void run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* /*start*/,
+             RldReport& report) override {
         const Deadline deadline(limits.time_limit_ms);
-        return detail::guarded_solve(problem, limits, start, [&](RldReport& report) {
-            const Stopwatch watch;
-            solve(problem, limits, deadline, report);
-            report.rounds = 1;
-            report.solve_ms = watch.elapsed_ms();
-        });
+        const Stopwatch watch;
+        relax_and_round(problem, limits, deadline, report);
+        report.rounds = 1;
+        report.solve_ms = watch.elapsed_ms();
     }
 
-  private:
-    void solve(const LaneGraphProblem& problem, const SolveLimits& limits, const Deadline& deadline,
-               RldReport& report) {
+    void relax_and_round(const LaneGraphProblem& problem, const SolveLimits& limits, const Deadline& deadline,
+                         RldReport& report) {
         const LpRelaxation linear = solve_lp_relaxation(problem, deadline);
         report.bound = linear.bound;
         if (!linear.bound) {

@@ -52,6 +52,24 @@ void solve_on(FuzzedDataProvider& input) {
     const SolvedScene solved = solve_scene(*path_pair, scene, parameters, limits);
     require_contract(scene, parameters, solved.report);
 
+    // From a start: its own answer, or edges that the bytes say, of cones that may be gone.
+    LaneGraph start = solved.report.lane_graph.value_or(LaneGraph{});
+    if (input.ConsumeBool()) {
+        start.edges.clear();
+        while (input.remaining_bytes() > 1 && start.edges.size() < 40) {
+            start.edges.push_back(
+                {input.ConsumeIntegral<std::uint8_t>(), input.ConsumeIntegral<std::uint8_t>()});
+        }
+    }
+    const RldReport started = solve_scene(*path_pair, scene, parameters, limits, &start).report;
+    require_contract(scene, parameters, started);
+    if (started.objective && solved.report.status == SolveStatus::optimal) {
+        require(*started.objective >=
+                    *solved.report.objective - 1e-6 * std::max(1.0, std::abs(*started.objective)),
+                "a start does not make the optimum cheaper");
+    }
+    require(started.status != SolveStatus::infeasible || !solved.report.lane_graph, "infeasible is proven");
+
     if (scene.cones.size() > kFewCones || !is_on_a_map(scene)) return;
     const RldReport all = solve_scene(*exhaustive, scene, parameters, {}).report;
     require_contract(scene, parameters, all);
