@@ -68,7 +68,7 @@ TEST_F(Program, OptionsThatAMethodDoesNotUseAreRefused) {
                    {"--params", "these methods have no RLD parameters"});
     EXPECT_FALSE(std::filesystem::exists(path("results")));
     EXPECT_EQ(run("compare --tracks generated:circle --methods clc,rld-pair --fp 0 --range 30 --every 60 "
-                  "--condition paper --params shape --out results")
+                  "--condition paper --params shape --shard 0/2 --out results")
                   .exit_code,
               0)
         << "one of the methods has RLD parameters";
