@@ -192,7 +192,7 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
 TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
     ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
-    const SmallDisk disk(path("disk"), "200k");
+    const SmallDisk disk(path("disk"), "64k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
     EXPECT_EQ(run("report --results r --out page.html --png disk").exit_code, 2);
     EXPECT_THAT(contents("disk"), testing::IsEmpty()) << "some pictures";
@@ -202,10 +202,11 @@ TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
 /// /dev/full takes nothing.
 TEST_F(WholeOutputs, AFailureSaysWhy) {
     make_scenes("");
-    for (const char* command :
-         {"detect --method clc", "solve --solver path-pair", "certify", "export --id kidney/pose_0000"}) {
-        const std::string full =
-            std::string(command) == "export --id kidney/pose_0000" ? "full.mps" : "/dev/full";
+    for (const char* command : {"detect --method clc", "solve --solver path-pair", "certify",
+                                "export --id kidney/pose_0000/fp_0.00/range_30"}) {
+        const std::string full = std::string(command) == "export --id kidney/pose_0000/fp_0.00/range_30"
+                                     ? "full.mps"
+                                     : "/dev/full";
         if (full == "full.mps") fs::create_symlink("/dev/full", path("full.mps"));
         const Outcome outcome = run(std::string(command) + " --scenes s.scenes.jsonl --out " + full);
         EXPECT_EQ(outcome.exit_code, 2) << command;

@@ -69,7 +69,7 @@ void add_instances_command(CLI::App& program) {
     instances.scenes.false_positive_rates = {0.1667, 0.5};
     instances.scenes.ranges_m = {30.0};
     instances.scenes.every_m = 120.0;
-    command.add_option("--out", options->out, "directory; files of the same names are replaced")->required();
+    command.add_option("--out", options->out, "directory; a library that it holds is replaced")->required();
     command
         .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->capture_default_str();

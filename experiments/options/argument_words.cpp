@@ -40,8 +40,10 @@ bool takes_positionals(const CLI::App& app) {
 [[noreturn]] void refuse_name(CLI::App& app, const std::string& name) {
     std::vector<std::string> known;
     for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-    throw CLI::ValidationError(app.get_name(),
-                               fmt::format("there is no '{}', it has {}", name, fmt::join(known, ", ")));
+    // The program's own name stands before every message.
+    const std::string of = app.get_parent() == nullptr ? "" : app.get_name() + ": ";
+    throw CLI::ParseError(fmt::format("{}there is no '{}', it has {}", of, name, fmt::join(known, ", ")),
+                          CLI::ExitCodes::ExtrasError);
 }
 
 }  // namespace

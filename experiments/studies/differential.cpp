@@ -24,8 +24,8 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr std::size_t kFewestCones = 12;
-constexpr std::size_t kMostCones = 40;
+constexpr std::size_t kFewestConesDrawn = 12;
+constexpr std::size_t kMostConesDrawn = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What the solver proved and found: the optimum is in [lower, upper].
@@ -150,7 +150,7 @@ DifferentialCase draw_case(std::span<const AnnotatedScene> scenes, std::uint64_t
     DifferentialCase drawn;
     drawn.number = number;
     drawn.scene = &scenes[Size(0, scenes.size() - 1)(random)];
-    drawn.cones = Size(kFewestCones, kMostCones)(random);
+    drawn.cones = Size(kFewestConesDrawn, kMostConesDrawn)(random);
     const boost::random::bernoulli_distribution<> coin(0.5);
     drawn.pairing = coin(random) ? Pairing::paper : Pairing::near_far;
     drawn.shape_costs = coin(random);
