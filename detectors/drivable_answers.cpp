@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace conelane {
 namespace {
@@ -26,6 +27,21 @@ double trusted_by_rule_m(const DrivableLane& lane) {
     return trusted_m;
 }
 
+/// Cuts a boundary that is seen alone before its first gap. Returns whether three cones at least are left,
+/// and fewer than there were.
+bool cut_at_first_gap(Lane& lane, const Scene& scene) {
+    if (lane.left.empty() == lane.right.empty()) return false;
+    std::vector<ConeId>& boundary = lane.left.empty() ? lane.right : lane.left;
+    const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
+    const auto gap = std::ranges::adjacent_find(
+        boundary, [&, longest_m = DrivableOptions{}.longest_gap_m](ConeId a, ConeId b) {
+            return (at(b) - at(a)).norm() > longest_m;
+        });
+    if (gap == boundary.end()) return false;
+    boundary.erase(gap + 1, boundary.end());
+    return boundary.size() >= 3;
+}
+
 class DrivableAnswers final : public LaneDetector {
   public:
     explicit DrivableAnswers(std::unique_ptr<LaneDetector> detector) : detector_(std::move(detector)) {}
@@ -35,7 +51,9 @@ class DrivableAnswers final : public LaneDetector {
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         LaneAnswer answer = detector_->detect(scene, limits);
         if (answer.status != LaneStatus::found) return answer;
-        const DrivableLane lane = drivable_or_none(answer, scene);
+        DrivableLane lane = drivable_or_none(answer, scene);
+        if (lane.points.empty() && cut_at_first_gap(answer.lane, scene))
+            lane = drivable_or_none(answer, scene);
         if (!lane.points.empty()) {
             if (!answer.trusted_m) answer.trusted_m = trusted_by_rule_m(lane);
             return answer;

@@ -10,6 +10,9 @@ namespace conelane {
 /// point at least. Where it gives none, the status is `stopped` with a message: the detector's best lane is
 /// no lane to drive, which proves nothing of the others.
 ///
+/// A boundary that is seen alone may wander to the other one behind a gap, so that no lane lies beside it.
+/// Where that leaves no point, the boundary is cut before its first gap.
+///
 /// A lane without LaneAnswer::trusted_m gets one by rule, since nothing is known of its probability: up to
 /// where it leaves what was seen, and 10 m at most. That is the shortest of its length, the way to the first
 /// gap that is bridged, and that limit.

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,20 @@ TEST(DrivableAnswers, ALaneThatCannotBeDrivenIsNotFound) {
 TEST(DrivableAnswers, ALaneBeyondWhatCanBeDrivenAtAllIsNotFound) {
     Course course = tests::straight({0.0, 5.0, 30'000.0}, {0.0, 5.0});
     EXPECT_EQ(answered(found(course.lane), course.scene).status, LaneStatus::stopped);
+}
+
+/// Frame 176 of the run fsg_19_2_laps, whose map lacks cones at a bend: the left boundary goes on along the
+/// other one, once around the course and back to the car.
+TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapWhereItCannotBeDrivenElse) {
+    Course course = tests::course_of({{2.0, 1.75}, {6.0, 1.75}, {10.0, 1.75}, {18.0, -1.75}}, {});
+    // Back beside the car, from the cone behind the gap.
+    for (const double x : tests::range(-18.0, 0.0, 3.0)) course.add({-x, -1.75}, true);
+    ASSERT_TRUE(course.driven().points.empty());
+    const LaneAnswer answer = answered(found(course.lane), course.scene);
+    ASSERT_EQ(answer.status, LaneStatus::found);
+    EXPECT_EQ(answer.lane.left, (std::vector<ConeId>{0, 1, 2}));
+    EXPECT_FALSE(drivable(answer, course.scene).points.empty());
+    EXPECT_NEAR(answer.trusted_m.value_or(-1.0), 8.0, 0.05);
 }
 
 TEST(DrivableAnswers, WhatIsNotFoundStaysAsItIs) {

@@ -116,13 +116,6 @@ TEST(FrontBoundary, EndsBeforeALongGap) {
     EXPECT_EQ(found(11.6), (std::vector<ConeId>{0, 1, 2}));
 }
 
-/// Two gaps in a row are bridged by whatever stands somewhere ahead, such as the other boundary.
-TEST(FrontBoundary, NeverBridgesTwiceInARow) {
-    std::vector<Point> cones;
-    for (const double x : {1.0, 5.0, 9.0, 18.0, 27.0, 31.0, 35.0}) cones.emplace_back(x, -1.8);
-    EXPECT_EQ(search(scene_of(cones)).value().cones, (std::vector<ConeId>{0, 1, 2, 3}));
-}
-
 /// The cone at 11.3 m is too near the one before it to go on to, and stands in the way of the bridge.
 TEST(FrontBoundary, BridgesNothingOverACone) {
     std::vector<Point> cones;

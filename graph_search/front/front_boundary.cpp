@@ -82,7 +82,6 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
         const double turn_size_rad = std::abs(turn_rad);
         if (length_m > kShortSegment_m) {
             if (chain.count < rules_.fewest_cones || length_m > kLongestSegment_m) break;
-            if (chain.segment_m > kShortSegment_m) break;  // the second in a row is no boundary that is seen
             if (turn_size_rad > rules_.largest_bridging_turn_rad || map.neighbourhood(chain.last, i).blocked)
                 continue;
         }

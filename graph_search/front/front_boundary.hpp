@@ -38,8 +38,8 @@ struct BoundaryRules {
 /// begins beside the car. A segment counts 1, less for uneven spacing, for a turn and for a change of it,
 /// less for being shorter than 2 m. The side is that on which it passes the car: the arc through its first
 /// three cones is followed back to where the car stands, so in a bend the outer boundary may begin on the
-/// other side of the heading. From the third cone on cones are bridged, by up to kLongestSegment_m, but
-/// never twice in a row: such chains wander to the other boundary. Keeps memory from call to call.
+/// other side of the heading. From the third cone on cones are bridged, by up to kLongestSegment_m. Keeps
+/// memory from call to call.
 class BoundarySearch {
   public:
     /// Puts the boundary into `cones` and returns its side. Returns nothing where there is none, or where the
