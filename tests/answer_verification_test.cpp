@@ -192,11 +192,11 @@ TEST(VerifiedSolver, HoldsClaimsAgainstTheStart) {
 /// Own optimum, another's, a lane graph that costs more, edges that are none, edges of cones that are gone.
 TEST(VerifiedSolver, NoStartChangesAnOptimum) {
     int with_lane = 0;
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
         for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
             RldParameters parameters;
             parameters.pairing = pairing;
-            const Scene scene = tests::random_scene(seed, 7);
+            const Scene scene = tests::random_scene(seed, 8);
             const RldReport best = make_exhaustive_solver()->solve(make_problem(scene, parameters), {});
             std::vector<LaneGraph> starts{LaneGraph{}, {{{0, 1}, {2, 30}}}, {{{0, 1}, {1, 2}, {0, 2}}}};
             if (best.lane_graph) {
@@ -208,7 +208,8 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
                 }
             }
             for (const tests::Contestant& contestant : tests::contestants()) {
-                if (!contestant.entry->exact) continue;
+                // The printed program takes a hundred times as long, by the same code.
+                if (!contestant.entry->exact || contestant.formulation == Formulation::paper) continue;
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << contestant.entry->name);
                 const auto solver = contestant.entry->make(contestant.formulation);
                 const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
@@ -222,7 +223,7 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
             }
         }
     }
-    EXPECT_GT(with_lane, 2);
+    EXPECT_GT(with_lane, 5);
 }
 
 }  // namespace
