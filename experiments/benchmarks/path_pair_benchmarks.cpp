@@ -6,6 +6,8 @@
 //   limit
 //                      50 ms; the scenes take turns; counters: median and p95 over the scenes of the median
 //                      of nine solves each
+//   verification/N     the check that every answer passes before it leaves, of the best lane graph found in
+//                      50 ms; counter: mean time a scene
 //   memory             100 000 solves by one instance; counters: resident memory after 1000 and at the end
 //
 // Scenes are of generated tracks with three false positives among ten points, or those of the file that the
@@ -16,6 +18,7 @@
 #include "experiments/benchmarks/benchmark_scenes.hpp"
 #include "experiments/scenes/annotated_scene.hpp"
 #include "experiments/scoring/statistics.hpp"
+#include "model/answer_verification.hpp"
 #include "solvers/path_pair_solver.hpp"
 
 #include <array>
@@ -116,6 +119,27 @@ void run_scenes(benchmark::State& state, const std::vector<Scene>& scenes) {
     state.counters["scenes"] = static_cast<double>(scenes.size());
 }
 
+/// An iteration is one pass over all lane graphs.
+void run_verification(benchmark::State& state, const Problems& problems) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    std::vector<std::pair<const LaneGraphProblem*, LaneGraph>> answers;
+    for (const LaneGraphProblem& problem : problems) {
+        const RldReport report = solver->solve(problem, {kTimeLimit_ms});
+        if (report.lane_graph) answers.emplace_back(&problem, *report.lane_graph);
+    }
+    if (answers.empty()) return state.SkipWithError("no scene has a lane graph");
+    std::int64_t verified = 0;
+    for (auto iteration : state) {
+        static_cast<void>(iteration);
+        for (const auto& [problem, graph] : answers) {
+            benchmark::DoNotOptimize(verify_answer(*problem, graph));
+            ++verified;
+        }
+    }
+    state.counters["per_scene"] = benchmark::Counter(
+        static_cast<double>(verified), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 void run_memory(benchmark::State& state, const Problems& problems) {
     for (auto iteration : state) {
         static_cast<void>(iteration);
@@ -139,6 +163,12 @@ void register_all(const Scenes& all) {
                 ->Unit(benchmark::kMillisecond)
                 ->UseRealTime();
         }
+    }
+    for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 0}) {
+        benchmark::RegisterBenchmark(
+            ("verification/" + std::to_string(size)).c_str(),
+            [=](benchmark::State& state) { run_verification(state, problems_of(*all, size)); })
+            ->Unit(benchmark::kMicrosecond);
     }
     for (const std::size_t size : std::array<std::size_t, 4>{12, 30, 60, 120}) {
         benchmark::RegisterBenchmark(

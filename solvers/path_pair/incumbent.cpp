@@ -44,7 +44,8 @@ bool Incumbent::has_ends_of_a_lane(std::span<const int> first, std::span<const i
 bool Incumbent::offer(std::span<const int> first, std::span<const int> second) {
     if (first.empty() || second.empty()) return false;
     const double cost = leg_cost(first) + leg_cost(second);
-    if (!(cost < cutoff_) || !has_ends_of_a_lane(first, second)) return false;
+    if (!(cost < cutoff_)) return false;
+    if (!has_ends_of_a_lane(first, second)) return false;
     visited_.assign(static_cast<std::size_t>(graph_->cone_count()), 0);
     candidate_.clear();
     int along_heading = 0;
