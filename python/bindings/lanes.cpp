@@ -75,7 +75,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
     std::unordered_map<std::string, SceneObject> scene_of;  // for look-up only
     for (const SceneObject& scene : scenes) scene_of.emplace(scene->scene.id, scene);
     std::vector<LaneObject> lanes;
-    for (LaneRecord& record : read_lanes(file)) {
+    for (LaneRecord& record : conelane::read_lanes(file)) {
         const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
             throw InputError(file, record.line, "scene",
@@ -93,7 +93,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
 void write_lanes(const std::filesystem::path& file, const std::vector<const LaneObject*>& lanes) {
     std::vector<LaneRecord> records;
     for (const LaneObject* lane : lanes) records.push_back(lane->record);
-    write_lanes(file, records);
+    conelane::write_lanes(file, records);
 }
 
 std::optional<double> objective(const LaneObject& lane) {

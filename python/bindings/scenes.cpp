@@ -52,7 +52,7 @@ std::vector<std::shared_ptr<AnnotatedScene>> shared(std::vector<AnnotatedScene>&
 void write_scenes(const std::filesystem::path& file, const std::vector<SceneObject>& scenes) {
     std::vector<AnnotatedScene> all;
     for (const SceneObject& scene : scenes) all.push_back(*scene);
-    write_scenes(file, all);
+    conelane::write_scenes(file, all);
 }
 
 std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track, double false_positive_rate,
