@@ -3,7 +3,6 @@
 #include "experiments/commands/unanswered.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/files/atomic_file.hpp"
-#include "experiments/files/input_error.hpp"
 #include "experiments/files/lane_file.hpp"
 #include "experiments/methods.hpp"
 #include "experiments/options/shared_options.hpp"
@@ -47,8 +46,7 @@ class LaneSink {
         errno = 0;
         stream << lane_line(record) << '\n' << std::flush;
         if (!stream)
-            throw InputError("", 0, "--out",
-                             "cannot be written to its end: " + std::generic_category().message(errno));
+            throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
         add_answer_of(errors_, record);
     }
     void commit() {
