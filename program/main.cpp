@@ -118,7 +118,10 @@ int run(int argument_count, char** arguments) {
             program, std::span(arguments, static_cast<std::size_t>(argument_count)).subspan(1));
         program.parse(argument_count, arguments);
     } catch (const CLI::Success& help) {
-        return program.exit(help);
+        errno = 0;
+        const int exit_code = program.exit(help);
+        if (!std::cout || std::ferror(stdout) != 0) write_error = errno;
+        return exit_code;
     } catch (const CLI::RuntimeError& failed) {
         return failed.get_exit_code();
     } catch (const CLI::ParseError& bad_option) {

@@ -46,7 +46,8 @@ void OutputStream::close() {
 }
 
 void OutputStream::require_written(const std::filesystem::path& file) const {
-    if (good()) return;
+    // `stream << other.rdbuf()` that ends early leaves the stream good.
+    if (good() && buffer_.reason() == 0) return;
     std::string message = "cannot be written to its end";
     if (buffer_.reason() != 0) message += ": " + std::generic_category().message(buffer_.reason());
     throw InputError(file, 0, "", message);

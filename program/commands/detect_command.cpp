@@ -51,8 +51,7 @@ class LaneSink {
         errno = 0;
         stream << lane_line(record) << '\n' << std::flush;
         if (!stream)
-            throw InputError("", 0, "--out",
-                             "cannot be written to its end: " + std::generic_category().message(errno));
+            throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
         add_answer_of(errors_, record);
     }
     void commit() {

@@ -401,10 +401,12 @@ TEST_F(OutsideMethods, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
         R"({"name": "Silence", "address": "https://example.org", "licence": "MIT", "colour_used": true,)"
         R"( "history_used": false, "training_courses": ["fsd_1", "fsg"]})",
         "silent.method.json");
-    const std::string table =
-        run_well(std::string(kCompare) + "r --methods 'exec:silent=sh ./silent.sh </dev/null'");
-    EXPECT_THAT(table, HasSubstr("Silence; licence MIT; uses colour; no history; trained on fsd_1, fsg; "
-                                 "https://example.org"));
+    const Outcome outcome =
+        run(std::string(kCompare) + "r --methods 'exec:silent=sh ./silent.sh </dev/null'");
+    EXPECT_EQ(outcome.exit_code, 1) << "it answers nothing";
+    EXPECT_THAT(outcome.output,
+                HasSubstr("Silence; licence MIT; uses colour; no history; trained on fsd_1, fsg; "
+                          "https://example.org"));
     const json card = json::parse(text_of(path("silent.method.json")));
     const json record = json::parse(text_of(path("r/run.json")));
     EXPECT_EQ(record["methods"][0]["exec"], "sh ./silent.sh </dev/null");

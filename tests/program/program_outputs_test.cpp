@@ -115,7 +115,7 @@ TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
     }
     EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out - >/dev/full"), 2);
     EXPECT_EQ(text_of(path("stderr")),
-              "conelane: --out: cannot be written to its end: No space left on device\n");
+              "conelane: standard output cannot be written to its end: No space left on device\n");
     // A closed output is not given to the next file that is opened.
     EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
     EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));
