@@ -52,7 +52,7 @@ std::vector<Ablation> ablations() {
     all.push_back({"no_fixing", {.fix_arcs = false}});
     all.push_back({"no_cliques", {.clique_multipliers = false}});
     all.push_back({"no_completion", {.complete_walks = false}});
-    all.push_back({"no_fronts", {.search_fronts = false}});
+    all.push_back({"no_fronts", {.search_frontiers = false}});
     all.push_back({"no_dominated_edges", {.drop_dominated_edges = false}});
     all.push_back({"no_ascent", {.root_steps = 1, .node_steps = 1}});
     return all;

@@ -106,7 +106,7 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
         scenes.push_back(read_scenes(scenes_file));
         starts.push_back(lap_starts(scenes.back()));
         set.tracks.merge(read_track_boundaries(track_boundaries_path(scenes_file)));
-        merge(left_out, read_left_out(track_boundaries_path(scenes_file)));
+        conelane::merge(left_out, read_left_out(track_boundaries_path(scenes_file)));
     }
     set.scenes = interleave<AnnotatedScene>(starts, scenes);
 

@@ -254,7 +254,7 @@ BoundCertificate certify_root_bound(const LaneGraphProblem& problem, double time
     // The multipliers alone have to carry the bound, so the incumbent must not drop anything.
     PathPairOptions options;
     options.fix_arcs = false;
-    options.search_fronts = false;
+    options.search_frontiers = false;
     return PathPairSolver(options).certify(problem, time_limit_ms);
 }
 
@@ -263,7 +263,7 @@ SearchCertificate certify_search(const LaneGraphProblem& problem, double time_li
     const RldReport report = solver.solve(problem, {.time_limit_ms = time_limit_ms}, nullptr);
     PathPairOptions options;
     options.complete_walks = false;
-    options.search_fronts = false;
+    options.search_frontiers = false;
     return PathPairSolver(options).certify_search(problem, report, time_limit_ms);
 }
 

@@ -48,7 +48,7 @@ Count solve(RldSolver& solver, const LaneGraphProblem& problem) {
 TEST(PathPairAllocation, DoesNotGrowWithTheNodes) {
     PathPairOptions options;
     // To have many nodes.
-    options.search_fronts = false;
+    options.search_frontiers = false;
     options.root_steps = 1;
     options.node_steps = 1;
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver(options);

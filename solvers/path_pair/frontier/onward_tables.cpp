@@ -52,7 +52,7 @@ Quanta OnwardTables::to_quanta(double cost) const {
     return count < kTooMany ? static_cast<Quanta>(std::max(0.0, count)) : kTooMany;
 }
 
-Quanta OnwardTables::more(int front, const FrontGraph::Step& step) const {
+Quanta OnwardTables::more(int front, const FrontierGraph::Step& step) const {
     return to_quanta(fronts_->cost(step) + fronts_->onward(step.to) - fronts_->onward(front));
 }
 
@@ -64,7 +64,7 @@ std::size_t OnwardTables::row_bytes(const ResidualGraph& residual) {
     return 2 * residual.arc.size() + 64 + kBlock;
 }
 
-void OnwardTables::find(const FrontGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
+void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
                         const std::function<bool()>& stopped) {
     fronts_ = &fronts;
     edges_ = &edges;
@@ -94,7 +94,7 @@ void OnwardTables::find_regrets() {
         for (int f = fronts_->size(); f-- > 0;) {
             Quanta* const mine = regret_.data() + at(f) * count;
             bool change = false;
-            for (const FrontGraph::Step& step : fronts_->steps(f)) {
+            for (const FrontierGraph::Step& step : fronts_->steps(f)) {
                 if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;
@@ -163,7 +163,7 @@ void OnwardTables::find_detours() {
             if (sweep == 1 && fronts_->is_last(f)) {
                 change = lower(mine, nothing_.data(), nothing_.data(), to_quanta(-fronts_->onward(f)), count);
             }
-            for (const FrontGraph::Step& step : fronts_->steps(f)) {
+            for (const FrontierGraph::Step& step : fronts_->steps(f)) {
                 if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/path_pair/frontier/front_graph.hpp"
+#include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 
 #include <array>
@@ -26,7 +26,7 @@ inline constexpr Quanta kTooMany = 127;  ///< more than the gap
 class OnwardTables {
   public:
     /// Precondition: the onward costs of the fronts are found. `limit`: with offset. Of no use if stopped.
-    void find(const FrontGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
+    void find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
               const std::function<bool()>& stopped);
 
     [[nodiscard]] bool have_detours() const { return have_detours_; }
@@ -43,7 +43,7 @@ class OnwardTables {
     static std::size_t row_bytes(const ResidualGraph& residual);
 
   private:
-    [[nodiscard]] Quanta more(int front, const FrontGraph::Step& step) const;
+    [[nodiscard]] Quanta more(int front, const FrontierGraph::Step& step) const;
     [[nodiscard]] Quanta to_quanta(double cost) const;
     bool out_of_time(std::size_t work);
     bool fill(std::vector<Quanta>& table, std::size_t count);
@@ -52,7 +52,7 @@ class OnwardTables {
     void find_excluded();
     void find_detours();
 
-    const FrontGraph* fronts_ = nullptr;
+    const FrontierGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     const std::function<bool()>* stopped_ = nullptr;
     std::size_t work_ = 0;

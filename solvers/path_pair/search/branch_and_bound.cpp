@@ -105,7 +105,7 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     relaxation_.bind(graph_, system, cliques_, decisions_, clock_);
     completion_.bind(graph_, relaxation_, incumbent_, clock_);
     fronts_.bind(relaxation_, stopped_);
-    front_search_.bind(graph_, relaxation_, incumbent_);
+    frontier_search_.bind(graph_, relaxation_, incumbent_);
     beam_.bind(graph_, relaxation_, incumbent_, clock_);
     edge_use_.assign(at(graph_.edge_count()), 0.0);
     end_use_.assign(at(graph_.cone_count()), 0.0);
@@ -218,8 +218,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
             take_best_multipliers(here);
             if (relaxation_.evaluate(here.graph, multipliers_) == -kUnreachable) return Verdict::stopped;
         }
-        if (options_.search_fronts) {
-            const Verdict verdict = try_fronts(here.graph, state);
+        if (options_.search_frontiers) {
+            const Verdict verdict = try_frontiers(here.graph, state);
             here.bound = std::max(here.bound, state.best);
             if (verdict != Verdict::open) return verdict;
         }
@@ -233,7 +233,7 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
     if (in_window_) return Verdict::open;
     // With every edge decided nothing is left to branch on: one pair of paths at most.
     if (choose(here.graph).on != Branching::On::nothing) return Verdict::open;
-    return search_fronts(here.graph, {kAny, kAny});
+    return search_frontiers(here.graph, {kAny, kAny});
 }
 
 double BranchAndBound::evaluate(const ResidualGraph& graph) {
@@ -285,7 +285,7 @@ void BranchAndBound::complete_walks(const ResidualGraph& graph, AscentState& sta
     state.next_completion = state.step + wait;
 }
 
-BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, AscentState& state) {
+BranchAndBound::Verdict BranchAndBound::try_frontiers(const ResidualGraph& graph, AscentState& state) {
     const bool due = state.step == state.first_try || state.step % 4 == 3;
     const bool promising = due && cutoff() - state.value < kWorthwhile * state.failed_gap;
     if (!state.last && !promising) return Verdict::open;
@@ -293,8 +293,9 @@ BranchAndBound::Verdict BranchAndBound::try_fronts(const ResidualGraph& graph, A
     const auto most_fronts = static_cast<std::size_t>(
         std::max(is_small ? kFirstFrontsOfSmallGraph : kFewFronts, state.work / kWorkPerFront));
     const Verdict verdict =
-        state.last ? search_fronts_by_target(graph, state)
-                   : search_fronts(graph, {most_fronts, kMostLabels, state.step == 0 ? kFirstBeamWidth : 0});
+        state.last
+            ? search_frontiers_by_target(graph, state)
+            : search_frontiers(graph, {most_fronts, kMostLabels, state.step == 0 ? kFirstBeamWidth : 0});
     if (verdict == Verdict::open) {
         if (state.is_root && !state.last && state.beams < kBeams && state.step >= kBeamSteps[state.beams]) {
             ++state.beams;
@@ -329,8 +330,8 @@ double BranchAndBound::step_gap(const AscentState& state) const {
 /// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
 /// fewer below a lower target; a pair that is found there is the best one, and where there is none the target
 /// is a bound. Where they are too many, a still lower target raises the bound that the node leaves open.
-BranchAndBound::Verdict BranchAndBound::search_fronts_by_target(const ResidualGraph& graph,
-                                                                AscentState& state) {
+BranchAndBound::Verdict BranchAndBound::search_frontiers_by_target(const ResidualGraph& graph,
+                                                                   AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     for (const double share : kTargets) {
         const double target = state.best + share * (incumbent - state.best);
@@ -354,14 +355,16 @@ BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph,
                                                      AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     incumbent_.set_cutoff(target);
-    const Verdict verdict = search_fronts(graph, {in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels});
+    const Verdict verdict =
+        search_frontiers(graph, {in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels});
     if (incumbent_.cutoff() < target) return verdict;
     incumbent_.set_cutoff(incumbent);
     if (verdict == Verdict::closed) state.best = std::max(state.best, target - tolerance_);
     return verdict;
 }
 
-BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph, const FrontLimits& limits) {
+BranchAndBound::Verdict BranchAndBound::build_frontiers(const ResidualGraph& graph,
+                                                        const FrontierLimits& limits) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
     edge_sets_.assign(graph_, graph, clock_);
     if (limits.beam_width > 0) beam_.run(graph, edge_sets_, tolerance_, limits.beam_width);
@@ -384,7 +387,7 @@ BranchAndBound::Verdict BranchAndBound::build_fronts(const ResidualGraph& graph,
     if (stopped_()) return Verdict::stopped;
     if (!(bound < limit())) return Verdict::closed;
     fronts_.drop(limit());
-    fronts_are_built_ = true;
+    frontiers_are_built_ = true;
     return Verdict::open;
 }
 
@@ -393,10 +396,11 @@ void BranchAndBound::find_tables() {
                         stopped_);
 }
 
-BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph, const FrontLimits& limits) {
-    fronts_are_built_ = false;
-    const Verdict built = build_fronts(graph, limits);
-    if (!fronts_are_built_) return built;
+BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& graph,
+                                                         const FrontierLimits& limits) {
+    frontiers_are_built_ = false;
+    const Verdict built = build_frontiers(graph, limits);
+    if (!frontiers_are_built_) return built;
     if (limits.fronts != kAny && at(fronts_.size()) > kMostFrontBytes / OnwardTables::row_bytes(graph)) {
         return Verdict::open;
     }
@@ -405,14 +409,14 @@ BranchAndBound::Verdict BranchAndBound::search_fronts(const ResidualGraph& graph
         most_labels = std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
     }
     find_tables();
-    for (const std::size_t width : {kNarrow, FrontSearch::kAnyWidth}) {
+    for (const std::size_t width : {kNarrow, FrontierSearch::kAnyWidth}) {
         if (stopped_()) return Verdict::stopped;
         if (width == kNarrow && fronts_.size() < kWideFronts) continue;
         const double before = incumbent_.cutoff();
-        const FrontSearch::Outcome outcome = front_search_.run(fronts_, edge_sets_, onward_tables_,
-                                                               {tolerance_, width, most_labels}, stopped_);
-        if (outcome == FrontSearch::Outcome::exhausted) return Verdict::closed;
-        if (outcome == FrontSearch::Outcome::stopped) break;
+        const FrontierSearch::Outcome outcome = frontier_search_.run(
+            fronts_, edge_sets_, onward_tables_, {tolerance_, width, most_labels}, stopped_);
+        if (outcome == FrontierSearch::Outcome::exhausted) return Verdict::closed;
+        if (outcome == FrontierSearch::Outcome::stopped) break;
         if (incumbent_.cutoff() < before) {
             fronts_.drop(cutoff() + relaxation_.offset());
             find_tables();

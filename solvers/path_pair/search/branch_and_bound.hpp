@@ -4,13 +4,13 @@
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
-#include "solvers/path_pair/frontier/front_graph.hpp"
-#include "solvers/path_pair/frontier/front_search.hpp"
+#include "solvers/path_pair/frontier/frontier_graph.hpp"
+#include "solvers/path_pair/frontier/frontier_search.hpp"
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/path_pair_options.hpp"
-#include "solvers/path_pair/primal/front_beam.hpp"
+#include "solvers/path_pair/primal/frontier_beam.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/incumbent_window.hpp"
 #include "solvers/path_pair/primal/pair_beam.hpp"
@@ -143,25 +143,25 @@ class BranchAndBound {
     /// Offers the incumbent the walks of the bound, completed.
     void complete_walks(const ResidualGraph& graph, AscentState& state);
     /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
-    Verdict try_fronts(const ResidualGraph& graph, AscentState& state);
+    Verdict try_frontiers(const ResidualGraph& graph, AscentState& state);
     void move_multipliers(const Node& here, AscentState& state);
     /// How far the ascent's steps aim above the bound.
     [[nodiscard]] double step_gap(const AscentState& state) const;
     /// The bound at the current multipliers, which are raised to whole units first if there is one.
     double evaluate(const ResidualGraph& graph);
     /// How much a search of fronts may take.
-    struct FrontLimits {
+    struct FrontierLimits {
         std::size_t fronts;
         std::size_t labels;
         std::size_t beam_width = 0;  ///< of a beam that looks for an incumbent first; 0: none
     };
     /// Searches all pairs of a node on the fronts; open where there are more fronts or labels than these.
     /// Precondition: the relaxation was evaluated on the node's graph.
-    Verdict search_fronts(const ResidualGraph& graph, const FrontLimits& limits);
-    Verdict search_fronts_by_target(const ResidualGraph& graph, AscentState& state);
+    Verdict search_frontiers(const ResidualGraph& graph, const FrontierLimits& limits);
+    Verdict search_frontiers_by_target(const ResidualGraph& graph, AscentState& state);
     Verdict search_below(const ResidualGraph& graph, double target, AscentState& state);
     /// Builds the fronts and drops what it can. Closed where nothing is left.
-    Verdict build_fronts(const ResidualGraph& graph, const FrontLimits& limits);
+    Verdict build_frontiers(const ResidualGraph& graph, const FrontierLimits& limits);
     void find_tables();
     bool fix(Node& here);
     [[nodiscard]] Branching choose(const ResidualGraph& graph) const;
@@ -183,10 +183,10 @@ class BranchAndBound {
     PairCompletion completion_;
     EdgeSets edge_sets_;
     DominatedEdges dominated_edges_;
-    FrontGraph fronts_;
+    FrontierGraph fronts_;
     OnwardTables onward_tables_;
-    FrontSearch front_search_;
-    FrontBeam beam_;
+    FrontierSearch frontier_search_;
+    FrontierBeam beam_;
     Ascent ascent_;
     Usage usage_;
     Multipliers multipliers_;       ///< of the current step
@@ -214,7 +214,7 @@ class BranchAndBound {
     double unit_ = 0.0;      ///< of the multipliers; 0 where they are any numbers
     Multipliers evaluated_;  ///< in whole units, those last evaluated
     std::vector<Multipliers> stages_;
-    bool fronts_are_built_ = false;
+    bool frontiers_are_built_ = false;
     std::int64_t nodes_ = 0;
 };
 

@@ -71,7 +71,7 @@ void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound)
     if (is_new) state.outside_cost = incumbent_.cutoff();
     state.known_cost = incumbent_.cutoff();
     const double gap = (incumbent_.cutoff() - bound) / std::max(1.0, std::abs(incumbent_.cutoff()));
-    if (!options_.search_windows || !options_.search_fronts || whole_system_->kind_count != 1) return;
+    if (!options_.search_windows || !options_.search_frontiers || whole_system_->kind_count != 1) return;
     if (is_new && incumbent_.goes_far()) {
         state.pair = incumbent_;
         state.window_arcs = kWindowArcs;

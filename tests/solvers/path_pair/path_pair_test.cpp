@@ -60,7 +60,7 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     ablations[0].fix_arcs = false;
     ablations[1].clique_multipliers = false;
     ablations[2].complete_walks = false;
-    ablations[3].search_fronts = false;
+    ablations[3].search_frontiers = false;
     ablations[4].root_steps = 1;
     ablations[4].node_steps = 1;
     ablations[5].drop_dominated_edges = false;
@@ -199,7 +199,7 @@ TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
         }
         Incumbent incumbent;
         PathPairOptions options;
-        if (run++ % 2 == 1) options = {.search_fronts = false, .root_steps = 10, .node_steps = 5};
+        if (run++ % 2 == 1) options = {.search_frontiers = false, .root_steps = 10, .node_steps = 5};
         BranchAndBound search(graph, incumbent, options);
         constexpr double kTolerance = 1e-9;
         int looks = 0;
@@ -324,7 +324,7 @@ TEST(PathPairCertificate, RestsOnEveryShapeCost) {
 /// Bounds of one step each leave everything to branching, on ends first and then on edges.
 TEST(PathPair, BranchingAloneFindsTheOptimum) {
     PathPairOptions options;
-    options.search_fronts = options.complete_walks = options.clique_multipliers = options.fix_arcs = false;
+    options.search_frontiers = options.complete_walks = options.clique_multipliers = options.fix_arcs = false;
     options.root_steps = options.node_steps = 1;
     const std::unique_ptr<RldSolver> branching = make_path_pair_solver(options);
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();

@@ -1,4 +1,4 @@
-#include "solvers/path_pair/primal/front_beam.hpp"
+#include "solvers/path_pair/primal/frontier_beam.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -11,20 +11,20 @@ constexpr int kMostSweeps = 4;
 
 }  // namespace
 
-void FrontBeam::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
-                     SearchClock& clock) {
+void FrontierBeam::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                        SearchClock& clock) {
     graph_ = &graph;
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
     clock_ = &clock;
 }
 
-double FrontBeam::limit() const {
+double FrontierBeam::limit() const {
     return incumbent_->cutoff() - tolerance_ + relaxation_->offset();
 }
 
-void FrontBeam::run(const ResidualGraph& residual, const EdgeSets& edges, double tolerance,
-                    std::size_t width) {
+void FrontierBeam::run(const ResidualGraph& residual, const EdgeSets& edges, double tolerance,
+                       std::size_t width) {
     residual_ = &residual;
     edges_ = &edges;
     tolerance_ = tolerance;
@@ -48,7 +48,7 @@ void FrontBeam::run(const ResidualGraph& residual, const EdgeSets& edges, double
 }
 
 /// The most promising pairs of first arcs, some for each arc.
-void FrontBeam::begin(std::size_t width) {
+void FrontierBeam::begin(std::size_t width) {
     const ResidualGraph& r = *residual_;
     const int second = kind(1);
     const auto through = [&](int of_kind, int a) {
@@ -94,7 +94,7 @@ void FrontBeam::begin(std::size_t width) {
 }
 
 /// Takes `arc` (-1 for none) and lets the label wait.
-void FrontBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
+void FrontierBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
     clock_->out_of_time(20 + 2 * words_);
     std::uint64_t* const row = lost_.add();
     std::copy_n(lost_before, words_, row);
@@ -113,7 +113,7 @@ void FrontBeam::wait(Label label, const std::uint64_t* lost_before, int arc) {
     *labels_.add() = label;
 }
 
-void FrontBeam::settle(int arc, std::size_t width) {
+void FrontierBeam::settle(int arc, std::size_t width) {
     here_.clear();
     for (int l = std::exchange(waiting_[at(arc)], -1); l >= 0; l = label_at(l).next) {
         if (label_at(l).estimate < limit()) here_.push_back(l);
@@ -140,7 +140,7 @@ void FrontBeam::settle(int arc, std::size_t width) {
     }
 }
 
-void FrontBeam::expand(int l) {
+void FrontierBeam::expand(int l) {
     const ResidualGraph& r = *residual_;
     const Label label = label_at(l);
     const int moving_kind = kind(label.moving_leg);
@@ -192,7 +192,7 @@ void FrontBeam::expand(int l) {
     }
 }
 
-void FrontBeam::offer(int label) {
+void FrontierBeam::offer(int label) {
     for (std::vector<int>& leg : legs_) leg.clear();
     for (int l = label; l >= 0; l = label_at(l).before) {
         const Label& here = label_at(l);

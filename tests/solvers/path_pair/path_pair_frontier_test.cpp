@@ -5,13 +5,13 @@
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
-#include "solvers/path_pair/frontier/front_graph.hpp"
-#include "solvers/path_pair/frontier/front_search.hpp"
+#include "solvers/path_pair/frontier/frontier_graph.hpp"
+#include "solvers/path_pair/frontier/frontier_search.hpp"
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "solvers/path_pair/primal/front_beam.hpp"
+#include "solvers/path_pair/primal/frontier_beam.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -68,7 +68,7 @@ struct Fronts {
     void for_each_walk_on(int f, double cost, double limit, std::vector<int>& arcs,
                           const std::function<void(double)>& visit) const {
         if (fronts.is_last(f)) visit(cost);
-        for (const FrontGraph::Step& step : fronts.steps(f)) {
+        for (const FrontierGraph::Step& step : fronts.steps(f)) {
             const double next = cost + fronts.cost(step);
             if (!(next + fronts.onward(step.to) < limit)) continue;
             if (step.arc >= 0) arcs.push_back(step.arc);
@@ -77,7 +77,7 @@ struct Fronts {
         }
     }
 
-    FrontSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
+    FrontierSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
         tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
         return search.run(fronts, edges, tables, {1e-9, width, most_labels}, stopped);
     }
@@ -139,10 +139,10 @@ struct Fronts {
     double leg_bound = 0.0;
     EdgeSets edges;
     DominatedEdges dominated;
-    FrontGraph fronts;
+    FrontierGraph fronts;
     Incumbent incumbent;
     OnwardTables tables;
-    FrontSearch search;
+    FrontierSearch search;
 };
 
 LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
@@ -307,7 +307,7 @@ TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
 }
 
 /// The fronts' bound lies between that of single legs and the optimum, with dominated edges and without.
-TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
+TEST(PathPairFrontierGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
     int higher = 0;
@@ -333,7 +333,7 @@ TEST(PathPairFrontGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
 }
 
 /// Of both legs the one that stands earlier moves, so every pair is one walk.
-TEST(PathPairFrontGraph, TheEarlierLegMoves) {
+TEST(PathPairFrontierGraph, TheEarlierLegMoves) {
     int both_go_on = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         Fronts s(random_problem(seed), seed);
@@ -347,7 +347,7 @@ TEST(PathPairFrontGraph, TheEarlierLegMoves) {
     EXPECT_GT(both_go_on, 20);
 }
 
-TEST(PathPairFrontGraph, WhatIsDroppedByALimitReachesIt) {
+TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Fronts s(random_problem(seed, 14), seed);
@@ -362,7 +362,7 @@ TEST(PathPairFrontGraph, WhatIsDroppedByALimitReachesIt) {
     }
 }
 
-TEST(PathPairFrontGraph, GivesUpWhereToldTo) {
+TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
     Fronts s(random_problem(3, 20), 3);
     EXPECT_FALSE(s.build(kUnreachable, 2));
     EXPECT_TRUE(s.build());
@@ -372,8 +372,8 @@ TEST(PathPairFrontGraph, GivesUpWhereToldTo) {
 
 /// Dominated edges that are looked for while the fronts are built leave fewer of them, no lower bound and the
 /// best pair.
-TEST(PathPairFrontGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
-    const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_fronts = false});
+TEST(PathPairFrontierGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_frontiers = false});
     int fewer = 0;
     int with_lane = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -392,7 +392,7 @@ TEST(PathPairFrontGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
         fewer += s.fronts.size() < all ? 1 : 0;
         EXPECT_GE(s.fronts.find_onward(limit), bound - 1e-9);
         s.incumbent.reset(s.graph, cutoff);
-        s.run(FrontSearch::kAnyWidth, kAny);
+        s.run(FrontierSearch::kAnyWidth, kAny);
         EXPECT_NEAR(s.incumbent.cutoff(), *best, 1e-9);
     }
     EXPECT_GT(with_lane, 20);
@@ -444,16 +444,16 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
 }
 
 /// A beam of one beginning at each arc runs along both boundaries of a straight lane.
-TEST(PathPairFrontBeam, FindsTheStraightLane) {
+TEST(PathPairFrontierBeam, FindsTheStraightLane) {
     Fronts s(tests::straight_lane_problem(), 1);
-    FrontBeam beam;
+    FrontierBeam beam;
     beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
     beam.run(s.residual, s.edges, 1e-9, 1);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), *make_exhaustive_solver()->solve(s.problem, {}).objective, 1e-9);
 }
 
-TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
+TEST(PathPairFrontierBeam, FindsLaneGraphsAndOftenTheBest) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
     int best_found = 0;
@@ -461,7 +461,7 @@ TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Fronts s(random_problem(seed), seed);
         const RldReport best = exhaustive->solve(s.problem, {});
-        FrontBeam beam;
+        FrontierBeam beam;
         beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
         beam.run(s.residual, s.edges, 1e-9, 8);
         if (!best.objective) {
@@ -476,7 +476,7 @@ TEST(PathPairFrontBeam, FindsLaneGraphsAndOftenTheBest) {
     EXPECT_GT(2 * best_found, with_lane);
 }
 
-TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
+TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
     int narrow_ones = 0;
@@ -490,14 +490,14 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
             continue;
         }
         // Of each front the cheapest beginning alone: a lane graph, but not always the best.
-        const FrontSearch::Outcome narrow = s.run(1, kAny);
-        EXPECT_NE(narrow, FrontSearch::Outcome::stopped);
+        const FrontierSearch::Outcome narrow = s.run(1, kAny);
+        EXPECT_NE(narrow, FrontierSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
-        narrow_ones += narrow == FrontSearch::Outcome::narrow ? 1 : 0;
-        if (narrow == FrontSearch::Outcome::exhausted) {
+        narrow_ones += narrow == FrontierSearch::Outcome::narrow ? 1 : 0;
+        if (narrow == FrontierSearch::Outcome::exhausted) {
             EXPECT_NEAR(s.incumbent.cutoff(), best.objective.value_or(1e6), 1e-6) << "claimed to be all";
         }
-        ASSERT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::exhausted);
+        ASSERT_EQ(s.run(FrontierSearch::kAnyWidth, kAny), FrontierSearch::Outcome::exhausted);
         ASSERT_EQ(s.incumbent.found(), best.objective.has_value());
         if (!best.objective) continue;
         ++with_lane;
@@ -508,7 +508,7 @@ TEST(PathPairFrontSearch, FindsTheBestOfAllLaneGraphs) {
 }
 
 /// Whenever the clock strikes on the way, the search does not call itself whole.
-TEST(PathPairFrontSearch, IsStoppedByEveryLookAtTheClock) {
+TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
     int stopped_on_the_way = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Fronts s(random_problem(seed, 24), seed);
@@ -521,23 +521,24 @@ TEST(PathPairFrontSearch, IsStoppedByEveryLookAtTheClock) {
             int looks = 0;
             s.incumbent.reset(s.graph, 1e6);
             const std::function<bool()> strikes = [&] { return ++looks >= strike; };
-            const FrontSearch::Outcome outcome =
-                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontSearch::kAnyWidth, kAny}, strikes);
+            const FrontierSearch::Outcome outcome =
+                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny}, strikes);
             struck = looks >= strike;
-            ASSERT_EQ(outcome, struck ? FrontSearch::Outcome::stopped : FrontSearch::Outcome::exhausted);
+            ASSERT_EQ(outcome,
+                      struck ? FrontierSearch::Outcome::stopped : FrontierSearch::Outcome::exhausted);
             stopped_on_the_way += struck && strike > 1 ? 1 : 0;
         }
     }
     EXPECT_GT(stopped_on_the_way, 5);
 }
 
-TEST(PathPairFrontSearch, StopsWhereToldTo) {
+TEST(PathPairFrontierSearch, StopsWhereToldTo) {
     Fronts s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
     s.fronts.find_onward(kUnreachable);
-    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, 5), FrontSearch::Outcome::stopped);
+    EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, 5), FrontierSearch::Outcome::stopped);
     s.is_stopped = true;
-    EXPECT_EQ(s.run(FrontSearch::kAnyWidth, kAny), FrontSearch::Outcome::stopped);
+    EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, kAny), FrontierSearch::Outcome::stopped);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/path_pair/frontier/front_graph.hpp"
+#include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
@@ -23,7 +23,7 @@ namespace conelane::path_pair {
 ///     as many edges along the heading, and has lost no edge that this one still has and that a walk on below
 ///     the cutoff uses.
 /// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
-class FrontSearch {
+class FrontierSearch {
   public:
     enum class Outcome {
         exhausted,  ///< nothing below the cutoff is left
@@ -41,7 +41,7 @@ class FrontSearch {
     };
     /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
     /// the tables are theirs.
-    Outcome run(const FrontGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
+    Outcome run(const FrontierGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
                 const Limits& limits, const std::function<bool()>& stopped);
 
   private:
@@ -75,7 +75,7 @@ class FrontSearch {
     const ArcGraph* graph_ = nullptr;
     PairRelaxation* relaxation_ = nullptr;
     Incumbent* incumbent_ = nullptr;
-    const FrontGraph* fronts_ = nullptr;
+    const FrontierGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     const OnwardTables* tables_ = nullptr;
     Limits limits_{};

@@ -1,4 +1,4 @@
-#include "solvers/path_pair/frontier/front_graph.hpp"
+#include "solvers/path_pair/frontier/frontier_graph.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -24,7 +24,7 @@ constexpr std::size_t kMostFirstFronts = 1'000'000;
 
 }  // namespace
 
-void FrontGraph::Arrays::clear() {
+void FrontierGraph::Arrays::clear() {
     fronts.clear();
     last.clear();
     begin.clear();
@@ -34,13 +34,13 @@ void FrontGraph::Arrays::clear() {
     onward.clear();
 }
 
-std::uint64_t FrontGraph::key(const Front& front) {
+std::uint64_t FrontierGraph::key(const Front& front) {
     return (static_cast<std::uint64_t>(front.moving) << 32) +
            (static_cast<std::uint64_t>(front.waiting) << 2) + (front.moving_kind == 1 ? 2U : 0U) +
            (front.ended ? 1U : 0U);
 }
 
-void FrontGraph::Arrays::reserve(std::size_t count) {
+void FrontierGraph::Arrays::reserve(std::size_t count) {
     fronts.reserve(count);
     last.reserve(count);
     begin.reserve(count);
@@ -50,7 +50,7 @@ void FrontGraph::Arrays::reserve(std::size_t count) {
     onward.reserve(count);
 }
 
-bool FrontGraph::out_of_time(int fronts) {
+bool FrontierGraph::out_of_time(int fronts) {
     if ((until_clock_ -= fronts) < 0) {
         until_clock_ = kFrontsPerClock;
         is_stopped_ = is_stopped_ || (*stopped_)();
@@ -59,7 +59,7 @@ bool FrontGraph::out_of_time(int fronts) {
 }
 
 template <typename T>
-bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
+bool FrontierGraph::fill(std::vector<T>& values, std::size_t count, T value) {
     values.clear();
     values.reserve(count);
     while (values.size() < count) {
@@ -72,7 +72,7 @@ bool FrontGraph::fill(std::vector<T>& values, std::size_t count, T value) {
 }
 
 template <typename T>
-bool FrontGraph::make_room(std::vector<T>& values, std::size_t more) {
+bool FrontierGraph::make_room(std::vector<T>& values, std::size_t more) {
     if (values.size() + more <= values.capacity()) return true;
     std::vector<T> grown;
     grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
@@ -87,7 +87,7 @@ bool FrontGraph::make_room(std::vector<T>& values, std::size_t more) {
     return true;
 }
 
-bool FrontGraph::fill_dominated(std::size_t words) {
+bool FrontierGraph::fill_dominated(std::size_t words) {
     dominated_.reset(words);
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return false;
@@ -96,12 +96,12 @@ bool FrontGraph::fill_dominated(std::size_t words) {
     return true;
 }
 
-void FrontGraph::forget_fronts() {
+void FrontierGraph::forget_fronts() {
     now_.clear();
     starts_.clear();
 }
 
-double FrontGraph::start_cost(int f) const {
+double FrontierGraph::start_cost(int f) const {
     const Front& start = front(f);
     const int kind = start.moving_kind;
     const int other = relaxation_->other(kind);
@@ -109,7 +109,7 @@ double FrontGraph::start_cost(int f) const {
            relaxation_->start(other)[at(start.waiting)] + relaxation_->reduced()[at(start.waiting)];
 }
 
-bool FrontGraph::grow_table() {
+bool FrontierGraph::grow_table() {
     if (!fill(table_, std::max(kFewSlots, table_.size() * 2), -1)) return false;
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return false;
@@ -121,7 +121,7 @@ bool FrontGraph::grow_table() {
 }
 
 /// The front's number, a new one where it has none. Any number once the time is up: all are dropped then.
-int FrontGraph::number(const Front& wanted) {
+int FrontierGraph::number(const Front& wanted) {
     if (2 * (now_.fronts.size() + 1) > table_.size() && !grow_table()) return 0;
     // Fibonacci hashing: the upper half depends on all bits.
     std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
@@ -143,7 +143,7 @@ int FrontGraph::number(const Front& wanted) {
 }
 
 /// The first fronts below the limit.
-void FrontGraph::begin(double limit) {
+void FrontierGraph::begin(double limit) {
     const ResidualGraph& r = *residual_;
     const bool symmetric = relaxation_->symmetric();
     const int second = relaxation_->other(0);
@@ -178,14 +178,14 @@ void FrontGraph::begin(double limit) {
     stack_.clear();
 }
 
-FrontGraph::Front FrontGraph::after(const Front& front, int arc, std::uint8_t other) {
+FrontierGraph::Front FrontierGraph::after(const Front& front, int arc, std::uint8_t other) {
     if (arc < 0) return {front.waiting, front.moving, other, true};
     if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
     return {front.waiting, arc, other, false};
 }
 
 /// All steps of a front, their next fronts still open. None once the time is up.
-void FrontGraph::add_steps(int f, double limit) {
+void FrontierGraph::add_steps(int f, double limit) {
     const ResidualGraph& r = *residual_;
     const Front here = front(f);
     const int kind = here.moving_kind;
@@ -213,8 +213,8 @@ void FrontGraph::add_steps(int f, double limit) {
     now_.end[at(f)] = now_.steps.size();
 }
 
-bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-                       std::size_t most_fronts, const EdgeSets* edges) {
+bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
+                          std::size_t most_fronts, const EdgeSets* edges) {
     residual_ = &residual;
     edges_ = edges;
     dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
@@ -259,7 +259,7 @@ bool FrontGraph::build(const ResidualGraph& residual, const DominatedEdges& domi
     return !is_stopped_;
 }
 
-void FrontGraph::open(int f) {
+void FrontierGraph::open(int f) {
     if (next_open_[at(f)] != kNotOpen) return;
     const std::size_t arc = at(front(f).moving);
     next_open_[at(f)] = std::exchange(open_at_[arc], f);
@@ -268,7 +268,7 @@ void FrontGraph::open(int f) {
 }
 
 /// Every walk up to a front loses these edges: one more walk comes to `to`. True where the set shrinks.
-bool FrontGraph::narrow_dominated(int from, int to, int arc) {
+bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
     const std::uint64_t* const own = arc < 0 ? nothing_.data() : edges_->lost_after(arc);
@@ -276,7 +276,7 @@ bool FrontGraph::narrow_dominated(int from, int to, int arc) {
 }
 
 /// Lowers the forward costs of the fronts after this one. False where there are too many.
-bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
+bool FrontierGraph::extend(int f, double limit, std::size_t most_fronts) {
     const Front here = front(f);
     const int other = relaxation_->other(here.moving_kind);
     const std::span<const double> reduced = relaxation_->reduced();
@@ -308,7 +308,7 @@ bool FrontGraph::extend(int f, double limit, std::size_t most_fronts) {
 
 /// Renumbers the fronts that have steps, or are last, in reversed finishing order of a depth-first search:
 /// nearly every step leads to a later front.
-void FrontGraph::order() {
+void FrontierGraph::order() {
     if (!order_fronts()) return forget_fronts();
     const ResidualGraph& r = *residual_;
     for (const Front& f : now_.fronts) {
@@ -324,7 +324,7 @@ void FrontGraph::order() {
     keep(order_);
 }
 
-bool FrontGraph::order_fronts() {
+bool FrontierGraph::order_fronts() {
     order_.clear();
     order_.reserve(now_.fronts.size());
     if (!fill(index_, now_.fronts.size(), -1) || !fill(next_step_, now_.fronts.size(), std::size_t{0})) {
@@ -357,7 +357,7 @@ bool FrontGraph::order_fronts() {
 }
 
 /// Renumbers: what is not in `order`, and steps that keep_step_ does not mark, are dropped.
-void FrontGraph::keep(std::span<const int> order) {
+void FrontierGraph::keep(std::span<const int> order) {
     std::swap(now_, old_);
     now_.clear();
     now_.reserve(order.size());
@@ -385,7 +385,7 @@ void FrontGraph::keep(std::span<const int> order) {
     starts_.resize(kept);
 }
 
-double FrontGraph::find_onward(double limit) {
+double FrontierGraph::find_onward(double limit) {
     if (!fill(now_.onward, now_.fronts.size(), kUnreachable)) {
         forget_fronts();
         return -kUnreachable;
@@ -412,7 +412,7 @@ double FrontGraph::find_onward(double limit) {
     return bound;
 }
 
-void FrontGraph::find_forward() {
+void FrontierGraph::find_forward() {
     if (!fill(now_.forward, now_.fronts.size(), kUnreachable)) return forget_fronts();
     changed_.assign(now_.fronts.size(), 0);
     for (const int f : starts_) now_.forward[at(f)] = start_cost(f);
@@ -434,7 +434,7 @@ void FrontGraph::find_forward() {
     }
 }
 
-void FrontGraph::drop(double limit) {
+void FrontierGraph::drop(double limit) {
     order_.clear();
     if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_fronts();
     for (int f = 0; f < size(); ++f) {
@@ -450,7 +450,7 @@ void FrontGraph::drop(double limit) {
     keep(order_);
 }
 
-void FrontGraph::drop_dominated_edges(const EdgeSets& edges) {
+void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
     const std::size_t words = edges.words();
     const auto row = [&](int f) { return dominated_.row(at(f)); };
     const auto is_dominated = [&](int f, int arc) {

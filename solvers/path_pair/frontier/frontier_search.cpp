@@ -1,4 +1,4 @@
-#include "solvers/path_pair/frontier/front_search.hpp"
+#include "solvers/path_pair/frontier/frontier_search.hpp"
 
 #include "solvers/path_pair/graph/at.hpp"
 
@@ -15,17 +15,17 @@ constexpr std::size_t kWorkPerLabel = 20;  ///< its detours, along its arcs
 
 }  // namespace
 
-void FrontSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+void FrontierSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
     graph_ = &graph;
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
 }
 
-double FrontSearch::limit() const {
+double FrontierSearch::limit() const {
     return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
 }
 
-bool FrontSearch::out_of_time(std::size_t work) {
+bool FrontierSearch::out_of_time(std::size_t work) {
     work_ += work;
     if (work_ >= kWorkPerClock) {
         work_ = 0;
@@ -34,7 +34,7 @@ bool FrontSearch::out_of_time(std::size_t work) {
     return is_stopped_;
 }
 
-void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
+void FrontierSearch::take(int arc, Label& label, std::uint64_t* lost) const {
     const std::uint64_t* const more = edges_->lost_after(arc);
     for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
     const int edge = fronts_->residual().edge(arc);
@@ -42,14 +42,14 @@ void FrontSearch::take(int arc, Label& label, std::uint64_t* lost) const {
     if (graph_->along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
 }
 
-void FrontSearch::wait(Label label) {
+void FrontierSearch::wait(Label label) {
     const std::size_t front = at(label.front);
     label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
     open_[front / 64] |= std::uint64_t{1} << (front % 64);
     *labels_.add() = label;
 }
 
-void FrontSearch::begin() {
+void FrontierSearch::begin() {
     for (const int f : fronts_->starts()) {
         if (out_of_time(1)) return;
         const double reduced = fronts_->start_cost(f);
@@ -63,9 +63,9 @@ void FrontSearch::begin() {
     }
 }
 
-FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& edges,
-                                      const OnwardTables& tables, const Limits& limits,
-                                      const std::function<bool()>& stopped) {
+FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const EdgeSets& edges,
+                                            const OnwardTables& tables, const Limits& limits,
+                                            const std::function<bool()>& stopped) {
     fronts_ = &fronts;
     edges_ = &edges;
     tables_ = &tables;
@@ -99,7 +99,7 @@ FrontSearch::Outcome FrontSearch::run(const FrontGraph& fronts, const EdgeSets& 
 }
 
 /// Expands the labels that wait at a front.
-void FrontSearch::settle(int f) {
+void FrontierSearch::settle(int f) {
     here_.clear();
     for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
     std::sort(here_.begin(), here_.end(), [&](int a, int b) { return label_at(a).cost < label_at(b).cost; });
@@ -129,20 +129,20 @@ void FrontSearch::settle(int f) {
 }
 
 /// Whether every walk on that uses none of the edges lost by some arc of the label has a detour above `most`.
-bool FrontSearch::detour_reaches_limit(int l, int most) const {
+bool FrontierSearch::detour_reaches_limit(int l, int most) const {
     const int f = label_at(l).front;
     for (;; l = label_at(l).before) {
         const Label& label = label_at(l);
         if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
         if (label.before >= 0) continue;
-        const FrontGraph::Front& start = fronts_->front(label.front);
+        const FrontierGraph::Front& start = fronts_->front(label.front);
         return tables_->detour(f, start.moving) > most || tables_->detour(f, start.waiting) > most;
     }
 }
 
 /// By one that is kept, which costs no more. What completes this label below the limit uses no edge whose
 /// regret is above `most`.
-bool FrontSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
+bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
     const Quanta* regret = tables_->regrets(label.front);
     for (std::size_t w = 0; w < words_; ++w, regret += 64) {
         wanted_[w] = any_lost_[w] & ~lost[w];
@@ -160,9 +160,9 @@ bool FrontSearch::dominated(const Label& label, const std::uint64_t* lost, int m
     return false;
 }
 
-void FrontSearch::expand(int l) {
+void FrontierSearch::expand(int l) {
     const Label label = label_at(l);
-    for (const FrontGraph::Step& step : fronts_->steps(label.front)) {
+    for (const FrontierGraph::Step& step : fronts_->steps(label.front)) {
         const double reduced = label.reduced + fronts_->cost(step);
         if (!(reduced + fronts_->onward(step.to) < limit())) continue;
         if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
@@ -175,12 +175,12 @@ void FrontSearch::expand(int l) {
     }
 }
 
-void FrontSearch::offer(int label) {
+void FrontierSearch::offer(int label) {
     const ResidualGraph& residual = fronts_->residual();
     chain_.clear();
     for (int l = label; l >= 0; l = label_at(l).before) chain_.push_back(l);
     std::ranges::reverse(chain_);
-    const FrontGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
+    const FrontierGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
     std::array<int, 2> last{start.moving, start.waiting};
     for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[at(last[leg])]);
     for (std::size_t k = 1; k < chain_.size(); ++k) {

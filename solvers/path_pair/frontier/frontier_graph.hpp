@@ -24,7 +24,7 @@ namespace conelane::path_pair {
 /// forward(f) + onward(f) - offset bounds every pair that passes f. Fronts and steps that reach a limit are
 /// dropped, and so are steps by a dominated edge: one that every walk up to the front has lost, or that every
 /// walk on excludes.
-class FrontGraph {
+class FrontierGraph {
   public:
     struct Front {
         int moving;   ///< last arc of the leg that moves, in the residual graph, ...
