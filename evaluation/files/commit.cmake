@@ -8,8 +8,8 @@ if(NOT commit)
     set(commit unknown)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
-namespace conelane::experiments {
+namespace conelane {
 extern const char* const kBuiltCommit;
 const char* const kBuiltCommit = "@commit@";
-}  // namespace conelane::experiments
+}  // namespace conelane
 ]])

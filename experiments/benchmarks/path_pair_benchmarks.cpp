@@ -193,7 +193,7 @@ int main(int argument_count, char** arguments) {
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 1;
     try {
         namespace experiments = conelane::experiments;
-        experiments::register_all(std::make_shared<const std::vector<AnnotatedScene>>(
+        experiments::register_all(std::make_shared<const std::vector<conelane::AnnotatedScene>>(
             experiments::benchmark_scenes(0.3)));
     } catch (const std::exception& failure) {
         std::cerr << "path_pair_benchmarks: " << failure.what() << '\n';

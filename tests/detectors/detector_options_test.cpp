@@ -57,7 +57,7 @@ TEST(DetectorOptions, ThatADetectorDoesNotUseAreRefused) {
     }
 }
 
-class OwnWeights : public experiments::FileTest {
+class OwnWeights : public FileTest {
   protected:
     /// The shipped weights with one text in place of another, which they have to hold.
     [[nodiscard]] std::string with(const std::string& from, const std::string& to) const {

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -76,7 +77,7 @@ TEST(RankNetFile, ErrorsNameTheirKey) {
 }
 
 std::string shipped_file(const std::string& name) {
-    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name,
+    std::ifstream stream(std::filesystem::path(CONELANE_SOURCE_DIR) / "graph_search" / "weights" / name,
                          std::ios::binary);
     EXPECT_TRUE(stream) << name;
     std::ostringstream text;

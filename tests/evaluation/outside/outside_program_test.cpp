@@ -29,6 +29,10 @@
 namespace conelane {
 namespace {
 
+using experiments::RecordScorer;
+using experiments::ScoredRecord;
+using experiments::training_courses;
+
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;

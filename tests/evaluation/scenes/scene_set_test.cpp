@@ -20,6 +20,8 @@
 namespace conelane {
 namespace {
 
+using experiments::lap_starts;
+
 const std::vector<std::string> kTracks{"generated:circle", "generated:kidney@2"};
 
 SceneOptions options_of(std::vector<double> ranges_m) {

@@ -18,7 +18,7 @@ namespace {
 
 std::optional<LaneFailure> failure_of(const AnnotatedScene& scene, const LaneAnswer& answer,
                                       const TrackBoundaries* track = &kTrack) {
-    const SceneScore score = score(scene, answer, kLatency_ms, std::nullopt, track);
+    const SceneScore score = conelane::score(scene, answer, kLatency_ms, std::nullopt, track);
     const bool is_found = answer.status == LaneStatus::found;
     return lane_failure(scene, is_found ? outline_of(answer.lane, scene.scene) : LaneOutline{}, score, track);
 }
