@@ -1,10 +1,10 @@
 // The program `conelane`: one sub-command for each stage from tracks to tables.
 
-#include "program/commands/commands.hpp"
 #include "evaluation/files/interruption.hpp"
+#include "evaluation/files/provenance.hpp"
 #include "experiments/options/argument_words.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "evaluation/files/provenance.hpp"
+#include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
 
 #include <cerrno>

@@ -2,8 +2,11 @@
 
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
+#include "detectors/drivable/drivable_within.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,13 +14,17 @@ namespace conelane {
 namespace {
 
 constexpr double kTrustedByRule_m = 10.0;
+/// How far past the limit a lane that was found may be looked at.
+constexpr double kLeastTime_ms = 0.5;
 
-/// No points where the lane is outside of what `drivable` takes, such as one of more than 20 km.
-DrivableLane drivable_or_none(const LaneAnswer& answer, const Scene& scene) {
+/// No points where the lane is outside of what `drivable` takes, such as one of more than 20 km. Nothing
+/// where the deadline passes.
+std::optional<DrivableLane> drivable_or_none(const LaneAnswer& answer, const Scene& scene,
+                                             const Deadline& deadline) {
     try {
-        return drivable(answer.lane, scene);
+        return drivable_within(answer.lane, scene, {}, deadline);
     } catch (const InvalidInput&) {
-        return {};
+        return DrivableLane{};
     }
 }
 
@@ -49,19 +56,26 @@ class DrivableAnswers final : public LaneDetector {
 
   private:
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
+        const Deadline whole(limits.time_limit_ms);
         LaneAnswer answer = detector_->detect(scene, limits);
         if (answer.status != LaneStatus::found) return answer;
-        DrivableLane lane = drivable_or_none(answer, scene);
-        if (lane.points.empty() && cut_at_first_gap(answer.lane, scene))
-            lane = drivable_or_none(answer, scene);
-        if (!lane.points.empty()) {
-            if (!answer.trusted_m) answer.trusted_m = trusted_by_rule_m(lane);
+        const Deadline deadline(std::max(whole.remaining_ms(), kLeastTime_ms));
+        std::optional<DrivableLane> lane = drivable_or_none(answer, scene, deadline);
+        if (lane && lane->points.empty() && cut_at_first_gap(answer.lane, scene))
+            lane = drivable_or_none(answer, scene, deadline);
+        if (lane && !lane->points.empty()) {
+            if (!answer.trusted_m) answer.trusted_m = trusted_by_rule_m(*lane);
             return answer;
         }
         LaneAnswer none;
         none.status = LaneStatus::stopped;
-        none.stopped_by = answer.stopped_by.value_or(StopReason::iterations);
-        none.message = "the lane that was found cannot be driven: it has no centre line from the car on";
+        if (lane) {
+            none.stopped_by = answer.stopped_by.value_or(StopReason::iterations);
+            none.message = "the lane that was found cannot be driven: it has no centre line from the car on";
+        } else {
+            none.stopped_by = StopReason::time;
+            none.message = "time was over before it was known whether the lane that was found can be driven";
+        }
         none.enumeration = std::move(answer.enumeration);
         return none;
     }

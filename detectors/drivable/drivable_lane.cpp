@@ -1,10 +1,12 @@
 #include "conelane/drivable_lane.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/drivable/drivable_within.hpp"
 #include "detectors/drivable/inferred_boundary.hpp"
 #include "detectors/drivable/lane_boundary.hpp"
 #include "detectors/drivable/lane_rungs.hpp"
 #include "detectors/drivable/smoothing_spline.hpp"
+#include "detectors/drivable/time_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -113,8 +115,9 @@ bool infer(std::vector<Point>& empty, const std::vector<Point>& known, bool know
 /// Parameters are those of the spline, arc lengths start at its first rung.
 class CentreLine {
   public:
-    CentreLine(RungLadder ladder, double smoothing_m)
-        : ladder_(std::move(ladder)), spline_(fit(smoothing_m)) {
+    CentreLine(RungLadder ladder, double smoothing_m, const TimeCheck& check_time)
+        : ladder_(std::move(ladder)), spline_(fit(smoothing_m, check_time)) {
+        check_time();
         measure();
     }
 
@@ -137,7 +140,7 @@ class CentreLine {
     [[nodiscard]] double parameter(std::size_t rung) const {
         return static_cast<double>(rung) * ladder_.spacing_m;
     }
-    SmoothingSpline fit(double smoothing_m);
+    SmoothingSpline fit(double smoothing_m, const TimeCheck& check_time);
     void measure();
     [[nodiscard]] double arc_between(double from, double to) const;
     [[nodiscard]] double parameter_at(double arc_m) const;
@@ -158,7 +161,7 @@ class CentreLine {
 /// the middle is nearer to a boundary. Where it does not, the middles about that rung weigh more in the next
 /// round, so that the spline nears the line of middles there and stays smooth elsewhere. Where it bends too
 /// sharply, they weigh less.
-SmoothingSpline CentreLine::fit(double smoothing_m) {
+SmoothingSpline CentreLine::fit(double smoothing_m, const TimeCheck& check_time) {
     std::vector<Point> middles;
     for (const Rung& rung : ladder_.rungs) {
         middles.push_back(rung.middle());
@@ -177,6 +180,7 @@ SmoothingSpline CentreLine::fit(double smoothing_m) {
         }
     };
     for (int round = 0; round < kRounds; ++round) {
+        check_time();
         bool good = true;
         std::fill(factors.begin(), factors.end(), 1.0);
         for (std::size_t k = 0; round < kSharpRounds && k < n; ++k) {
@@ -378,9 +382,8 @@ std::vector<BridgedGap> seen_from(const std::vector<BridgedGap>& gaps, double fo
     return seen;
 }
 
-}  // namespace
-
-DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOptions& options) {
+DrivableLane checked_drivable(const Lane& lane, const Scene& scene, const DrivableOptions& options,
+                              const TimeCheck& check_time) {
     validate(options);
     Sides sides = positions(lane, scene);
     const bool left_inferred = infer(sides.left, sides.right, false, lane.closed, options);
@@ -390,9 +393,10 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
     const LaneBoundary right(sides.right, lane.closed);
     require_boundary(left, lane.closed, "left");
     require_boundary(right, lane.closed, "right");
-    RungLadder ladder = lane_rungs(left, right, kWidestLane_m);
+    RungLadder ladder = lane_rungs(left, right, kWidestLane_m, check_time);
     if (ladder.rungs.empty()) return {};
-    const CentreLine line(std::move(ladder), options.smoothing_m);
+    const CentreLine line(std::move(ladder), options.smoothing_m, check_time);
+    check_time();
     const double foot_m = line.foot_m(scene.pose.heading());
     const double usable_m = line.usable_length_m(foot_m);
 
@@ -425,6 +429,21 @@ DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOption
     result.bridged =
         seen_from(line.gaps(options.longest_gap_m), foot_m, line.closed() ? line.length_m() : 0.0, result);
     return result;
+}
+
+}  // namespace
+
+DrivableLane drivable(const Lane& lane, const Scene& scene, const DrivableOptions& options) {
+    return checked_drivable(lane, scene, options, TimeCheck());
+}
+
+std::optional<DrivableLane> drivable_within(const Lane& lane, const Scene& scene,
+                                            const DrivableOptions& options, const Deadline& deadline) {
+    try {
+        return checked_drivable(lane, scene, options, TimeCheck(deadline));
+    } catch (const OutOfTime&) {
+        return std::nullopt;
+    }
 }
 
 DrivableLane drivable(const LaneAnswer& answer, const Scene& scene, const DrivableOptions& options) {

@@ -91,7 +91,8 @@ enum class Step : std::uint8_t { both, left, right };
 
 /// The matching from the first places on, to the last ones of both sides or, with `open_end`, to the last
 /// place of one of them and the place of the other that makes the mean of the squared lengths the least.
-std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> right, bool open_end) {
+std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> right, bool open_end,
+                          const TimeCheck& check_time) {
     const std::size_t columns = right.size();
     std::vector<Step> steps(left.size() * columns, Step::both);
     std::vector<double> row(columns);
@@ -100,6 +101,7 @@ std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> ri
     std::size_t j_end = columns - 1;
     double least_mean = kNever;
     for (std::size_t i = 0; i < left.size(); ++i) {
+        check_time();
         std::swap(row, row_before);
         for (std::size_t j = 0; j < columns; ++j) {
             const double cost = (left[i].point - right[j].point).squaredNorm();
@@ -280,11 +282,12 @@ LaneBoundary extended(const LaneBoundary& boundary, const std::vector<Point>& be
     return {vertices, false};
 }
 
-RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, double widest_m) {
+RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, double widest_m,
+                       const TimeCheck& check_time) {
     Places left_places = sampled(left);
     Places right_places = sampled(right);
     // The first matching finds the end, the second one from there the beginning.
-    std::vector<Rung> rungs = matched(left_places, right_places, true);
+    std::vector<Rung> rungs = matched(left_places, right_places, true, check_time);
     drop_fan(rungs);
     const auto up_to = [](const Places& places, double arc_m) {
         return Places(places.begin(), std::ranges::find(places, arc_m, &Place::arc_m) + 1);
@@ -293,7 +296,7 @@ RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, doub
     Places right_part = up_to(right_places, rungs.back().right_m);
     std::ranges::reverse(left_part);
     std::ranges::reverse(right_part);
-    rungs = matched(left_part, right_part, true);
+    rungs = matched(left_part, right_part, true, check_time);
     drop_fan(rungs);
     turn_round(left_places, right_places, rungs);
     const Extension before = extension(left_places, right_places, rungs.front(), -1.0, widest_m);
@@ -315,17 +318,19 @@ RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, doub
     return ladder;
 }
 
-RungLadder closed_ladder(const LaneBoundary& left, const LaneBoundary& right) {
+RungLadder closed_ladder(const LaneBoundary& left, const LaneBoundary& right, const TimeCheck& check_time) {
     Places left_places = sampled(left);
     Places right_places = sampled(right);
     begin_at_narrowest(left_places, left.length_m(), right_places, right.length_m());
-    return {left, right, matched(left_places, right_places, false)};
+    return {left, right, matched(left_places, right_places, false, check_time)};
 }
 
 }  // namespace
 
-RungLadder lane_rungs(const LaneBoundary& left, const LaneBoundary& right, double widest_m) {
-    RungLadder ladder = left.closed() ? closed_ladder(left, right) : open_ladder(left, right, widest_m);
+RungLadder lane_rungs(const LaneBoundary& left, const LaneBoundary& right, double widest_m,
+                      const TimeCheck& check_time) {
+    RungLadder ladder = left.closed() ? closed_ladder(left, right, check_time)
+                                      : open_ladder(left, right, widest_m, check_time);
     space_evenly(ladder);
     return ladder;
 }

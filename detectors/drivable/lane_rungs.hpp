@@ -1,6 +1,7 @@
 #pragma once
 
 #include "detectors/drivable/lane_boundary.hpp"
+#include "detectors/drivable/time_check.hpp"
 #include "model/geometry.hpp"
 
 #include <vector>
@@ -36,6 +37,7 @@ struct RungLadder {
 ///
 /// Precondition: both boundaries are closed, or neither is. Takes time and memory quadratic in the boundary
 /// lengths up to 1 km; longer ones are sampled more coarsely.
-[[nodiscard]] RungLadder lane_rungs(const LaneBoundary& left, const LaneBoundary& right, double widest_m);
+[[nodiscard]] RungLadder lane_rungs(const LaneBoundary& left, const LaneBoundary& right, double widest_m,
+                                    const TimeCheck& check_time = {});
 
 }  // namespace conelane

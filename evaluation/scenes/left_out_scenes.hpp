@@ -15,7 +15,7 @@ namespace conelane {
 /// Ids in their order, by track.
 using LeftOutScenes = std::map<std::string, std::vector<std::string>>;
 
-/// The same as make_scene_set, and what was left out of it.
+/// The same as make_scene_set, and what was left out of it, which is then for the caller to say.
 [[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
                                       const SceneOptions& options, const Shard& shard,
                                       LeftOutScenes& left_out);

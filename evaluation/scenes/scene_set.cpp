@@ -16,7 +16,9 @@ namespace conelane {
 SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
                         const Shard& shard) {
     LeftOutScenes left_out;
-    return make_scene_set(track_specs, options, shard, left_out);
+    SceneSet set = make_scene_set(track_specs, options, shard, left_out);
+    if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
+    return set;
 }
 
 SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
@@ -59,7 +61,6 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
                                           : "the ground truth of every scene is degenerate: are left and "
                                             "right the wrong way round?");
     }
-    if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     return set;
 }
 

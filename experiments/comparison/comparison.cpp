@@ -1,14 +1,14 @@
 #include "experiments/comparison/comparison.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "experiments/comparison/echo_floor.hpp"
-#include "experiments/comparison/lane_log.hpp"
-#include "experiments/comparison/results.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/outside/finished_lanes.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/echo_floor.hpp"
+#include "experiments/comparison/lane_log.hpp"
+#include "experiments/comparison/results.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -18,6 +18,7 @@
 #include <system_error>
 #include <utility>
 
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
@@ -129,6 +130,7 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
 
     const FolderLock lock = open_run(directory, record, options.overwrite);
     write_scene_set(directory / kScenesFile, set, left_out);
+    if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
     for (const Entrant& entrant : options.entrants) {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "evaluation/scenes/scene_set.hpp"
 #include "experiments/comparison/answer_errors.hpp"
 #include "experiments/comparison/run_record.hpp"
-#include "evaluation/scenes/scene_set.hpp"
 
 #include <filesystem>
 #include <string>

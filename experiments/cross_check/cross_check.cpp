@@ -1,15 +1,15 @@
 #include "experiments/cross_check/cross_check.hpp"
 
-#include "experiments/cross_check/case_file.hpp"
-#include "experiments/cross_check/shrink.hpp"
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/folder_lock.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/output_stream.hpp"
-#include "experiments/progress/progress.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/cross_check/case_file.hpp"
+#include "experiments/cross_check/shrink.hpp"
+#include "experiments/progress/progress.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/parameter_file.hpp"
-#include "experiments/options/whole_number.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/whole_number.hpp"
 
 #include <algorithm>
 #include <array>

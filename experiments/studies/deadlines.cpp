@@ -2,10 +2,10 @@
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "experiments/options/whole_number.hpp"
-#include "experiments/progress/progress.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
+#include "experiments/options/whole_number.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 #include "model/deadline.hpp"

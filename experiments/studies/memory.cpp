@@ -1,9 +1,9 @@
 #include "experiments/studies/memory.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
-#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/studies/study.hpp"
 #include "experiments/studies/text_table.hpp"
 

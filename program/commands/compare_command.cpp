@@ -1,11 +1,11 @@
-#include "program/commands/commands.hpp"
-#include "program/commands/page.hpp"
-#include "program/commands/unanswered.hpp"
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/tracks/generated_tracks.hpp"
 #include "experiments/comparison/comparison.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
-#include "evaluation/scoring/statistics.hpp"
-#include "evaluation/tracks/generated_tracks.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/page.hpp"
+#include "program/commands/unanswered.hpp"
 
 #include <algorithm>
 #include <charconv>

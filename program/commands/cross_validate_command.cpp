@@ -1,10 +1,10 @@
-#include "program/commands/commands.hpp"
-#include "program/commands/page.hpp"
-#include "program/commands/unanswered.hpp"
+#include "evaluation/outside/outside_method.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/page.hpp"
+#include "program/commands/unanswered.hpp"
 
 #include <algorithm>
 #include <memory>

@@ -1,16 +1,16 @@
 #include "conelane/invalid_input.hpp"
-#include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
-#include "experiments/comparison/runner.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/file_text.hpp"
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
-#include "experiments/comparison/methods.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "evaluation/outside/outside_method.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/runner.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
 
 #include <cerrno>
 #include <cstddef>

@@ -1,13 +1,13 @@
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
-#include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
 #include "evaluation/files/drivable_lane_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/lane_file.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,8 +1,8 @@
-#include "program/commands/commands.hpp"
-#include "experiments/options/shared_options.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scenes/scene_set.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "program/commands/commands.hpp"
 
 #include <memory>
 #include <string>
@@ -27,6 +27,7 @@ void make_scenes(const Options& options) {
     LeftOutScenes left_out;
     const SceneSet set = make_scene_set(options.tracks, options.scenes, {}, left_out);
     write_scene_set(options.out, set, left_out);
+    if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(),
                options.out, track_boundaries_path(options.out).string());
 }

@@ -1,11 +1,11 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "program/commands/commands.hpp"
-#include "program/commands/unanswered.hpp"
 #include "evaluation/files/solution_file.hpp"
+#include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
-#include "evaluation/scenes/scene_file.hpp"
+#include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>

@@ -1,13 +1,13 @@
-#include "program/commands/commands.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/json_node.hpp"
-#include "experiments/options/shared_options.hpp"
-#include "experiments/options/whole_number.hpp"
-#include "experiments/progress/progress.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "evaluation/scenes/scene_set.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/tuning/method_tuning.hpp"
+#include "program/commands/commands.hpp"
 
 #include <array>
 #include <filesystem>

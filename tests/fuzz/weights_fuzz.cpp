@@ -25,15 +25,12 @@ void read_all(std::string_view bytes) {
         const RankNetWeights weights = conelane::parse_rank_net(bytes);
         (void)make_rank_net(weights);
         const std::string json = conelane::rank_net_json(weights, "{}");
-        require(rank_net_json(parse_rank_net(json), "{}") == json,
-                "weights are read as they were written");
+        require(rank_net_json(parse_rank_net(json), "{}") == json, "weights are read as they were written");
     });
     answers([&] {
         const StepScores scores = conelane::parse_step_scores(bytes);
-        const std::string json =
-            step_scores_json(scores, conelane::step_scores_training(bytes));
-        require(step_scores_json(parse_step_scores(json),
-                                              step_scores_training(json)) == json,
+        const std::string json = step_scores_json(scores, conelane::step_scores_training(bytes));
+        require(step_scores_json(parse_step_scores(json), step_scores_training(json)) == json,
                 "scores are read as they were written");
     });
 }

@@ -2,10 +2,10 @@
 
 #include "evaluation/scenes/scene_set.hpp"
 
-#include "experiments/comparison/runner.hpp"
 #include "evaluation/scenes/degenerate_truth.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/tracks/track_spec.hpp"
+#include "experiments/comparison/runner.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -53,7 +53,7 @@ TEST_F(LaneLogTest, ForgetsLinesOnRequest) {
 
 TEST_F(LaneLogTest, SaysWhereItCannotWrite) {
     EXPECT_EQ(error_of([&] { LaneLog(path("nowhere") / "m.lanes.jsonl"); }),
-              "nowhere/m.lanes.jsonl.part: cannot be written");
+              "nowhere/m.lanes.jsonl.part: cannot be written: No such file or directory");
 }
 
 }  // namespace

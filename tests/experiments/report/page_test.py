@@ -15,7 +15,7 @@ from html.parser import HTMLParser
 
 from stored_results import Setup, write_results
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "experiments"))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..", "experiments"))
 from report.methods import described  # noqa: E402  (the package of the page lies there)
 
 PROGRAM, RESULTS = sys.argv[1:3]

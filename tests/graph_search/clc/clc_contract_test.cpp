@@ -255,7 +255,7 @@ TEST(ClcContract, TheMemoryLimitHoldsInGraphAndSearch) {
         options.memory_limit_bytes = 1U << 20U;
         options.iteration_limit = std::numeric_limits<std::int64_t>::max();
         const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
-        const LaneAnswer crowded = detector->detect(heap(2000, 1e-3), tests::kNoTimeLimit);
+        const LaneAnswer crowded = detector->detect(heap(2000, 12.0), tests::kNoTimeLimit);
         EXPECT_EQ(crowded.status, LaneStatus::stopped) << "the graph alone is larger";
         EXPECT_EQ(crowded.stopped_by, StopReason::memory);
         const LaneAnswer endless = detector->detect(strewn(120, 30.0, 16.0), tests::kNoTimeLimit);

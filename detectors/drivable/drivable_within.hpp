@@ -1,0 +1,16 @@
+#pragma once
+
+#include "conelane/drivable_lane.hpp"
+#include "model/deadline.hpp"
+
+#include <optional>
+
+namespace conelane {
+
+/// The same as `drivable`; nothing where the deadline passes first, which is asked at least every half
+/// millisecond for lanes of up to a kilometre.
+[[nodiscard]] std::optional<DrivableLane> drivable_within(const Lane& lane, const Scene& scene,
+                                                          const DrivableOptions& options,
+                                                          const Deadline& deadline);
+
+}  // namespace conelane
