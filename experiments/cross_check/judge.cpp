@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;
 constexpr double kOwnSearch_ms = 20.0;
+constexpr double kTravelOfAFrame_m = 1.0;
 constexpr std::size_t kMostCertifiedCones = 12;
 constexpr std::int64_t kMostCertificateSteps = 20'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -94,8 +96,20 @@ class Judgement {
         }
     }
 
+    /// The first contestant's lane graph of the frame before, when the car stood a metre behind. Cones and
+    /// edges are those of this frame; near ends and headings may differ.
+    [[nodiscard]] std::optional<LaneGraph> answer_of_previous_frame() const {
+        if (contestants_.empty()) return std::nullopt;
+        const Contestant& first = contestants_.front();
+        if (first.most_cones && drawn_.scene.cones.size() > *first.most_cones) return std::nullopt;
+        Scene previous = drawn_.scene;
+        previous.pose.position -= kTravelOfAFrame_m * previous.pose.heading();
+        return first.solve(previous, drawn_.parameters, time_limit_ms_).lane_graph;
+    }
+
     /// What there is to start from for the contestant of this name.
-    [[nodiscard]] std::vector<NamedStart> starts(const std::string& name) const {
+    [[nodiscard]] std::vector<NamedStart> starts(const std::string& name,
+                                                 const std::optional<LaneGraph>& previous) const {
         std::vector<NamedStart> all;
         const std::size_t cones = drawn_.scene.cones.size();
         const LaneGraph* known = nullptr;
@@ -107,6 +121,7 @@ class Judgement {
             if (!is_own && !has_other) all.push_back({"another's answer", *answer.report.lane_graph});
         }
         all.push_back({"random edges", random_edges(known ? *known : LaneGraph{}, cones, drawn_.number)});
+        if (previous) all.push_back({"the previous frame's answer", *previous});
         if (known == nullptr || known->edges.empty()) return all;
         all.push_back({"its own answer", *known});
         LaneGraph shorter = *known;
@@ -120,10 +135,11 @@ class Judgement {
 
     void ask_from_starts() {
         const LaneGraphProblem problem = make_problem(drawn_.scene, drawn_.parameters);
+        const std::optional<LaneGraph> previous = answer_of_previous_frame();
         for (const Contestant& contestant : contestants_) {
             if (!contestant.solve_from) continue;
             if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
-            for (const NamedStart& start : starts(contestant.name)) {
+            for (const NamedStart& start : starts(contestant.name, previous)) {
                 const bool is_feasible_start = is_feasible(problem, start.graph);
                 std::vector<double> limits{drawn_.tight_limit_ms};
                 if (start.name == "its own answer") limits.push_back(time_limit_ms_);

@@ -50,8 +50,13 @@ class CbcMainSession : public MilpSession {
         detail::with_std_errors([&] {
             run(limits, true, report);
             // On programs without a solution CBC 2.10.8's preprocessing was seen to invent one.
-            if (!violates_a_row(report.point) || watch_.struck) return;
+            if (!violates_a_row(report.point)) return;
             report = {};
+            if (watch_.struck) {
+                report.status = SolveStatus::stopped;
+                report.stopped_by = StopReason::time;
+                return;
+            }
             run(limits, false, report);
         });
         return report;

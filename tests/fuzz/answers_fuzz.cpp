@@ -24,10 +24,10 @@ namespace {
 
 void read_lanes(std::string_view bytes, const std::filesystem::path& file, const ScratchFolder& folder) {
     answers([&] {
-        const std::vector<LaneRecord> records = read_lanes(file);
+        const std::vector<LaneRecord> records = conelane::read_lanes(file);
         const auto again = folder.path() / "again.lanes.jsonl";
         write_lanes(again, records);
-        require(read_lanes(again).size() == records.size(), "every lane is written");
+        require(conelane::read_lanes(again).size() == records.size(), "every lane is written");
     });
     answers([&] { (void)read_foreign_lanes(file); });
     answers([&] { (void)read_foreign_lane(bytes); });
@@ -43,10 +43,10 @@ void read_lanes(std::string_view bytes, const std::filesystem::path& file, const
 
 void read_solutions(const std::filesystem::path& file, const ScratchFolder& folder) {
     answers([&] {
-        const std::vector<SolutionRecord> records = read_solutions(file);
+        const std::vector<SolutionRecord> records = conelane::read_solutions(file);
         const auto again = folder.path() / "again.solutions.jsonl";
         write_solutions(again, records);
-        require(read_solutions(again).size() == records.size(), "every solution is written");
+        require(conelane::read_solutions(again).size() == records.size(), "every solution is written");
     });
 }
 
@@ -85,6 +85,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }

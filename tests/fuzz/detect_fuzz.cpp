@@ -121,6 +121,6 @@ void detect_on(FuzzedDataProvider& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     FuzzedDataProvider input(data, size);
-    fuzz::detect_on(input);
+    conelane::fuzz::detect_on(input);
     return 0;
 }

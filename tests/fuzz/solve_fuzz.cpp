@@ -90,6 +90,6 @@ void solve_on(FuzzedDataProvider& input) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     FuzzedDataProvider input(data, size);
-    fuzz::solve_on(input);
+    conelane::fuzz::solve_on(input);
     return 0;
 }

@@ -39,6 +39,6 @@ void read_all(std::string_view bytes) {
 }  // namespace conelane::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::read_all({reinterpret_cast<const char*>(data), size});
+    conelane::fuzz::read_all({reinterpret_cast<const char*>(data), size});
     return 0;
 }
