@@ -6,6 +6,7 @@
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/outside/outside_method.hpp"
 #include "experiments/comparison/echo_floor.hpp"
+#include "experiments/comparison/methods.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"

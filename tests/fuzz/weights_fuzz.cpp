@@ -16,9 +16,9 @@ namespace {
 
 void read_all(std::string_view bytes) {
     answers([&] {
-        const FrontWeights weights = experiments::parse_front_weights(bytes);
+        const FrontWeights weights = conelane::parse_front_weights(bytes);
         validate(weights);
-        require(experiments::parse_front_weights(front_weights_json(weights, "{}")) == weights,
+        require(conelane::parse_front_weights(front_weights_json(weights, "{}")) == weights,
                 "weights are read as they were written");
     });
     answers([&] {
