@@ -11,6 +11,7 @@
 #include "experiments/comparison/results.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <set>
@@ -78,12 +79,6 @@ AnswerErrors errors_among(const std::vector<std::vector<LaneRecord>>& files) {
     return errors;
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-    AtomicFile output(file);
-    output.stream() << text;
-    output.commit();
-}
-
 }  // namespace
 
 ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set,
@@ -103,11 +98,16 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
         std::ranges::move(scorer.score(records.back(), directory / name), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
-    write_scores(directory / "scores.jsonl", scored);
-    write_results(directory / "results.jsonl", rows, scored, outside, run_record);
     const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
     const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
-    write_text(directory / "table.txt", table);
+    // An earlier table stays beside the scores that it was made of until all are written.
+    AtomicFile scores(directory / "scores.jsonl");
+    AtomicFile results(directory / "results.jsonl");
+    AtomicFile table_text(directory / "table.txt");
+    write_scores(scores.stream(), scored);
+    write_results(results.stream(), rows, scored, outside, run_record);
+    table_text.stream() << table;
+    commit_together(std::array{&scores, &results, &table_text});
     return {table, errors_among(records)};
 }
 

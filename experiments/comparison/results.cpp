@@ -1,7 +1,6 @@
 #include "experiments/comparison/results.hpp"
 
 #include "conelane/invalid_input.hpp"
-#include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
@@ -251,17 +250,13 @@ std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored) {
     return summarise_by_key(keyed);
 }
 
-void write_scores(const std::filesystem::path& file, std::span<const ScoredRecord> scored) {
-    AtomicFile output(file);
-    for (const ScoredRecord& record : scored) output.stream() << score_line(record).dump() << '\n';
-    output.commit();
+void write_scores(std::ostream& output, std::span<const ScoredRecord> scored) {
+    for (const ScoredRecord& record : scored) output << score_line(record).dump() << '\n';
 }
 
-void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
-                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
-                   const std::string& run) {
+void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
+                   const OutsideMethods& outside, const std::string& run) {
     const Provenance origin = provenance();
-    AtomicFile output(file);
     for (const ScoreRow& row : rows) {
         nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
         const auto method = std::ranges::find(outside.methods, row.key.method, &OutsideMethod::name);
@@ -275,9 +270,8 @@ void write_results(const std::filesystem::path& file, std::span<const ScoreRow> 
         line["compiler"] = origin.compiler;
         line["machine"] = origin.machine;
         line["run"] = nlohmann::ordered_json::parse(run);
-        output.stream() << line.dump() << '\n';
+        output << line.dump() << '\n';
     }
-    output.commit();
 }
 
 std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside) {

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <ostream>
 #include <set>
 #include <span>
 #include <string>
@@ -67,7 +68,7 @@ class RecordScorer {
 [[nodiscard]] std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored);
 
 /// Writes a line per record with every measure of it.
-void write_scores(const std::filesystem::path& file, std::span<const ScoredRecord> scored);
+void write_scores(std::ostream& output, std::span<const ScoredRecord> scored);
 
 /// The methods from outside among those scored, and what an echo program takes.
 struct OutsideMethods {
@@ -83,9 +84,8 @@ struct OutsideMethods {
 /// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
 /// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
 /// seed).
-void write_results(const std::filesystem::path& file, std::span<const ScoreRow> rows,
-                   std::span<const ScoredRecord> scored, const OutsideMethods& outside,
-                   const std::string& run);
+void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
+                   const OutsideMethods& outside, const std::string& run);
 
 /// What a table says below of methods from outside: what its latencies are, how many scenes they failed on,
 /// and their cards. Empty where there are none.

@@ -129,6 +129,19 @@ struct Sums {
     }
 };
 
+AnswerErrors errors_among(std::span<const BackendRow> rows) {
+    AnswerErrors errors;
+    for (const BackendRow& row : rows) {
+        const std::string backend = fmt::format("{} n={}", row.backend.label(), row.cones);
+        if (row.status == SolveStatus::error) {
+            errors.add_error(backend, row.scene->scene.id, row.message);
+        } else {
+            errors.add_answer(backend);
+        }
+    }
+    return errors;
+}
+
 nlohmann::ordered_json to_json(const BackendRow& row) {
     nlohmann::ordered_json json{{"scene", row.scene->scene.id},
                                 {"track", row.scene->track},
@@ -170,7 +183,9 @@ class BackendsStudy : public Study {
         options_.backends = backends_asked_for();
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const std::vector<BackendRow> rows = backend_rows(scenes, options_);
-        return study_result(backend_table(rows) + left_out(), rows, to_json);
+        StudyResult result = study_result(backend_table(rows) + left_out(), rows, to_json);
+        result.errors = errors_among(rows);
+        return result;
     }
 
   private:

@@ -31,7 +31,8 @@ class RowSums {
     }
 
     /// `least`: the proven least cost; nothing in the exact solver's own row, which then gives it.
-    std::optional<double> add(const AnnotatedScene& annotated, std::optional<double> least) {
+    std::optional<double> add(const AnnotatedScene& annotated, std::optional<double> least,
+                              AnswerErrors& errors) {
         const Scene scene = nearest_ahead(annotated.scene, row_.cones);
         const auto [problem, report, solved_ms] =
             solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});
@@ -40,6 +41,12 @@ class RowSums {
         }
         times_ms_.push_back(solved_ms);
         ++row_.scenes;
+        const std::string name = fmt::format("{} n={}", row_.solver, row_.cones);
+        if (report.status == SolveStatus::error) {
+            errors.add_error(name, scene.id, report.message);
+        } else {
+            errors.add_answer(name);
+        }
         if (report.status == SolveStatus::optimal) least = report.objective;
         LaneAnswer answer;
         if (report.lane_graph) {
@@ -114,8 +121,11 @@ class RelaxationsStudy : public Study {
 
     StudyResult run() override {
         options_.parameters = input_.parameters.load();
-        const std::vector<RelaxationRow> rows = relaxation_rows(read_scenes(input_.scenes), options_);
-        return study_result(relaxation_table(rows), rows, to_json);
+        AnswerErrors errors;
+        const std::vector<RelaxationRow> rows = relaxation_rows(read_scenes(input_.scenes), options_, errors);
+        StudyResult result = study_result(relaxation_table(rows), rows, to_json);
+        result.errors = std::move(errors);
+        return result;
     }
 
   private:
@@ -126,7 +136,7 @@ class RelaxationsStudy : public Study {
 }  // namespace
 
 std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scenes,
-                                           const RelaxationOptions& options) {
+                                           const RelaxationOptions& options, AnswerErrors& errors) {
     std::vector<RelaxationRow> rows;
     for (const std::size_t size : options.sizes) {
         const auto has_ground_truth = [&](const AnnotatedScene& scene) {
@@ -142,8 +152,8 @@ std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scene
             if (!entry.exact) relaxations.emplace_back(size, entry, options);
         }
         for (const AnnotatedScene* scene : of_size) {
-            const std::optional<double> least = exact.add(*scene, std::nullopt);
-            for (RowSums& relaxation : relaxations) (void)relaxation.add(*scene, least);
+            const std::optional<double> least = exact.add(*scene, std::nullopt, errors);
+            for (RowSums& relaxation : relaxations) (void)relaxation.add(*scene, least, errors);
             progress.advance();
         }
         rows.push_back(exact.row());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "evaluation/scenes/annotated_scene.hpp"
+#include "experiments/comparison/answer_errors.hpp"
 #include "experiments/studies/cone_sets.hpp"
 
 #include <cstddef>
@@ -43,9 +44,10 @@ struct RelaxationRow {
 };
 
 /// Rows by size, path-pair first; sizes that no scene has are left out. Throws InvalidInput naming the scene
-/// where a solver answers below the least cost.
+/// where a solver answers below the least cost. Answers, and errors among them, are counted in `errors`.
 [[nodiscard]] std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scenes,
-                                                         const RelaxationOptions& options);
+                                                         const RelaxationOptions& options,
+                                                         AnswerErrors& errors);
 
 /// Of these rows, for a terminal.
 [[nodiscard]] std::string relaxation_table(std::span<const RelaxationRow> rows);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "experiments/comparison/answer_errors.hpp"
+
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,11 +26,12 @@ struct StudyDescription {
 struct StudyResult {
     std::string table;                         ///< for a terminal; ends with a line feed
     std::vector<nlohmann::ordered_json> rows;  ///< for a file, an object each
+    AnswerErrors errors = {};                  ///< where answers of status error are counted and do not throw
 };
 
 template <typename Rows, typename ToJson>
 [[nodiscard]] StudyResult study_result(std::string table, const Rows& rows, const ToJson& to_json) {
-    StudyResult result{std::move(table), {}};
+    StudyResult result{std::move(table), {}, {}};
     for (const auto& row : rows) result.rows.push_back(to_json(row));
     return result;
 }

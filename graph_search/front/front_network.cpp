@@ -16,13 +16,19 @@ constexpr std::size_t kFloats = sizeof(Floats) / sizeof(float);
 constexpr std::size_t kParts = kFrontUnits / kFloats;
 static_assert(kFrontUnits % kFloats == 0);
 
+/// The weights of an input. Named by its type: GCC gives what is declared `auto` the alignment of Floats,
+/// which no array of float has, and reads it as aligned.
+const UnalignedFloats* row_of(const float* weights, std::size_t input) {
+    return reinterpret_cast<const UnalignedFloats*>(weights + input * kFrontUnits);
+}
+
 // NOLINTBEGIN(modernize-avoid-c-arrays): std::array drops the attribute of its vectors
 
 CONELANE_SIMD void add_inputs(const float* weights, const float* inputs, std::size_t count, float* sums) {
     Floats part[kParts];
     for (std::size_t p = 0; p < kParts; ++p) part[p] = reinterpret_cast<const UnalignedFloats*>(sums)[p];
     for (std::size_t i = 0; i < count; ++i) {
-        const auto* row = reinterpret_cast<const UnalignedFloats*>(weights + i * kFrontUnits);
+        const UnalignedFloats* const row = row_of(weights, i);
         for (std::size_t p = 0; p < kParts; ++p) part[p] += inputs[i] * row[p];
     }
     for (std::size_t p = 0; p < kParts; ++p) reinterpret_cast<UnalignedFloats*>(sums)[p] = part[p];
@@ -35,7 +41,7 @@ CONELANE_SIMD void add_hidden(const float* weights, const float* first, const fl
     Floats b[kParts];
     for (std::size_t p = 0; p < kParts; ++p) a[p] = b[p] = reinterpret_cast<const UnalignedFloats*>(sums)[p];
     for (std::size_t i = 0; i < count; ++i) {
-        const auto* row = reinterpret_cast<const UnalignedFloats*>(weights + i * kFrontUnits);
+        const UnalignedFloats* const row = row_of(weights, i);
         for (std::size_t p = 0; p < kParts; ++p) {
             const Floats weight = row[p];
             a[p] += first[i] * weight;

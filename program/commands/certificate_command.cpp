@@ -105,17 +105,11 @@ auto certificates(const Options& options, const RldParameters& parameters, const
 
 std::vector<SearchCertificateRecord> search_certificates(const Options& options,
                                                          const RldParameters& parameters) {
-    std::vector<std::string> unproven;
     auto records = certificates(options, parameters, [&](const Scene& scene) {
         const SearchCertificate certificate =
             certify_search(make_problem(scene, parameters), options.time_limit_ms);
-        if (std::isinf(certificate.bound) && certificate.bound < 0.0) unproven.push_back(scene.id);
         return to_search_record(scene, certificate);
     });
-    for (const std::string& scene : unproven) {
-        fmt::print(stderr, "{}: nothing is claimed: no bound below {:g} was proven in time\n", scene,
-                   SearchCertificate::kMostBound);
-    }
     return records;
 }
 
@@ -158,6 +152,10 @@ std::string no_cone(ConeId id) {
     return fmt::format("cone {} is not in the scene", id);
 }
 
+void report_none_verified(const Options& options, bool is_none) {
+    if (is_none) fmt::print(stderr, "conelane: {}: no certificate is verified\n", options.verify);
+}
+
 void verify_bounds(const Options& options, const RldParameters& parameters) {
     const std::vector<CertificateRecord> records = read_certificates(options.verify);
     std::size_t failed = 0;
@@ -173,6 +171,7 @@ void verify_bounds(const Options& options, const RldParameters& parameters) {
         if (!violations.empty()) ++failed;
     });
     fmt::print("{} verified, {} failed\n", records.size() - failed, failed);
+    report_none_verified(options, failed == records.size());
     if (failed > 0) throw CLI::RuntimeError(1);
 }
 
@@ -203,7 +202,24 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
     fmt::print(
         "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
         optima, infeasible, bounds, refused, unverified, options.most_steps);
+    report_none_verified(options, refused + unverified == records.size());
     if (refused + unverified > 0) throw CLI::RuntimeError(1);
+}
+
+bool claims_nothing(double bound) {
+    return !(bound > -SearchCertificate::kMostBound);
+}
+
+/// Says of which scenes nothing was proven. Throws CLI::RuntimeError of exit code 1 where that is all.
+template <typename Record>
+void report_unproven(const std::vector<Record>& records) {
+    std::size_t unproven = 0;
+    for (const Record& record : records) {
+        if (!claims_nothing(record.bound)) continue;
+        ++unproven;
+        fmt::print(stderr, "{}: nothing is claimed: no bound was proven in time\n", record.scene);
+    }
+    if (unproven > 0 && unproven == records.size()) throw CLI::RuntimeError(1);
 }
 
 void run(const Options& options, const RldParameters& parameters) {
@@ -212,10 +228,12 @@ void run(const Options& options, const RldParameters& parameters) {
             const auto records = search_certificates(options, parameters);
             write_search_certificates(options.out, records);
             fmt::print("{} certificates in {}\n", records.size(), options.out);
+            report_unproven(records);
         } else {
             const auto records = root_certificates(options, parameters);
             write_certificates(options.out, records);
             fmt::print("{} certificates in {}\n", records.size(), options.out);
+            report_unproven(records);
         }
     } else if (options.whole || holds_search_certificates(options.verify)) {
         verify_searches(options, parameters);

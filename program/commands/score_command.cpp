@@ -1,4 +1,5 @@
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/outside/finished_lanes.hpp"
@@ -97,7 +98,9 @@ void score_all(const Options& options) {
     if (!options.json.empty()) {
         nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
         if (!options.methods.empty()) run["lanes_of_methods"] = options.methods;
-        write_results(options.json, rows, scored, outside, run.dump());
+        AtomicFile output(options.json);
+        write_results(output.stream(), rows, scored, outside, run.dump());
+        output.commit();
     }
     fmt::print("{}{}{}", score_table(rows), outside_notes(scored, outside), table_note_on(left_out));
     if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());

@@ -2,6 +2,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/studies/study.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/unanswered.hpp"
 
 #include <memory>
 #include <string>
@@ -26,6 +27,7 @@ void run(Study& study, const std::string& out) {
         output.commit();
     }
     fmt::print("{}", result.table);
+    report_errors(result.errors);
 }
 
 void list(const std::vector<std::unique_ptr<Study>>& studies) {

@@ -3,6 +3,7 @@
 #include "model/deadline.hpp"
 #include "solvers/detail/exclusive_section.hpp"
 #include "solvers/milp/detail/coin_deadline.hpp"
+#include "solvers/milp/detail/invented_point.hpp"
 #include "solvers/milp/detail/osi_program.hpp"
 
 #include <algorithm>
@@ -20,8 +21,6 @@ namespace conelane {
 namespace {
 
 std::timed_mutex one_at_a_time;
-
-constexpr double kRowTolerance = 1e-4;  // well above CBC's own
 
 int no_callback(CbcModel*, int) {
     return 0;
@@ -50,14 +49,10 @@ class CbcMainSession : public MilpSession {
         detail::with_std_errors([&] {
             run(limits, true, report);
             // On programs without a solution CBC 2.10.8's preprocessing was seen to invent one.
-            if (!violates_a_row(report.point)) return;
-            report = {};
-            if (watch_.struck) {
-                report.status = SolveStatus::stopped;
-                report.stopped_by = StopReason::time;
-                return;
-            }
+            if (verdict_on(report) != detail::PointVerdict::search_anew) return;
             run(limits, false, report);
+            if (verdict_on(report) == detail::PointVerdict::search_anew)
+                report.message = "CBC returned a point that violates rows";
         });
         return report;
     }
@@ -92,18 +87,14 @@ class CbcMainSession : public MilpSession {
         read(model, report);
     }
 
-    /// Of a point without coordinates none.
-    [[nodiscard]] bool violates_a_row(const std::vector<double>& point) const {
-        if (point.empty()) return false;
-        std::vector<double> activity(static_cast<std::size_t>(lp_.getNumRows()));
-        lp_.getMatrixByRow()->times(point.data(), activity.data());
-        for (std::size_t r = 0; r < activity.size(); ++r) {
-            if (activity[r] < lp_.getRowLower()[r] - kRowTolerance ||
-                activity[r] > lp_.getRowUpper()[r] + kRowTolerance) {
-                return true;
-            }
-        }
-        return false;
+    /// Of a report without a point there is nothing to drop.
+    [[nodiscard]] detail::PointVerdict verdict_on(MilpReport& report) const {
+        if (report.point.empty()) return detail::PointVerdict::kept;
+        const auto rows = static_cast<std::size_t>(lp_.getNumRows());
+        std::vector<double> activity(rows);
+        lp_.getMatrixByRow()->times(report.point.data(), activity.data());
+        return detail::drop_invented_point({activity, {lp_.getRowLower(), rows}, {lp_.getRowUpper(), rows}},
+                                           watch_.struck, report);
     }
 
     static std::string fixed(double value) {

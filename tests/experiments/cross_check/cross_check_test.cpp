@@ -83,6 +83,29 @@ TEST(CrossCheckJudge, RightAnswersAgree) {
     EXPECT_EQ(verdict.tight_proofs, 2U);
 }
 
+/// Who can start is asked from the answer that the first gave a metre behind, whatever that is, too.
+TEST(CrossCheckJudge, TheAnswerOfThePreviousFrameIsAStart) {
+    const LaneGraph of_previous_frame{{{0, 2}, {3, 5}}};
+    std::vector<LaneGraph> starts;
+    const Contestant contestant{
+        "right",
+        [&](const Scene& scene, const RldParameters& parameters, double) {
+            RldReport report = by_path_pair(scene, parameters);
+            if (scene.pose.position.x() < -0.5) report.lane_graph = of_previous_frame;
+            return report;
+        },
+        {},
+        [&](const Scene& scene, const RldParameters& parameters, double, const LaneGraph& start) {
+            starts.push_back(start);
+            return by_path_pair(scene, parameters);
+        }};
+    const CrossCheckVerdict verdict = judge(straight_case(), std::array{contestant}, 1000.0);
+    EXPECT_THAT(verdict.findings, testing::IsEmpty());
+    EXPECT_TRUE(std::ranges::any_of(
+        starts, [&](const LaneGraph& start) { return start.edges == of_previous_frame.edges; }));
+    EXPECT_GT(starts.size(), 3U);
+}
+
 TEST(CrossCheckJudge, NoLaneGraphIsAgreedOnAndCertified) {
     CrossCheckCase drawn = straight_case();
     drawn.scene.cones.resize(2);

@@ -35,7 +35,9 @@ RelaxationOptions without_limit(std::vector<std::size_t> sizes) {
 
 TEST(Relaxations, HoldsEverySolverWithoutProofAgainstPathPair) {
     const auto scenes = straight_scenes(0.3);
-    const auto rows = relaxation_rows(scenes, without_limit({8, 12}));
+    AnswerErrors errors;
+    const auto rows = relaxation_rows(scenes, without_limit({8, 12}), errors);
+    EXPECT_FALSE(errors.any_answered_nothing());
     const auto heuristics = std::ranges::count(rld_solvers(), false, &RldSolverEntry::exact);
     ASSERT_GT(heuristics, 0);
     ASSERT_THAT(rows, SizeIs(2 * (1 + heuristics)));
@@ -66,7 +68,8 @@ TEST(Relaxations, LeavesOutSizesThatNoSceneHasAndKeepsToTheLimit) {
     const auto scenes = straight_scenes(0.0);
     RelaxationOptions options = without_limit({8, 500});
     options.limit = 2;
-    const auto rows = relaxation_rows(scenes, options);
+    AnswerErrors errors;
+    const auto rows = relaxation_rows(scenes, options, errors);
     for (const RelaxationRow& row : rows) {
         EXPECT_EQ(row.cones, 8u);
         EXPECT_EQ(row.scenes, 2u);
