@@ -23,10 +23,16 @@ endmacro()
 function(conelane_compile_options target)
     set_target_properties(${target} PROPERTIES CXX_STANDARD 20 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
-    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                             -ffp-contract=off
-                                             $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
-                                             $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:-Werror>)
+    if(MSVC)
+        target_compile_options(${target} PRIVATE /W4 /permissive- /utf-8 /fp:precise
+                                                 $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:/WX>)
+        target_compile_definitions(${target} PRIVATE _USE_MATH_DEFINES NOMINMAX)
+    elseif(CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang|AppleClang)$")
+        target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                                 -ffp-contract=off
+                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+                                                 $<$<BOOL:${CONELANE_WARNINGS_AS_ERRORS}>:-Werror>)
+    endif()
 endfunction()
 
 # In release builds, -O3 is for the core. What waits for files and for the core compiles in half the time at LEVEL and with

@@ -129,19 +129,6 @@ struct Sums {
     }
 };
 
-AnswerErrors errors_among(std::span<const BackendRow> rows) {
-    AnswerErrors errors;
-    for (const BackendRow& row : rows) {
-        const std::string backend = fmt::format("{} n={}", row.backend.label(), row.cones);
-        if (row.status == SolveStatus::error) {
-            errors.add_error(backend, row.scene->scene.id, row.message);
-        } else {
-            errors.add_answer(backend);
-        }
-    }
-    return errors;
-}
-
 nlohmann::ordered_json to_json(const BackendRow& row) {
     nlohmann::ordered_json json{{"scene", row.scene->scene.id},
                                 {"track", row.scene->track},
@@ -270,6 +257,19 @@ std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes, con
         }
     }
     return rows;
+}
+
+AnswerErrors errors_among(std::span<const BackendRow> rows) {
+    AnswerErrors errors;
+    for (const BackendRow& row : rows) {
+        const std::string backend = fmt::format("{} n={}", row.backend.label(), row.cones);
+        if (row.status == SolveStatus::error) {
+            errors.add_error(backend, row.scene->scene.id, row.message);
+        } else {
+            errors.add_answer(backend);
+        }
+    }
+    return errors;
 }
 
 std::string backend_table(std::span<const BackendRow> rows) {

@@ -4,6 +4,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
+#include "experiments/comparison/answer_errors.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -62,6 +63,9 @@ struct BackendRow {
 /// backend's solver is not in this build.
 [[nodiscard]] std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes,
                                                    const BackendOptions& options);
+
+/// The answers by backend and size, and the errors among them.
+[[nodiscard]] AnswerErrors errors_among(std::span<const BackendRow> rows);
 
 /// A line per size and backend for a terminal. "differ": scenes whose proven optimum is more than
 /// kObjectiveTolerance above the lowest that any backend proved.

@@ -8,7 +8,7 @@ int main() {
     conelane::Scene scene{.id = "now", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};
     scene.cones = {{1, {2, 1.6}},   {2, {2, -1.6}},   {3, {5.2, 1.6}}, {4, {5.2, -1.6}},
                    {5, {8.4, 1.6}}, {6, {8.4, -1.6}}, {7, {8, 9}}};  // ids, positions [m]
-    for (const char* name : {"clc", "rld-shape"}) {
+    for (const char* name : {"clc", "rld-shape", "front"}) {
         auto detector = conelane::make_detector(name);
         const conelane::LaneAnswer answer = detector->detect(scene, {.time_limit_ms = 5000.0});
         if (answer.status != conelane::LaneStatus::found) return 1;

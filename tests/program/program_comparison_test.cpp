@@ -55,6 +55,24 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
+/// Where one of the tables cannot be written, those of an earlier run stay as they were.
+TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
+    const std::string compare =
+        "compare --tracks generated:circle --condition paper --every 30 --fp 0 --methods clc --out r";
+    ASSERT_EQ(run(compare).exit_code, 0);
+    file_with("scores of before\n", "r/scores.jsonl");
+    file_with("results of before\n", "r/results.jsonl");
+    ASSERT_TRUE(std::filesystem::remove(path("r/table.txt")));
+    ASSERT_TRUE(std::filesystem::create_directory(path("r/table.txt")));
+    expect_refused(compare, {"r/table.txt", "is a folder"});
+    EXPECT_EQ(text_of(path("r/scores.jsonl")), "scores of before\n");
+    EXPECT_EQ(text_of(path("r/results.jsonl")), "results of before\n");
+    ASSERT_TRUE(std::filesystem::remove(path("r/table.txt")));
+    EXPECT_EQ(run(compare).exit_code, 0);
+    EXPECT_THAT(text_of(path("r/table.txt")), HasSubstr("clc"));
+    EXPECT_THAT(text_of(path("r/scores.jsonl")), HasSubstr("circle/pose_0000"));
+}
+
 // Centre lines are 25 m long: of poses that are 40 m apart nobody can say whether they agree.
 TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
     for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {

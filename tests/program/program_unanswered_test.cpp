@@ -100,6 +100,27 @@ TEST_F(Unanswered, AComparisonInWhichOneMethodAnswersNothingEndsBy1) {
     FAIL() << "no line of the method";
 }
 
+TEST_F(Unanswered, CertificatesThatClaimNothingEndBy1) {
+    make_scenes("--fp 0.3");
+    const auto scenes = std::ranges::count(text_of(path("s.scenes.jsonl")), '\n');
+    for (const std::string whole : {"", "--whole "}) {
+        const std::string certify = "certify " + whole + "--scenes s.scenes.jsonl --out c.jsonl ";
+        const Outcome none = run(certify + "--time-limit 1e-6");
+        EXPECT_EQ(none.exit_code, 1);
+        EXPECT_EQ(std::ranges::count(none.errors, '\n'), scenes) << none.errors;
+        EXPECT_THAT(none.errors, HasSubstr("kidney/pose_0000/fp_0.30/range_30: nothing is claimed"));
+        EXPECT_EQ(std::ranges::count(text_of(path("c.jsonl")), '\n'), scenes);
+        const Outcome verified = run("certify --scenes s.scenes.jsonl --verify c.jsonl");
+        if (!whole.empty()) {
+            EXPECT_EQ(verified.exit_code, 1);
+            EXPECT_EQ(verified.errors, "conelane: c.jsonl: no certificate is verified\n");
+        }
+        const Outcome all = run(certify + "--nearest 12");
+        EXPECT_EQ(all.exit_code, 0);
+        EXPECT_EQ(all.errors, "");
+    }
+}
+
 TEST_F(Unanswered, AnErrorAmongAnswersIsSaidAndIsNoFailure) {
     make_scenes("");
     ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);

@@ -28,6 +28,7 @@ namespace {
 
 using testing::Each;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 SceneSet some_scenes(std::vector<double> rates) {
     SceneOptions options;
@@ -105,6 +106,23 @@ TEST(Backends, SolveOnlyTheSizesThatTheyTake) {
     EXPECT_THAT(solved,
                 ElementsAre(Solved(6, "exhaustive"), Solved(6, "path-pair"), Solved(10, "path-pair")));
     EXPECT_THAT(statuses, Each(SolveStatus::optimal));
+}
+
+/// What `conelane study` ends by 1 for: a backend that answers none of the scenes of a size.
+TEST(Backends, OneThatAnswersNoSceneOfASizeIsNamed) {
+    const AnnotatedScene scene = straight_scene();
+    std::vector<BackendRow> rows(4);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        rows[k].scene = &scene;
+        rows[k].backend = backend_of("cbc");
+        rows[k].cones = k < 2 ? 6 : 8;
+        rows[k].status = k == 3 ? SolveStatus::error : SolveStatus::optimal;
+    }
+    rows[3].message = "out of paper";
+    EXPECT_FALSE(errors_among(rows).any_answered_nothing());
+    EXPECT_THAT(errors_among(rows).lines(), ElementsAre(HasSubstr("cbc/tight n=8: 1 of 2 answers")));
+    rows[2].status = SolveStatus::error;
+    EXPECT_TRUE(errors_among(rows).any_answered_nothing());
 }
 
 TEST(Backends, AgreeWithAndWithoutAStart) {

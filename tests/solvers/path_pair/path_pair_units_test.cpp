@@ -163,6 +163,7 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
     parameters.t_crit = 1e6;
     parameters.d_min = 1.0;
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
+    EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 1, 5})) << "both legs pass 1";
     parameters = {};
     parameters.d_min = 3.6;
     EXPECT_FALSE(Offers(six_cone_lane(1.6), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too narrow";
