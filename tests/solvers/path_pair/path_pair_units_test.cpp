@@ -149,6 +149,17 @@ TEST(PathPairIncumbent, TakesNoLaneGraphWithoutTwoFarEndsThatFit) {
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too far apart";
 }
 
+/// Whatever they cost: (5) allows a cone two edges.
+TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
+    RldParameters parameters;
+    parameters.t_crit = 1e6;
+    parameters.d_min = 0.1;
+    Offers lane(six_cone_lane(), parameters);
+    lane.incumbent.set_cutoff(1e6);
+    EXPECT_FALSE(lane.offer({0, 1, 2}, {3, 1, 5}));
+    EXPECT_TRUE(lane.offer({0, 1, 2}, {3, 4, 5}));
+}
+
 TEST(PathPairIncumbent, PaysForEveryTurn) {
     RldParameters parameters;
     parameters.t_crit = 1e6;
@@ -163,7 +174,6 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
     parameters.t_crit = 1e6;
     parameters.d_min = 1.0;
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 2})) << "both legs end at 2";
-    EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 1, 5})) << "both legs pass 1";
     parameters = {};
     parameters.d_min = 3.6;
     EXPECT_FALSE(Offers(six_cone_lane(1.6), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too narrow";
