@@ -11,9 +11,12 @@
 #include <cstddef>
 #include <fstream>
 #include <limits>
+#include <locale>
 #include <set>
 #include <span>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -25,6 +28,20 @@ constexpr double kVersion = 1.0;
 constexpr int kMaxDepth = 64;
 /// The shipped file has 0.13 MB.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
+
+/// The double nearest to a number of JSON; infinite where it is out of range.
+double double_of(std::string_view number) {
+    double value = 0.0;
+#if defined(__cpp_lib_to_chars)
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+#else  // libc++ before version 20 reads no doubles so
+    std::istringstream stream{std::string(number)};
+    stream.imbue(std::locale::classic());
+    if (!(stream >> value)) return std::numeric_limits<double>::infinity();
+#endif
+    return value;
+}
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -104,10 +121,7 @@ class JsonReader {
             if (peek() == '+' || peek() == '-') ++at_;
             digits();
         }
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(text_.data() + begin, text_.data() + at_, value);
-        if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
-        return value;
+        return double_of(text_.substr(begin, at_ - begin));
     }
 
     /// Passes over any value.
