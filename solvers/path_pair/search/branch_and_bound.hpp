@@ -210,7 +210,6 @@ class BranchAndBound {
     std::vector<int> index_;
     std::vector<char> keep_successor_;
     std::vector<char> edge_alive_;
-    std::vector<int> walk_edges_;
     double unit_ = 0.0;      ///< of the multipliers; 0 where they are any numbers
     Multipliers evaluated_;  ///< in whole units, those last evaluated
     std::vector<Multipliers> stages_;
