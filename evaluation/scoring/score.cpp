@@ -241,9 +241,10 @@ class Truth {
     double length_m_ = 0.0;
 };
 
-/// Share of those for which the answer of `of` is known that it is yes; nothing where none is.
+/// Share of yes among the scenes whose answer is known; nothing where none is. Scenes of unknown answer do
+/// not count.
 template <typename Of>
-std::optional<double> share_of_known(std::span<const SceneScore> scores, Of of) {
+std::optional<double> share_among_known(std::span<const SceneScore> scores, Of of) {
     std::size_t known = 0;
     std::size_t yes = 0;
     for (const SceneScore& score : scores) {
@@ -281,9 +282,10 @@ class Steering {
     std::vector<double> heading_rad_;
 };
 
-/// Share of the scores for which `holds`; nothing where none of them is `known`.
+/// Share of all scenes for which `holds`; nothing where none of them is `known`. Scenes that are not known
+/// count as failures.
 template <typename Known, typename Holds>
-std::optional<double> share_if_known(std::span<const SceneScore> scores, Known known, Holds holds) {
+std::optional<double> share_of_all(std::span<const SceneScore> scores, Known known, Holds holds) {
     if (std::ranges::none_of(scores, known)) return std::nullopt;
     return static_cast<double>(std::ranges::count_if(scores, holds)) / static_cast<double>(scores.size());
 }
@@ -427,22 +429,22 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
         result.category_share[i] = static_cast<double>(of_category[i]) / count;
     }
     result.success_share = static_cast<double>(successes) / count;
-    result.usable_share = share_of_known(scores, [](const SceneScore& score) { return score.usable(); });
+    result.usable_share = share_among_known(scores, [](const SceneScore& score) { return score.usable(); });
     const std::optional<double> steady_share =
-        share_of_known(scores, [](const SceneScore& score) { return score.steady; });
+        share_among_known(scores, [](const SceneScore& score) { return score.steady; });
     if (steady_share) result.unsteady_share = 1.0 - *steady_share;
     steering.summarise(result);
     if (!ious.empty()) result.mean_iou = mean(ious);
     if (result.accuracy_scenes > 0) {
         result.accurate_share = static_cast<double>(accurate) / static_cast<double>(result.accuracy_scenes);
     }
-    result.solved_share = share_if_known(
+    result.solved_share = share_of_all(
         scores, [](const SceneScore& score) { return score.solved_to_optimality.has_value(); },
         [](const SceneScore& score) { return score.solved_to_optimality.value_or(false); });
-    result.complete_share = share_if_known(
+    result.complete_share = share_of_all(
         scores, [](const SceneScore& score) { return score.enumeration.has_value(); },
         [](const SceneScore& score) { return score.enumeration && score.enumeration->complete; });
-    result.best_candidate_near_share = share_if_known(
+    result.best_candidate_near_share = share_of_all(
         scores, [](const SceneScore& score) { return score.enumeration && score.enumeration->best_iou; },
         [](const SceneScore& score) {
             return score.enumeration && score.enumeration->best_iou.value_or(0.0) >= kNearGroundTruthIou;
