@@ -58,7 +58,7 @@ inline constexpr std::array<std::string_view, 2> kClcWeights{"rank_net_extended"
 /// How a detector of a name is made, and all that is known of it.
 struct DetectorRecipe {
     std::string_view name;
-    std::string_view meaning;
+    std::string_view description;
     LearnedFrom learned_from;
     std::variant<RldRecipe, FrontRecipe, OtherRecipe> how;
 

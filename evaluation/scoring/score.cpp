@@ -97,10 +97,10 @@ bool is_width_kept(const LaneOutline& lane) {
     }
     const auto near_enough = [&](const std::vector<Point>& side, const std::vector<Point>& other) {
         return std::ranges::all_of(side, [&](const Point& vertex) {
-            return foot_on_polyline(vertex, other, lane.closed).distance_m <= kWidestLane_m;
+            return foot_on_polyline(vertex, other, lane.closed).distance_m <= kMaxLaneWidth_m;
         });
     };
-    return narrowest_m >= kNarrowestLane_m && near_enough(lane.left, lane.right) &&
+    return narrowest_m >= kMinLaneWidth_m && near_enough(lane.left, lane.right) &&
            near_enough(lane.right, lane.left);
 }
 
@@ -165,7 +165,7 @@ class Truth {
             driven_ = driven_ahead(scene.scene, boundaries->driven, scene.range_m);
             length_m_ = polyline_length_m(driven_);
         }
-        if (driven_.empty() || length_m_ < kShortestDriven_m) {
+        if (driven_.empty() || length_m_ < kMinDriven_m) {
             throw InvalidInput("ground_truth",
                                "scene \"" + scene.scene.id + "\" needs at least two cones on each side");
         }
@@ -266,14 +266,14 @@ class Steering {
         if (error.heading_rad) heading_rad_.push_back(*error.heading_rad);
     }
     void summarise(ScoreSummary& summary) const {
-        constexpr double kMost = 0.95;
+        constexpr double kMax = 0.95;
         if (!lateral_m_.empty()) {
             summary.lateral_median_m = median(lateral_m_);
-            summary.lateral_p95_m = quantile(lateral_m_, kMost);
+            summary.lateral_p95_m = quantile(lateral_m_, kMax);
         }
         if (!heading_rad_.empty()) {
             summary.heading_median_rad = median(heading_rad_);
-            summary.heading_p95_rad = quantile(heading_rad_, kMost);
+            summary.heading_p95_rad = quantile(heading_rad_, kMax);
         }
     }
 
@@ -325,9 +325,9 @@ LaneOutline outline_of(const Lane& lane, const Scene& scene) {
 }
 
 bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-    return has_ground_truth(scene) || (boundaries != nullptr && !boundaries->driven.empty() &&
-                                       polyline_length_m(driven_ahead(scene.scene, boundaries->driven,
-                                                                      scene.range_m)) >= kShortestDriven_m);
+    return has_ground_truth(scene) ||
+           (boundaries != nullptr && !boundaries->driven.empty() &&
+            polyline_length_m(driven_ahead(scene.scene, boundaries->driven, scene.range_m)) >= kMinDriven_m);
 }
 
 std::optional<bool> SceneScore::usable() const {

@@ -43,9 +43,9 @@ std::unique_ptr<LaneDetector> longest_lane() {
 std::vector<Method> all_methods() {
     std::vector<Method> all;
     for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe});
-    const auto add = [&all](std::string_view name, std::string_view meaning, const LearnedFrom& learned_from,
-                            const auto& how, bool is_ablation) {
-        all.push_back({{name, meaning, learned_from, how}, is_ablation});
+    const auto add = [&all](std::string_view name, std::string_view description,
+                            const LearnedFrom& learned_from, const auto& how, bool is_ablation) {
+        all.push_back({{name, description, learned_from, how}, is_ablation});
     };
     if (find_rld_solver("cbc") != nullptr) {
         add("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", LearnedFrom::nothing(),

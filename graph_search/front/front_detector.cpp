@@ -17,10 +17,10 @@ namespace {
 constexpr double kRepeatBonus = 0.2;
 /// A lane that is less surely usable gives way to a boundary seen alone. Of views that show one boundary
 /// only, half have such a lane at best; of the others one in a thousand.
-constexpr double kLeastConfidence = 0.1;
-constexpr std::size_t kFewestInsteadOfALane = 5;  ///< cones of such a boundary: fewer are found in noise
+constexpr double kMinConfidence = 0.1;
+constexpr std::size_t kMinConesInsteadOfLane = 5;  ///< cones of such a boundary: fewer are found in noise
 /// A wide lane may widen by a quarter before its far ends are dropped.
-constexpr double kWidestEnd = 1.25;
+constexpr double kMaxEndWidth = 1.25;
 
 double distance_m(const FrontMap& map, Vertex cone, std::span<const Vertex> boundary) {
     const Point& at = map.position(cone);
@@ -73,8 +73,8 @@ class FrontDetector final : public LaneDetector {
             answer.trusted_m =
                 judge_.trusted_m(front_, chosen_, {cones_[kLeft].size(), cones_[kRight].size()});
             if (limits.keep_candidates) add_best_lanes(scene, *answer.enumeration);
-            if (!answer.stopped_by && *answer.confidence < kLeastConfidence)
-                answer_one_boundary(scene, budget, answer, kFewestInsteadOfALane);
+            if (!answer.stopped_by && *answer.confidence < kMinConfidence)
+                answer_one_boundary(scene, budget, answer, kMinConesInsteadOfLane);
             const bool two_sided = !answer.lane.left.empty() && !answer.lane.right.empty();
             if (evidence_ && two_sided) evidence_->remember(answer.lane);
         } else if (!answer.stopped_by) {
@@ -188,9 +188,10 @@ void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cone
         }
         return counts;
     };
-    std::array<std::size_t, 2> counts = evened(kWidestLane_m);
+    std::array<std::size_t, 2> counts = evened(kMaxLaneWidth_m);
     if (std::min(counts[kLeft], counts[kRight]) < 2) {
-        counts = evened(kWidestEnd * 0.5 * (near_width_m(map, left, right) + near_width_m(map, right, left)));
+        counts =
+            evened(kMaxEndWidth * 0.5 * (near_width_m(map, left, right) + near_width_m(map, right, left)));
     }
     left.resize(counts[kLeft]);
     right.resize(counts[kRight]);

@@ -35,7 +35,7 @@ struct Options {
     std::optional<std::size_t> nearest;
     double time_limit_ms = std::numeric_limits<double>::infinity();
     bool whole = false;
-    std::int64_t most_steps = 5'000'000;
+    std::int64_t max_steps = 5'000'000;
     ParameterSource parameters;
 };
 
@@ -114,7 +114,7 @@ std::vector<SearchCertificateRecord> search_certificates(const Options& options,
     });
     for (const std::string& scene : unproven) {
         fmt::print(stderr, "{}: nothing is claimed: no bound below {:g} was proven in time\n", scene,
-                   SearchCertificate::kMostBound);
+                   SearchCertificate::kMaxBound);
     }
     return records;
 }
@@ -189,7 +189,7 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
                         ConeId missing{};
                         SearchVerdict verdict;
                         if (const auto certificate = from_search_record(scene, record, missing)) {
-                            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
+                            verdict = verify_search(scene, parameters, *certificate, options.max_steps);
                         } else {
                             verdict.reason = no_cone(missing);
                         }
@@ -202,7 +202,7 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
                     });
     fmt::print(
         "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
-        optima, infeasible, bounds, refused, unverified, options.most_steps);
+        optima, infeasible, bounds, refused, unverified, options.max_steps);
     if (refused + unverified > 0) throw CLI::RuntimeError(1);
 }
 
@@ -244,7 +244,7 @@ void add_certify_command(CLI::App& program) {
         "of the whole search, verified in rational arithmetic, not of the root's bound alone; --verify "
         "sees what a file holds");
     command
-        .add_option("--most-steps", options->most_steps,
+        .add_option("--most-steps", options->max_steps,
                     "labels and fronts for verifying a whole search; with more it is not verified")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
         ->capture_default_str();
