@@ -10,7 +10,7 @@ namespace conelane {
 
 std::vector<DetectorInfo> detectors() {
     std::vector<DetectorInfo> all;
-    for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe.name, recipe.meaning});
+    for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe.name, recipe.description});
     return all;
 }
 

@@ -48,38 +48,58 @@ std::unique_ptr<LaneDetector> astar_lane() {
     return make_astar_lane_detector(tuned_astar_lane_parameters());
 }
 
+/// The costs of the shape were set by hand with these in view.
+constexpr std::array<std::string_view, 7> kShapeCourses{"fsd_1", "fsd_2", "fsd_4", "fsd_5",
+                                                        "fsd_6", "fsd_7", "fsd_9"};
+/// Those of the records beside the parameters.
+constexpr std::array<std::string_view, 8> kDelaunayBeamCourses{
+    "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
+/// The same, and those with which in view hitting a cone got a cost.
+constexpr std::array<std::string_view, 12> kAstarLaneCourses{"fsd_1",
+                                                             "fsd_2",
+                                                             "fsd_4",
+                                                             "fsd_5",
+                                                             "fsd_6",
+                                                             "fsd_7",
+                                                             "fsd_9",
+                                                             "pacsim_FSE22",
+                                                             "pacsim_FSG19",
+                                                             "pacsim_FSO20",
+                                                             "eufs_small_track",
+                                                             "eufs_peanut"};
+
 constexpr std::array kRecipes{
     DetectorRecipe{"front",
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
                    "missed cones, answers with one boundary where it sees one alone",
-                   FrontRecipe{shipped_front_options}},
+                   LearnedFrom(kFrontWeights), FrontRecipe{shipped_front_options}},
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
-                   FrontRecipe{warm_front_options}},
+                   LearnedFrom(kFrontWeights), FrontRecipe{warm_front_options}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
                    "search, a network on all features trained for usable lanes",
-                   OtherRecipe{clc}},
+                   LearnedFrom(kClcWeights), OtherRecipe{clc}},
     DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
-                   OtherRecipe{warm_clc}},
+                   LearnedFrom(kClcWeights), OtherRecipe{warm_clc}},
     DetectorRecipe{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)",
-                   OtherRecipe{paper_clc}},
-    DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones",
+                   LearnedFrom(kPaperClcWeights), OtherRecipe{paper_clc}},
+    DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones", LearnedFrom::nothing(),
                    RldRecipe{path_pair, {}}},
     DetectorRecipe{"rld-shape",
                    "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
-                   RldRecipe{path_pair, {}, true}},
+                   LearnedFrom({}, kShapeCourses), RldRecipe{path_pair, {}, true}},
     DetectorRecipe{"rld-context", "RLD by the exact search among more cones, then cut to the nearest",
-                   RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
+                   LearnedFrom::nothing(), RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
     DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
-                   RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+                   LearnedFrom({}, kShapeCourses), RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
     DetectorRecipe{"delaunay-beam",
                    "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
                    "the lowest cost",
-                   OtherRecipe{delaunay_beam}},
+                   LearnedFrom({}, kDelaunayBeamCourses), OtherRecipe{delaunay_beam}},
     DetectorRecipe{
         "astar-lane",
         "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
-        OtherRecipe{astar_lane}},
+        LearnedFrom({}, kAstarLaneCourses), OtherRecipe{astar_lane}},
 };
 
 /// Shows its detector the nearest cones only.

@@ -4,6 +4,7 @@
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -30,10 +31,35 @@ struct OtherRecipe {
     std::unique_ptr<LaneDetector> (*make)();
 };
 
-/// How a detector of a name is made.
+/// What a detector has learned from. It has no default: no detector of a table can lack it.
+class LearnedFrom {
+  public:
+    /// `weights`: names of shipped weight files, whose records name their courses. `courses`: further
+    /// courses, which were in view when parameters were set.
+    constexpr explicit LearnedFrom(std::span<const std::string_view> weights,
+                                   std::span<const std::string_view> courses = {})
+        : weights_(weights), courses_(courses) {}
+    static constexpr LearnedFrom nothing() { return LearnedFrom({}); }
+
+    [[nodiscard]] constexpr std::span<const std::string_view> weights() const { return weights_; }
+    [[nodiscard]] constexpr std::span<const std::string_view> courses() const { return courses_; }
+
+  private:
+    std::span<const std::string_view> weights_;
+    std::span<const std::string_view> courses_;
+};
+
+// Of shipped weights: for tables of detectors.
+inline constexpr std::array<std::string_view, 1> kFrontWeights{"front"};
+inline constexpr std::array<std::string_view, 1> kPaperClcWeights{"rank_net_paper"};
+inline constexpr std::array<std::string_view, 1> kClcRankWeights{"rank_net_extended"};
+inline constexpr std::array<std::string_view, 2> kClcWeights{"rank_net_extended", "step_scores"};
+
+/// How a detector of a name is made, and all that is known of it.
 struct DetectorRecipe {
     std::string_view name;
-    std::string_view meaning;
+    std::string_view description;
+    LearnedFrom learned_from;
     std::variant<RldRecipe, FrontRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.

@@ -32,7 +32,7 @@ bool RowWriter::stop() {
     constexpr int kRowsPerClock = 8;
     if (deadline_ == nullptr || struck_ || --until_clock_ > 0) return struck_.has_value();
     until_clock_ = kRowsPerClock;
-    if (program_.columns.size() + program_.entry_columns.size() > kMostProgramEntries) {
+    if (program_.columns.size() + program_.entry_columns.size() > kMaxProgramEntries) {
         struck_ = StopReason::memory;
     } else if (deadline_->passed()) {
         struck_ = StopReason::time;

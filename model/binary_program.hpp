@@ -66,7 +66,7 @@ struct BinaryProgram {
 
 /// A program that is built within limits has at most so many columns and entries together, below 300 MB; a
 /// solver that is loaded with it takes several times as much.
-inline constexpr std::size_t kMostProgramEntries = 4'000'000;
+inline constexpr std::size_t kMaxProgramEntries = 4'000'000;
 
 /// Writes rows into a program; terms of the same column add up.
 class RowWriter {

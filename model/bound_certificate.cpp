@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-6;
-constexpr double kShortestEdge = 1e-100;  // [m], as in formulation.md
+constexpr double kMinEdge = 1e-100;  // [m], as in formulation.md
 // A walk that is shorter by less than this is not shorter.
 constexpr double kShorter = 1e-12;
 
@@ -134,7 +134,7 @@ class Verification {
             for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
                 const Point vector = position(j) - position(i);
                 const double length = vector.norm();
-                if (length < kShortestEdge || spacing_cost(length) > p_.s_crit + kTieTolerance) continue;
+                if (length < kMinEdge || spacing_cost(length) > p_.s_crit + kTieTolerance) continue;
                 edges.push_back({i, j, vector, length, 0.5 * (position(i) + position(j))});
             }
         }

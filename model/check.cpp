@@ -14,7 +14,7 @@ using Real = long double;
 constexpr Real kTie = 1e-9L;
 constexpr double kAgreement = 1e-6;
 /// Of a shorter edge the squares, and so the direction, may be lost in double.
-constexpr Real kShortestEdge = 1e-100L;
+constexpr Real kMinEdge = 1e-100L;
 
 struct Vector {
     Real x;
@@ -209,7 +209,7 @@ class Checker {
         return weight;
     }
 
-    /// Of an edge between a blue and a yellow cone, and of one near the car on the side that its colour is
+    /// Of an edge between a blue and a yellow cone, and of one near the car on the side that its color is
     /// not.
     [[nodiscard]] int color_faults(const Edge& edge, bool along_the_heading) const {
         std::set<ConeColor> colors{scene_.cones[edge.i].color, scene_.cones[edge.j].color};
@@ -240,7 +240,7 @@ class Checker {
                 const Vector way = position(l) - position(k);
                 const Real apart = length(way);
                 const Real spacing = fourth((apart - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
-                if (apart < kShortestEdge || spacing > static_cast<Real>(p_.s_crit) + kTie) continue;
+                if (apart < kMinEdge || spacing > static_cast<Real>(p_.s_crit) + kTie) continue;
                 edges.push_back(
                     {k, l, apart, along(position(k), position(l), 0.5L), {way.x / apart, way.y / apart}});
             }
@@ -286,7 +286,7 @@ class Checker {
             const Real spacing = fourth((length(v) - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
             if (spacing > static_cast<Real>(p_.s_crit) + kTie)
                 violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
-            if (length(v) < kShortestEdge) violated_for_good("edge " + name(edge) + " has no length");
+            if (length(v) < kMinEdge) violated_for_good("edge " + name(edge) + " has no length");
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
             sum += static_cast<Real>(p_.w_s) * spacing +

@@ -9,8 +9,8 @@ namespace {
 /// A column that rows fix at 0 may cost what it likes: costs that grow with the fourth power of a distance
 /// would end in numbers that no solver can take.
 double column_cost(double cost, bool never_chosen) {
-    constexpr double kMostOfNeverChosen = 1e9;
-    return never_chosen && !(cost <= kMostOfNeverChosen) ? kMostOfNeverChosen : cost;
+    constexpr double kMaxOfNeverChosen = 1e9;
+    return never_chosen && !(cost <= kMaxOfNeverChosen) ? kMaxOfNeverChosen : cost;
 }
 double column_cost(const ProblemEdge& edge) {
     return column_cost(edge.cost, edge.high_cost);
@@ -33,7 +33,7 @@ void LaneGraphModel::update(const LaneGraphProblem& problem) {
 
 std::optional<StopReason> LaneGraphModel::update(const LaneGraphProblem& problem, const Deadline& deadline) {
     const bool too_large =
-        is_too_large(problem) || problem.turns.size() + problem.edges.size() > kMostProgramEntries;
+        is_too_large(problem) || problem.turns.size() + problem.edges.size() > kMaxProgramEntries;
     const std::optional<StopReason> struck =
         too_large ? std::optional(StopReason::memory) : update(problem, &deadline);
     if (struck) problem_cones_.reset();

@@ -28,7 +28,7 @@ class LaneGraphModel {
     void update(const LaneGraphProblem& problem);
 
     /// As above, or the limit that the building ran into: where the deadline passes, or problem or program
-    /// are too large (see is_too_large and kMostProgramEntries), there is no program until the next update.
+    /// are too large (see is_too_large and kMaxProgramEntries), there is no program until the next update.
     [[nodiscard]] std::optional<StopReason> update(const LaneGraphProblem& problem, const Deadline& deadline);
 
     [[nodiscard]] const BinaryProgram& program() const { return program_; }

@@ -13,7 +13,7 @@ namespace conelane {
 namespace {
 
 /// Of a shorter edge the squares, and so the direction, may be lost in double [m].
-constexpr double kShortestEdge_m = 1e-100;
+constexpr double kMinEdge_m = 1e-100;
 
 /// More than distances are off by [m].
 constexpr double kMargin_m = 1e-3;
@@ -48,7 +48,7 @@ class Limits {
 
     /// Where all pairs of so many cones are more edges than a problem may have.
     bool stop_for_table(std::size_t cones) {
-        if (deadline_ != nullptr && cones > 1 && cones * (cones - 1) / 2 > kMostProblemEdges)
+        if (deadline_ != nullptr && cones > 1 && cones * (cones - 1) / 2 > kMaxProblemEdges)
             struck_ = StopReason::memory;
         return struck_.has_value();
     }
@@ -102,7 +102,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
     const double across = std::abs(cross(v, heading));
     const Point midpoint = 0.5 * (from + to);
     const double midpoint_distance = (midpoint - scene.pose.position).norm();
-    const double car_distance = std::max(midpoint_distance, kShortestCarDistance_m);
+    const double car_distance = std::max(midpoint_distance, kMinCarDistance_m);
     const double spacing_cost = fourth_power((length - p.d_e) / p.d_t);  // (18)
     const double heading_cost = fourth_power(across / car_distance);     // (25)
     const auto acute_angle = [&] { return std::atan2(across, std::abs(v.dot(heading))); };
@@ -122,7 +122,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             0.0,
             p.w_s * spacing_cost + p.w_p * heading_cost + p.w_color * color_cost - benefit,
             along_heading,
-            !within(spacing_cost, p.s_crit) || length < kShortestEdge_m};
+            !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
 }
 
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
@@ -182,7 +182,7 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     std::size_t turns = 0;
     for (const std::vector<std::size_t>& incident : problem.incident)
         turns += incident.empty() ? 0 : incident.size() * (incident.size() - 1) / 2;
-    problem.turns.reserve(std::min(turns, kMostProblemEntries));
+    problem.turns.reserve(std::min(turns, kMaxProblemEntries));
     for (std::size_t middle = 0; middle < problem.cone_count; ++middle) {
         const std::vector<std::size_t>& incident = problem.incident[middle];
         const Point& at = scene.cones[middle].position;
@@ -246,7 +246,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
                 problem.distance_m[i][j] = problem.distance_m[j][i] = distance;
             } else if (!within(fourth_power((distance - parameters.d_e) / parameters.d_t),
                                parameters.s_crit) ||
-                       distance < kShortestEdge_m) {
+                       distance < kMinEdge_m) {
                 continue;
             }
             problem.edges.push_back(make_problem_edge(scene, heading, parameters, i, j, distance));
@@ -327,8 +327,8 @@ LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters,
 }
 
 bool is_too_large(const LaneGraphProblem& problem) {
-    return problem.edges.size() > kMostProblemEdges ||
-           problem.turns.size() + problem.conflicts.size() + problem.far_apart.size() > kMostProblemEntries;
+    return problem.edges.size() > kMaxProblemEdges ||
+           problem.turns.size() + problem.conflicts.size() + problem.far_apart.size() > kMaxProblemEntries;
 }
 
 double objective(const LaneGraphProblem& problem, const LaneGraph& graph) {

@@ -33,7 +33,7 @@ NearEdges::NearEdges(const Scene& scene, std::span<const ProblemEdge> edges, dou
     for (const ProblemEdge& edge : edges) {
         ++first_edge_[edge.i + 1];
         const Point along = scene.cones[edge.j].position - scene.cones[edge.i].position;
-        longest_m_ = std::max(longest_m_, along.norm());
+        max_length_m_ = std::max(max_length_m_, along.norm());
     }
     for (std::size_t cone = 0; cone < n; ++cone) first_edge_[cone + 1] += first_edge_[cone];
     codes_.resize(n);
@@ -46,7 +46,7 @@ NearEdges::NearEdges(const Scene& scene, std::span<const ProblemEdge> edges, dou
 /// An edge of the cone and one within reach of it have all their ends within two lengths and the reach.
 void NearEdges::gather(std::size_t cone) {
     around_ = cone;
-    const double radius_m = 2.0 * longest_m_ + reach_m_;
+    const double radius_m = 2.0 * max_length_m_ + reach_m_;
     const Point& centre = scene_.cones[cone].position;
     // Each one is written, and kept where the count goes on: a branch would be guessed wrong too often.
     std::size_t count = 0;

@@ -56,7 +56,7 @@ class NearEdges {
     const Scene& scene_;
     std::span<const ProblemEdge> edges_;
     double reach_m_;
-    double longest_m_ = 0.0;
+    double max_length_m_ = 0.0;
     std::vector<std::size_t> first_edge_;    ///< by cone, the first edge that begins at it or at a later one
     std::vector<unsigned> codes_;            ///< by cone
     std::size_t around_ = kNone;             ///< the cone around which those below are gathered

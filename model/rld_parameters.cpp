@@ -9,39 +9,39 @@
 namespace conelane {
 namespace {
 
-constexpr double kLongest_m = 1000.0;
-constexpr double kLargestWeight = 1e6;
+constexpr double kMaxLength_m = 1000.0;
+constexpr double kMaxWeight = 1e6;
 /// What a difference is divided by [m] or [rad]. By less than a millimetre, costs hang on rounding.
-constexpr double kLeastThreshold = 1e-3;
+constexpr double kMinThreshold = 1e-3;
 using P = RldParameters;
 
 constexpr std::array<RldParameterField, 15> kFields{{
-    {"d_e", &P::d_e, "m", 0.0, kLongest_m, "expected spacing"},
-    {"d_t", &P::d_t, "m", kLeastThreshold, kLongest_m, "spacing threshold"},
+    {"d_e", &P::d_e, "m", 0.0, kMaxLength_m, "expected spacing"},
+    {"d_t", &P::d_t, "m", kMinThreshold, kMaxLength_m, "spacing threshold"},
     {"theta_e", &P::theta_e, "rad", 0.0, std::numbers::pi, "expected interior angle"},
-    {"theta_t", &P::theta_t, "rad", kLeastThreshold, std::numbers::pi, "angle threshold"},
-    {"w_s", &P::w_s, "1", 0.0, kLargestWeight, "weight of the spacing cost"},
-    {"w_t", &P::w_t, "1", 0.0, kLargestWeight, "weight of the angle cost"},
-    {"w_p", &P::w_p, "1", 0.0, kLargestWeight, "weight of the heading cost"},
-    {"w_b", &P::w_b, "1", 0.0, kLargestWeight, "benefit of an edge"},
-    {"d_min", &P::d_min, "m", 0.0, kLongest_m, "smallest distance between the boundaries"},
-    {"d_h", &P::d_h, "m", 0.0, kLongest_m, "radius of the heading constraint"},
+    {"theta_t", &P::theta_t, "rad", kMinThreshold, std::numbers::pi, "angle threshold"},
+    {"w_s", &P::w_s, "1", 0.0, kMaxWeight, "weight of the spacing cost"},
+    {"w_t", &P::w_t, "1", 0.0, kMaxWeight, "weight of the angle cost"},
+    {"w_p", &P::w_p, "1", 0.0, kMaxWeight, "weight of the heading cost"},
+    {"w_b", &P::w_b, "1", 0.0, kMaxWeight, "benefit of an edge"},
+    {"d_min", &P::d_min, "m", 0.0, kMaxLength_m, "smallest distance between the boundaries"},
+    {"d_h", &P::d_h, "m", 0.0, kMaxLength_m, "radius of the heading constraint"},
     {"theta_heading", &P::theta_heading, "rad", 0.0, std::numbers::pi / 2, "angle of the heading constraint"},
-    {"d_near", &P::d_near, "m", 0.0, kLongest_m, "radius of the near endpoints"},
-    {"d_max", &P::d_max, "m", 0.0, kLongest_m, "largest distance of the far endpoints"},
-    {"s_crit", &P::s_crit, "1", 0.0, kLargestWeight, "largest spacing cost"},
-    {"t_crit", &P::t_crit, "1", 0.0, kLargestWeight, "largest angle cost"},
+    {"d_near", &P::d_near, "m", 0.0, kMaxLength_m, "radius of the near endpoints"},
+    {"d_max", &P::d_max, "m", 0.0, kMaxLength_m, "largest distance of the far endpoints"},
+    {"s_crit", &P::s_crit, "1", 0.0, kMaxWeight, "largest spacing cost"},
+    {"t_crit", &P::t_crit, "1", 0.0, kMaxWeight, "largest angle cost"},
 }};
 
 constexpr std::array<RldParameterField, 8> kExtraFields{{
-    {"w_color", &P::w_color, "1", 0.0, kLargestWeight, "weight of the colour cost"},
-    {"w_u", &P::w_u, "1", 0.0, kLargestWeight, "weight of uneven spacing"},
-    {"w_v", &P::w_v, "1", 0.0, kLargestWeight, "weight of the facing cost"},
-    {"w_n", &P::w_n, "1", 0.0, kLargestWeight, "benefit of a near endpoint beside the car"},
-    {"d_w", &P::d_w, "m", 0.0, kLongest_m, "expected width of the lane"},
-    {"d_v", &P::d_v, "m", kLeastThreshold, kLongest_m, "facing threshold"},
-    {"theta_v", &P::theta_v, "rad", kLeastThreshold, std::numbers::pi, "facing angle threshold"},
-    {"d_l", &P::d_l, "m", kLeastThreshold, kLongest_m, "facing length threshold"},
+    {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
+    {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
+    {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
+    {"w_n", &P::w_n, "1", 0.0, kMaxWeight, "benefit of a near endpoint beside the car"},
+    {"d_w", &P::d_w, "m", 0.0, kMaxLength_m, "expected width of the lane"},
+    {"d_v", &P::d_v, "m", kMinThreshold, kMaxLength_m, "facing threshold"},
+    {"theta_v", &P::theta_v, "rad", kMinThreshold, std::numbers::pi, "facing angle threshold"},
+    {"d_l", &P::d_l, "m", kMinThreshold, kMaxLength_m, "facing length threshold"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {

@@ -19,9 +19,9 @@ struct SearchCertificate {
     static constexpr int kFractionBits = 24;
     using Units = std::int64_t;  ///< of 2^-24
     /// A larger multiplier is none. Where one would have to be, the enumeration is left with more to do.
-    static constexpr Units kMostUnits = Units{1} << 62;
+    static constexpr Units kMaxUnits = Units{1} << 62;
     /// A bound or an objective of that size has no certificate: verifiers keep sums in 128 bits.
-    static constexpr double kMostBound = 1e12;
+    static constexpr double kMaxBound = 1e12;
 
     struct Stage {
         std::vector<Units> cone;                            ///< by cone of the scene

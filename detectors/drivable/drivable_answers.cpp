@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTrustedByRule_m = 10.0;
 /// How far past the limit a lane that was found may be looked at.
-constexpr double kLeastTime_ms = 0.5;
+constexpr double kMinTime_ms = 0.5;
 
 /// No points where the lane is outside of what `drivable` takes, such as one of more than 20 km. Nothing
 /// where the deadline passes.
@@ -41,8 +41,8 @@ bool cut_at_first_gap(Lane& lane, const Scene& scene) {
     std::vector<ConeId>& boundary = lane.left.empty() ? lane.right : lane.left;
     const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
     const auto gap = std::ranges::adjacent_find(
-        boundary, [&, longest_m = DrivableOptions{}.longest_gap_m](ConeId a, ConeId b) {
-            return (at(b) - at(a)).norm() > longest_m;
+        boundary, [&, max_length_m = DrivableOptions{}.max_gap_m](ConeId a, ConeId b) {
+            return (at(b) - at(a)).norm() > max_length_m;
         });
     if (gap == boundary.end()) return false;
     boundary.erase(gap + 1, boundary.end());
@@ -59,7 +59,7 @@ class DrivableAnswers final : public LaneDetector {
         const Deadline whole(limits.time_limit_ms);
         LaneAnswer answer = detector_->detect(scene, limits);
         if (answer.status != LaneStatus::found) return answer;
-        const Deadline deadline(std::max(whole.remaining_ms(), kLeastTime_ms));
+        const Deadline deadline(std::max(whole.remaining_ms(), kMinTime_ms));
         std::optional<DrivableLane> lane = drivable_or_none(answer, scene, deadline);
         if (lane && lane->points.empty() && cut_at_first_gap(answer.lane, scene))
             lane = drivable_or_none(answer, scene, deadline);

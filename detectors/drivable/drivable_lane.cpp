@@ -19,12 +19,12 @@
 namespace conelane {
 namespace {
 
-constexpr double kFarthestCone_m = 1e6;
-constexpr double kLongestBoundary_m = 2e4;
+constexpr double kMaxConeDistance_m = 1e6;
+constexpr double kMaxBoundary_m = 2e4;
 /// How near a boundary the spline may come at a rung; between rungs it may come nearer by half their spacing.
 constexpr double kClearance_m = 0.25;
 /// Distance of a rung's middle from either boundary below which the lane is too narrow.
-constexpr double kNarrowestHalf_m = 0.4;
+constexpr double kMinHalfWidth_m = 0.4;
 /// Along a boundary from the place of a rung: no other part of it counts there, such as the next leg of a
 /// hairpin.
 constexpr double kReach_m = 12.0;
@@ -46,8 +46,8 @@ void validate(const DrivableOptions& options) {
     };
     require(options.step_m, 0.01, 100.0, "step_m");
     require(options.smoothing_m, 0.25, 5.0, "smoothing_m");
-    require(options.usual_width_m, 1.0, kWidestLane_m, "usual_width_m");
-    if (!(options.longest_gap_m > 0.0)) throw InvalidInput("longest_gap_m", "is not above 0");
+    require(options.default_width_m, 1.0, kMaxLaneWidth_m, "usual_width_m");
+    if (!(options.max_gap_m > 0.0)) throw InvalidInput("longest_gap_m", "is not above 0");
 }
 
 struct Sides {
@@ -82,7 +82,7 @@ Sides positions(const Lane& lane, const Scene& scene) {
         if (place == wanted.end() || place->id != cone.id) continue;
         if (place->found) refuse(*place, "is in the scene twice");
         const Point relative = cone.position - scene.pose.position;
-        if (!(relative.cwiseAbs().maxCoeff() <= kFarthestCone_m)) {
+        if (!(relative.cwiseAbs().maxCoeff() <= kMaxConeDistance_m)) {
             refuse(*place, "is not finite or farther than 1000 km from the car");
         }
         place->found = true;
@@ -98,7 +98,7 @@ void require_boundary(const LaneBoundary& boundary, bool closed, const char* key
     if (closed && boundary.vertices().size() < 3) {
         throw InvalidInput(key, "has fewer than three cones, yet the lane is closed");
     }
-    if (boundary.length_m() > kLongestBoundary_m) throw InvalidInput(key, "is longer than 20 km");
+    if (boundary.length_m() > kMaxBoundary_m) throw InvalidInput(key, "is longer than 20 km");
 }
 
 /// Fills an empty side from the other one. Returns whether it did.
@@ -107,7 +107,7 @@ bool infer(std::vector<Point>& empty, const std::vector<Point>& known, bool know
     if (!empty.empty() || known.empty() || closed) return false;
     const LaneBoundary boundary(known, false);
     require_boundary(boundary, false, known_is_left ? "left" : "right");
-    empty = inferred_boundary(boundary, known_is_left, options.usual_width_m);
+    empty = inferred_boundary(boundary, known_is_left, options.default_width_m);
     return !empty.empty();
 }
 
@@ -131,8 +131,8 @@ class CentreLine {
     /// The point at an arc length, which wraps on a closed line. Widths are absent where a boundary is on
     /// the wrong side or nearer than it may.
     [[nodiscard]] DrivablePoint at(double arc_m) const;
-    /// Stretches of the gaps longer than `longest_gap_m`, by arc length from the first rung.
-    [[nodiscard]] std::vector<BridgedGap> gaps(double longest_gap_m) const;
+    /// Stretches of the gaps longer than `max_gap_m`, by arc length from the first rung.
+    [[nodiscard]] std::vector<BridgedGap> gaps(double max_gap_m) const;
 
   private:
     [[nodiscard]] std::size_t count() const { return ladder_.rungs.size(); }
@@ -145,8 +145,8 @@ class CentreLine {
     [[nodiscard]] double arc_between(double from, double to) const;
     [[nodiscard]] double parameter_at(double arc_m) const;
     [[nodiscard]] double width_m(const LaneBoundary& boundary, double place_m, const Point& from,
-                                 const Point& normal, double most_m) const;
-    void add_gaps(const LaneBoundary& boundary, bool on_left, double longest_gap_m,
+                                 const Point& normal, double max_m) const;
+    void add_gaps(const LaneBoundary& boundary, bool on_left, double max_gap_m,
                   std::vector<BridgedGap>& gaps) const;
 
     RungLadder ladder_;
@@ -167,7 +167,7 @@ SmoothingSpline CentreLine::fit(double smoothing_m, const TimeCheck& check_time)
         middles.push_back(rung.middle());
         const double half_m = std::min(ladder_.left.distance_m(middles.back(), rung.left_m, kReach_m),
                                        ladder_.right.distance_m(middles.back(), rung.right_m, kReach_m));
-        room_m_.push_back(half_m >= kNarrowestHalf_m ? half_m - kClearance_m : -1.0);
+        room_m_.push_back(half_m >= kMinHalfWidth_m ? half_m - kClearance_m : -1.0);
     }
     const std::size_t n = count();
     std::vector<double> weights(n, 1.0);
@@ -295,9 +295,9 @@ double CentreLine::usable_length_m(double from_m) const {
 }
 
 double CentreLine::width_m(const LaneBoundary& boundary, double place_m, const Point& from,
-                           const Point& normal, double most_m) const {
+                           const Point& normal, double max_m) const {
     const auto hit_m = boundary.ray_hit_m(from, normal, place_m, kReach_m);
-    if (hit_m && *hit_m <= most_m) return *hit_m;
+    if (hit_m && *hit_m <= max_m) return *hit_m;
     const Point& first = boundary.vertices().front();
     const Point& last = boundary.vertices().back();
     const Point& end = (first - from).squaredNorm() < (last - from).squaredNorm() ? first : last;
@@ -311,15 +311,15 @@ DrivablePoint CentreLine::at(double arc_m) const {
     const Point normal = Point(-jet.first.y(), jet.first.x()) / speed;
     const auto nearest = static_cast<std::size_t>(std::lround(parameter_m / ladder_.spacing_m)) % count();
     const Rung& rung = ladder_.rungs[nearest];
-    const double most_m = 2.0 * (rung.left - rung.right).norm();  // farther is another stretch of the lane
+    const double max_m = 2.0 * (rung.left - rung.right).norm();  // farther is another stretch of the lane
     return {.position = jet.position,
             .heading_rad = turning_angle({1.0, 0.0}, jet.first),
             .curvature_1pm = cross(jet.first, jet.second) / (speed * speed * speed),
-            .width_left_m = width_m(ladder_.left, rung.left_m, jet.position, normal, most_m),
-            .width_right_m = width_m(ladder_.right, rung.right_m, jet.position, -normal, most_m)};
+            .width_left_m = width_m(ladder_.left, rung.left_m, jet.position, normal, max_m),
+            .width_right_m = width_m(ladder_.right, rung.right_m, jet.position, -normal, max_m)};
 }
 
-void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double longest_gap_m,
+void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double max_gap_m,
                           std::vector<BridgedGap>& gaps) const {
     // Places of successive rungs rise, on a closed boundary by one length in all.
     const auto place = [&](std::size_t k) {
@@ -337,7 +337,7 @@ void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double lon
     for (std::size_t i = 0; i < boundary.segments(); ++i) {
         double from_m = boundary.segment_start_m(i);
         double to_m = boundary.segment_end_m(i);
-        if (to_m - from_m <= longest_gap_m) continue;
+        if (to_m - from_m <= max_gap_m) continue;
         double turn_m = 0.0;
         if (closed()) {
             if (from_m < place(0)) from_m += boundary.length_m();
@@ -351,10 +351,10 @@ void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double lon
     }
 }
 
-std::vector<BridgedGap> CentreLine::gaps(double longest_gap_m) const {
+std::vector<BridgedGap> CentreLine::gaps(double max_gap_m) const {
     std::vector<BridgedGap> result;
-    add_gaps(ladder_.left, true, longest_gap_m, result);
-    add_gaps(ladder_.right, false, longest_gap_m, result);
+    add_gaps(ladder_.left, true, max_gap_m, result);
+    add_gaps(ladder_.right, false, max_gap_m, result);
     return result;
 }
 
@@ -393,7 +393,7 @@ DrivableLane checked_drivable(const Lane& lane, const Scene& scene, const Drivab
     const LaneBoundary right(sides.right, lane.closed);
     require_boundary(left, lane.closed, "left");
     require_boundary(right, lane.closed, "right");
-    RungLadder ladder = lane_rungs(left, right, kWidestLane_m, check_time);
+    RungLadder ladder = lane_rungs(left, right, kMaxLaneWidth_m, check_time);
     if (ladder.rungs.empty()) return {};
     const CentreLine line(std::move(ladder), options.smoothing_m, check_time);
     check_time();
@@ -427,7 +427,7 @@ DrivableLane checked_drivable(const Lane& lane, const Scene& scene, const Drivab
     }
     if (!(result.length_m > 0.0)) result.points.clear();
     result.bridged =
-        seen_from(line.gaps(options.longest_gap_m), foot_m, line.closed() ? line.length_m() : 0.0, result);
+        seen_from(line.gaps(options.max_gap_m), foot_m, line.closed() ? line.length_m() : 0.0, result);
     return result;
 }
 

@@ -8,7 +8,7 @@ namespace conelane {
 namespace {
 
 constexpr double kStep_m = 0.5;
-constexpr double kMostSteps = 2000.0;      ///< of a boundary; a longer one is sampled more coarsely
+constexpr double kMaxSteps = 2000.0;       ///< of a boundary; a longer one is sampled more coarsely
 constexpr double kDirectionReach_m = 2.5;  ///< to either side
 /// A point across that is nearer to the known boundary than this share of the width belongs to no lane.
 constexpr double kNearestShare = 0.85;
@@ -29,7 +29,7 @@ std::vector<Point> inferred_boundary(const LaneBoundary& known, bool known_is_le
     std::vector<Point> across;
     if (known.segments() == 0) return across;
     const double length_m = known.length_m();
-    const double steps = std::clamp(std::ceil(length_m / kStep_m), 1.0, kMostSteps);
+    const double steps = std::clamp(std::ceil(length_m / kStep_m), 1.0, kMaxSteps);
     const double side = known_is_left ? -1.0 : 1.0;
     for (double k = 0.0; k <= steps; ++k) {
         const double arc_m = length_m * k / steps;

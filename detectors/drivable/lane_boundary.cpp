@@ -55,15 +55,15 @@ void LaneBoundary::for_segments_near(double place_m, double reach_m, const Visit
 
 double LaneBoundary::distance_m(const Point& query, double place_m, double reach_m) const {
     if (segments() == 0) return (query - vertices_.front()).norm();
-    double least_m2 = std::numeric_limits<double>::infinity();
+    double min_m2 = std::numeric_limits<double>::infinity();
     for_segments_near(place_m, reach_m, [&](std::size_t i) {
         const Segment s = segment(i);
         const Point along = s.to - s.from;
         const Point to_query = query - s.from;
         const double share = std::clamp(to_query.dot(along) / along.squaredNorm(), 0.0, 1.0);
-        least_m2 = std::min(least_m2, (to_query - share * along).squaredNorm());
+        min_m2 = std::min(min_m2, (to_query - share * along).squaredNorm());
     });
-    return std::sqrt(least_m2);
+    return std::sqrt(min_m2);
 }
 
 std::optional<double> LaneBoundary::ray_hit_m(const Point& from, const Point& unit_direction, double place_m,

@@ -13,9 +13,9 @@ namespace {
 constexpr double kSample_m = 0.5;          ///< between matched places of a boundary, at most
 constexpr double kSamplesAtMost = 2000.0;  ///< of a boundary; a longer one is sampled more coarsely
 constexpr double kRungSpacing_m = 0.25;    ///< at most
-constexpr double kShortestMidline_m = 0.5;
+constexpr double kMinMidline_m = 0.5;
 constexpr double kWholeMean = 1.01;        ///< a mean within this of the least one is as good
-constexpr double kLeastAdvance = 0.2;      ///< of an extended lane, as a share of the boundary's
+constexpr double kMinAdvance = 0.2;        ///< of an extended lane, as a share of the boundary's
 constexpr double kDirectionReach_m = 2.5;  ///< to either side, of the direction along an extended lane
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -99,7 +99,7 @@ std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> ri
     std::vector<double> row_before(columns);
     std::size_t i_end = left.size() - 1;
     std::size_t j_end = columns - 1;
-    double least_mean = kNever;
+    double min_mean = kNever;
     for (std::size_t i = 0; i < left.size(); ++i) {
         check_time();
         std::swap(row, row_before);
@@ -117,14 +117,14 @@ std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> ri
             }
             if (!open_end || (i + 1 < left.size() && j + 1 < columns)) continue;
             const double mean = row[j] / static_cast<double>(i + j + 1);
-            if (mean > least_mean) continue;  // of equal ones the last: a longer lane
-            least_mean = mean;
+            if (mean > min_mean) continue;  // of equal ones the last: a longer lane
+            min_mean = mean;
             i_end = i;
             j_end = j;
         }
     }
     const double whole_mean = row.back() / static_cast<double>(left.size() + columns - 1);
-    if (open_end && whole_mean <= kWholeMean * least_mean) {  // both end side by side
+    if (open_end && whole_mean <= kWholeMean * min_mean) {  // both end side by side
         i_end = left.size() - 1;
         j_end = columns - 1;
     }
@@ -193,7 +193,7 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
         if (side_of_line(middle) * inside < 0.0) break;
         // In a sharp corner, seen from outside, the way back is no lane.
         const double travelled_m = (along[k].point - along[k - 1].point).norm();
-        if ((middle - last_middle).dot(direction) < kLeastAdvance * travelled_m) break;
+        if ((middle - last_middle).dot(direction) < kMinAdvance * travelled_m) break;
         last_middle = middle;
         kept.ended.push_back(opposite);
         kept.beside.push_back(along[k]);
@@ -211,7 +211,7 @@ void space_evenly(RungLadder& ladder) {
         arc_m.push_back(arc_m.back() + (rungs[i].middle() - rungs[i - 1].middle()).norm());
     }
     const double total_m = arc_m.back();
-    if (!(total_m >= kShortestMidline_m)) return;
+    if (!(total_m >= kMinMidline_m)) return;
     const auto gaps =
         2 * std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(total_m / (2.0 * kRungSpacing_m))));
     ladder.spacing_m = total_m / static_cast<double>(gaps);

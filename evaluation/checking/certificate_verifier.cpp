@@ -30,21 +30,21 @@ Exact from_units(SearchCertificate::Units units) {
 class Verification {
   public:
     Verification(const Scene& scene, const RldParameters& parameters, const SearchCertificate& certificate,
-                 std::int64_t most_steps)
+                 std::int64_t max_steps)
         : scene_(scene),
           p_(parameters),
           certificate_(certificate),
           exact_(make_exact_scene(scene, parameters)) {
         verdict_.kind = Kind::verified;
-        steps_left_ = most_steps;
+        steps_left_ = max_steps;
     }
 
-    SearchVerdict run(std::int64_t most_steps) {
+    SearchVerdict run(std::int64_t max_steps) {
         if (std::isnan(certificate_.bound)) refuse("the bound is not a number");
         if (certificate_.bound == -std::numeric_limits<double>::infinity()) refuse("nothing is claimed");
         if (is_open()) check_lane_graph();
         if (is_open()) check_parts();
-        verdict_.steps = most_steps - steps_left_;
+        verdict_.steps = max_steps - steps_left_;
         return std::move(verdict_);
     }
 
@@ -63,7 +63,7 @@ class Verification {
         const Exact cost = cost_of(*certificate_.lane_graph);
         const double claimed = *certificate_.objective;
         const double tolerance = kAgreement * std::max(1.0, std::abs(claimed));
-        if (!(std::abs(claimed) < SearchCertificate::kMostBound) || cost < exact_below(claimed - tolerance) ||
+        if (!(std::abs(claimed) < SearchCertificate::kMaxBound) || cost < exact_below(claimed - tolerance) ||
             cost > exact_below(claimed + tolerance)) {
             return refuse(fmt::format("the lane graph does not cost {}", claimed));
         }
@@ -102,7 +102,7 @@ class Verification {
     void check_parts() {
         if (std::isinf(certificate_.bound)) {
             limit_ = exact_.cost_limit();
-        } else if (std::abs(certificate_.bound) < SearchCertificate::kMostBound) {
+        } else if (std::abs(certificate_.bound) < SearchCertificate::kMaxBound) {
             limit_ = exact_below(certificate_.bound) + 1;
         } else {
             return refuse("the bound is out of range");
@@ -189,7 +189,7 @@ class Verification {
         for (const SearchCertificate::Stage& stage : part.stages) {
             if (stage.cone.size() != scene_.cones.size()) return "there is not one multiplier for each cone";
             const auto bad = [](SearchCertificate::Units units) {
-                return units < 0 || units > SearchCertificate::kMostUnits;
+                return units < 0 || units > SearchCertificate::kMaxUnits;
             };
             if (std::ranges::any_of(stage.cone, bad) || bad(stage.heading) ||
                 std::ranges::any_of(stage.clique, [&](const auto& price) { return bad(price.second); })) {
@@ -235,9 +235,9 @@ class Verification {
 }  // namespace
 
 SearchVerdict verify_search(const Scene& scene, const RldParameters& parameters,
-                            const SearchCertificate& certificate, std::int64_t most_steps) {
+                            const SearchCertificate& certificate, std::int64_t max_steps) {
     try {
-        return Verification(scene, parameters, certificate, most_steps).run(most_steps);
+        return Verification(scene, parameters, certificate, max_steps).run(max_steps);
     } catch (const std::overflow_error&) {
         return {Kind::unverified, "holds sums beyond 128 bits", 0, false};
     } catch (const std::range_error&) {

@@ -25,10 +25,10 @@ struct SearchVerdict {
 /// `check` accepts costs less than the certificate's bound, and that its own lane graph is one and costs what
 /// is claimed. Shares no code with any solver nor with the builder of their problem.
 ///
-/// Edges, excluded pairs and the colours' part of a cost are asked of `check`. The other costs are computed
+/// Edges, excluded pairs and the colors' part of a cost are asked of `check`. The other costs are computed
 /// to 50 digits and rounded down to whole numbers of 2^-60; from there on every sum and comparison is exact.
-/// `most_steps` limits the labels and fronts of the enumeration, all parts together.
+/// `max_steps` limits the labels and fronts of the enumeration, all parts together.
 [[nodiscard]] SearchVerdict verify_search(const Scene& scene, const RldParameters& parameters,
-                                          const SearchCertificate& certificate, std::int64_t most_steps);
+                                          const SearchCertificate& certificate, std::int64_t max_steps);
 
 }  // namespace conelane

@@ -22,7 +22,7 @@ using Kind = InfeasibilityVerdict::Kind;
 /// What the search by the checker alone has not decided by then takes it too long to wait for.
 constexpr double kOwnSearch_ms = 5'000.0;
 
-/// Multipliers are for the pairing near_far, and colours change costs alone.
+/// Multipliers are for the pairing near_far, and colors change costs alone.
 bool multipliers_prove_it(const Scene& scene, RldParameters parameters, double time_limit_ms) {
     if (parameters.pairing != Pairing::near_far) return false;
     parameters.w_color = 0.0;

@@ -23,7 +23,7 @@ namespace conelane {
 namespace {
 
 constexpr std::size_t kKeptErrors = 4096;
-constexpr std::size_t kLongestWords = 200;
+constexpr std::size_t kMaxWords = 200;
 
 [[noreturn]] void fail(int error, const char* what) {
     throw std::system_error(error, std::generic_category(), what);
@@ -164,7 +164,7 @@ void read_available(int& descriptor, std::string& text, std::size_t at_most) {
 }  // namespace
 
 void ChildProcess::read_output() {
-    read_available(output_, received_, kLongestLine);
+    read_available(output_, received_, kMaxLine);
 }
 
 void ChildProcess::read_errors() {
@@ -185,7 +185,7 @@ ChildProcess::Reply ChildProcess::ask(std::string_view text, double limit_ms) {
             return reply;
         }
         searched = received_.size();
-        if (searched > kLongestLine) return {Outcome::too_long, {}};
+        if (searched > kMaxLine) return {Outcome::too_long, {}};
         if (output_ < 0) return {Outcome::closed_output, {}};
         if (input_ < 0 && !pending_.empty()) return {Outcome::closed_input, {}};
         const double left_ms = deadline.remaining_ms();
@@ -231,7 +231,7 @@ std::string ChildProcess::end(double patience_ms) {
     while (!has_exited() && !deadline.passed()) {
         read_errors();
         std::string last_output;  // read, so that the program is not held up
-        read_available(output_, last_output, kLongestLine);
+        read_available(output_, last_output, kMaxLine);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     std::string how = reap();
@@ -246,7 +246,7 @@ std::string ChildProcess::last_words() const {
     std::size_t end = error_tail_.size();
     for (int lines = 0; lines < 2 && end > 0;) {
         const std::size_t begin = error_tail_.find_last_of('\n', end - 1) + 1;  // npos + 1 is 0
-        const std::string line = error_tail_.substr(begin, std::min(end - begin, kLongestWords));
+        const std::string line = error_tail_.substr(begin, std::min(end - begin, kMaxWords));
         end = begin > 0 ? begin - 1 : 0;
         if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
         if (!words.empty()) words.insert(0, " | ");

@@ -26,7 +26,7 @@ class ChildProcess {
     enum class Outcome {
         line,
         late,           ///< no line within the limit
-        too_long,       ///< more than kLongestLine without a newline
+        too_long,       ///< more than kMaxLine without a newline
         closed_input,   ///< it does not read on
         closed_output,  ///< it has ended, or will not write on
     };
@@ -34,7 +34,7 @@ class ChildProcess {
         Outcome outcome;
         std::string line;  ///< without newline
     };
-    static constexpr std::size_t kLongestLine = std::size_t{4} << 20U;
+    static constexpr std::size_t kMaxLine = std::size_t{4} << 20U;
 
     /// Sends a text of whole lines that asks for no answer, as far as the program reads; the rest goes out
     /// with the next question.

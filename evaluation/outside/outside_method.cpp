@@ -21,11 +21,11 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kProgram = "exec:";
 constexpr std::string_view kLanes = "lanes:";
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMaxName = 64;
 
 /// It becomes part of a file name.
 bool is_name(std::string_view name) {
-    return !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
+    return !name.empty() && name.size() <= kMaxName && name.front() != '.' &&
            std::ranges::all_of(name, [](char c) {
                return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
                       std::string_view("._+-").find(c) != std::string_view::npos;
@@ -63,7 +63,7 @@ MethodCard read_card(const JsonNode& json) {
     card.name = find_string(json, "name");
     card.address = find_string(json, "address");
     card.licence = find_string(json, "licence");
-    card.colour_used = find_boolean(json, "colour_used");
+    card.color_used = find_boolean(json, "colour_used");
     card.history_used = find_boolean(json, "history_used");
     if (const auto courses = json.find("training_courses")) {
         card.training_courses.emplace();
@@ -81,7 +81,7 @@ ordered_json to_json(const MethodCard& card) {
     put_if_said("name", card.name);
     put_if_said("address", card.address);
     put_if_said("licence", card.licence);
-    put_if_said("colour_used", card.colour_used);
+    put_if_said("colour_used", card.color_used);
     put_if_said("history_used", card.history_used);
     put_if_said("training_courses", card.training_courses);
     return json;
@@ -93,7 +93,7 @@ std::string MethodCard::summary() const {
     std::vector<std::string> parts;
     if (name) parts.push_back(*name);
     if (licence) parts.push_back("licence " + *licence);
-    if (colour_used) parts.emplace_back(*colour_used ? "uses colour" : "no colour");
+    if (color_used) parts.emplace_back(*color_used ? "uses colour" : "no colour");
     if (history_used) parts.emplace_back(*history_used ? "uses history" : "no history");
     if (training_courses) {
         parts.push_back(training_courses->empty()
@@ -123,7 +123,7 @@ std::optional<OutsideMethod> parse_outside_method(std::string_view text) {
     if (!is_name(method.name)) {
         throw InvalidInput("method",
                            fmt::format("'{}' is no name for {}: letters, digits and ._+- only, at most {}",
-                                       method.name, form, kLongestName));
+                                       method.name, form, kMaxName));
     }
     if (const auto card = card_path(method)) method.card = read_method_card(*card);
     return method;

@@ -13,11 +13,11 @@ struct MethodCard {
     std::optional<std::string> name;
     std::optional<std::string> address;
     std::optional<std::string> licence;
-    std::optional<bool> colour_used;
+    std::optional<bool> color_used;
     std::optional<bool> history_used;  ///< from scene to scene of a lap
     std::optional<std::vector<std::string>> training_courses;
 
-    /// One line for a table's foot: "ft-fsd-path-planning; MIT; no colour; ...".
+    /// One line for a table's foot: "ft-fsd-path-planning; MIT; no color; ...".
     [[nodiscard]] std::string summary() const;
 };
 

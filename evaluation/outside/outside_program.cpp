@@ -21,7 +21,7 @@ std::string fault_of_outcome(ChildProcess::Outcome outcome, double limit_ms) {
         case ChildProcess::Outcome::late:
             return fmt::format("no answer within {:.0f} ms", limit_ms);
         case ChildProcess::Outcome::too_long:
-            return fmt::format("more than {} bytes without a newline", ChildProcess::kLongestLine);
+            return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
         case ChildProcess::Outcome::closed_input:
             return "the program reads no more";
         case ChildProcess::Outcome::closed_output:

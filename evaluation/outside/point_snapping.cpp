@@ -47,11 +47,11 @@ std::string fault_of_ids(const char* key, const std::vector<ConeId>& ids,
 }
 
 std::string fault_of_points(const char* key, const std::vector<Point>& points) {
-    if (points.size() > kMostPoints)
-        return fmt::format("{}: {} points are more than {}", key, points.size(), kMostPoints);
+    if (points.size() > kMaxPoints)
+        return fmt::format("{}: {} points are more than {}", key, points.size(), kMaxPoints);
     for (const Point& point : points) {
-        if (point.cwiseAbs().maxCoeff() > kFarthest_m)
-            return fmt::format("{}: a point is farther than {} m", key, kFarthest_m);
+        if (point.cwiseAbs().maxCoeff() > kMaxCoordinate_m)
+            return fmt::format("{}: a point is farther than {} m", key, kMaxCoordinate_m);
     }
     return "";
 }
@@ -114,8 +114,8 @@ std::string tangle_of(const LaneRecord& record, const Scene& scene) {
         for (std::size_t j = i + 1; j < edges.size(); ++j) {
             const bool are_neighbours = j == i + 1 && edges[i].of_left == edges[j].of_left;
             if (are_neighbours || !segments_intersect(edges[i].segment, edges[j].segment)) continue;
-            if (++meetings > kMostMeetings)
-                return fmt::format("its boundaries cross more than {} times", kMostMeetings);
+            if (++meetings > kMaxMeetings)
+                return fmt::format("its boundaries cross more than {} times", kMaxMeetings);
         }
     }
     return "";

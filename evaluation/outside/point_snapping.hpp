@@ -18,14 +18,14 @@ inline constexpr double kSnapReach_m = 0.3;
 void snap_to_cones(LaneRecord& record, const Scene& scene);
 
 /// What makes an answer from outside no answer to the scene: a cone that is not there, one that is twice in a
-/// boundary, more than kMostPoints points, a point beyond kFarthest_m. Empty where nothing does.
-inline constexpr std::size_t kMostPoints = 1000;
-inline constexpr double kFarthest_m = 1e7;
+/// boundary, more than kMaxPoints points, a point beyond kMaxCoordinate_m. Empty where nothing does.
+inline constexpr std::size_t kMaxPoints = 1000;
+inline constexpr double kMaxCoordinate_m = 1e7;
 [[nodiscard]] std::string fault_of(const LaneRecord& record, const Scene& scene);
 
-/// That the edges of the boundaries meet more than kMostMeetings times, neighbours not counted; empty where
+/// That the edges of the boundaries meet more than kMaxMeetings times, neighbours not counted; empty where
 /// they do not. Such a tangle is no lane, and its area takes minutes. Precondition: fault_of finds nothing.
-inline constexpr std::size_t kMostMeetings = 500;
+inline constexpr std::size_t kMaxMeetings = 500;
 [[nodiscard]] std::string tangle_of(const LaneRecord& record, const Scene& scene);
 
 }  // namespace conelane

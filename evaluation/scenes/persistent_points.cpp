@@ -32,13 +32,13 @@ std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     Point lowest(kInfinite, kInfinite);
     Point highest = -lowest;
-    double most_points = 0.0;
+    double max_points = 0.0;
     for (const PersistentView& view : views) {
         lowest = lowest.cwiseMin(view.view.centre);
         highest = highest.cwiseMax(view.view.centre);
-        most_points = std::max(most_points, view.expected_points);
+        max_points = std::max(max_points, view.expected_points);
     }
-    if (!(most_points > 0.0)) return {};
+    if (!(max_points > 0.0)) return {};
 
     // Thinning: as many points as the densest view asks for, all over the box; each stays with the share that
     // its place asks for.
@@ -46,7 +46,7 @@ std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
     highest += Point(radius_m, radius_m);
     const Point size = highest - lowest;
     const double view_m2 = std::numbers::pi * radius_m * radius_m / 2.0;
-    const auto count = std::lround(most_points * size.x() * size.y() / view_m2);
+    const auto count = std::lround(max_points * size.x() * size.y() / view_m2);
     boost::random::uniform_real_distribution<double> any_x_m(lowest.x(), highest.x());
     boost::random::uniform_real_distribution<double> any_y_m(lowest.y(), highest.y());
     boost::random::uniform_01<double> uniform;
@@ -56,7 +56,7 @@ std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
         const double y_m = any_y_m(random);
         const double share = uniform(random);
         const Point point(x_m, y_m);
-        if (share * most_points < mean_expected_points(views, point)) points.push_back(point);
+        if (share * max_points < mean_expected_points(views, point)) points.push_back(point);
     }
     return points;
 }

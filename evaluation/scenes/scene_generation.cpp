@@ -36,7 +36,7 @@ namespace conelane {
 struct Course {
     const Track& track;
     TrackBoundaries polylines;
-    std::vector<Cone> cones;  ///< of the track, with the ids and colours that scenes show
+    std::vector<Cone> cones;  ///< of the track, with the ids and colors that scenes show
     std::unordered_set<ConeId> boundary_ids;
     std::vector<Viewpoint> lap;  ///< along the whole course; empty where no false positives persist
 };
@@ -46,10 +46,10 @@ namespace {
 using Generator = boost::random::mt19937_64;
 
 /// At most 99 false positives for a point seen; ids are drawn from a space with room for as many.
-constexpr double kHighestRate = 0.99;
-constexpr std::int64_t kSmallestIdSpace = 10'000;
+constexpr double kMaxRate = 0.99;
+constexpr std::int64_t kMinIdSpace = 10'000;
 constexpr std::int64_t kIdsPerCone = 128;
-constexpr double kFarthest_m = 1e8;
+constexpr double kMaxCoordinate_m = 1e8;
 /// Travel between the poses whose views decide where false positives persist.
 constexpr double kLapStep_m = 1.1;
 
@@ -78,7 +78,7 @@ Point rounded(const Point& point) {
 }
 
 std::int64_t id_space(const Track& track) {
-    return std::max(kSmallestIdSpace, kIdsPerCone * static_cast<std::int64_t>(track.cones.size()));
+    return std::max(kMinIdSpace, kIdsPerCone * static_cast<std::int64_t>(track.cones.size()));
 }
 
 ConeId draw_new_id(Generator& generator, std::int64_t space, std::unordered_set<ConeId>& used) {
@@ -183,7 +183,7 @@ std::string rate_text(double rate) {
 
 constexpr std::array kFalseColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown};
 
-/// Draws id and, with colours, colour of false positives of a course.
+/// Draws id and, with colors, color of false positives of a course.
 class FalsePositives {
   public:
     FalsePositives(const Course& course, bool with_color)
@@ -500,23 +500,24 @@ Condition adapted(Condition condition, const SceneOptions& options) {
 }
 
 void require_near_origin(const Point& position, const std::string& key) {
-    if (!(position.cwiseAbs().maxCoeff() <= kFarthest_m)) {
-        throw InvalidInput(key, fmt::format("must be within {} m of the origin on each axis", kFarthest_m));
+    if (!(position.cwiseAbs().maxCoeff() <= kMaxCoordinate_m)) {
+        throw InvalidInput(key,
+                           fmt::format("must be within {} m of the origin on each axis", kMaxCoordinate_m));
     }
 }
 
 }  // namespace
 
 void validate(const SceneOptions& options) {
-    constexpr double kLargest = 1000.0;
-    require_list(options.false_positive_rates, 0.0, kHighestRate, "fp");
-    require_list(options.ranges_m, 0.1, kLargest, "range");
-    require_between(options.every_m, 0.01, kLargest, "every");
+    constexpr double kMax = 1000.0;
+    require_list(options.false_positive_rates, 0.0, kMaxRate, "fp");
+    require_list(options.ranges_m, 0.1, kMax, "range");
+    require_between(options.every_m, 0.01, kMax, "every");
     if (options.nearest == 0U) throw InvalidInput("nearest", "must be at least 1");
     static_cast<void>(conditions_of(options));
-    require_between(options.noise_sigma_m.value_or(0.0), 0.0, kLargest, "noise");
-    require_between(options.pose_noise_lateral_m.value_or(0.0), 0.0, kLargest, "pose-noise");
-    require_between(options.pose_noise_yaw_rad.value_or(0.0), 0.0, kLargest, "pose-noise");
+    require_between(options.noise_sigma_m.value_or(0.0), 0.0, kMax, "noise");
+    require_between(options.pose_noise_lateral_m.value_or(0.0), 0.0, kMax, "pose-noise");
+    require_between(options.pose_noise_yaw_rad.value_or(0.0), 0.0, kMax, "pose-noise");
     const double miss_rate = options.miss_rate.value_or(0.0);
     if (!(miss_rate >= 0.0 && miss_rate < 1.0)) {
         throw InvalidInput("miss", "must be in [0, 1)");

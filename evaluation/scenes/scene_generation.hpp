@@ -29,8 +29,8 @@ struct SceneOptions {
     std::optional<double> pose_noise_yaw_rad;
     std::optional<double> miss_rate;  ///< in [0, 1)
     std::optional<bool> persistent;
-    bool with_color = false;  ///< else every cone is of unknown colour
-    /// Share of the map's blue and yellow cones seen in the other colour, in [0, 1]; only with colour.
+    bool with_color = false;  ///< else every cone is of unknown color
+    /// Share of the map's blue and yellow cones seen in the other color, in [0, 1]; only with color.
     double color_error_rate = 0.0;
     /// Else every confidence is 1. A cone of a boundary draws its confidence from Beta(5, 2) (mean 0.71), any
     /// other point from Beta(2, 4) (mean 0.33): the cone's is the higher one in 93 % of such pairs.

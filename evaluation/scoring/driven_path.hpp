@@ -13,7 +13,7 @@ namespace conelane {
 /// A driven path shows that a lane goes on where a cone is seen this near to it [m].
 inline constexpr double kConeBesideDriven_m = 5.0;
 /// A scene whose driven path shows less of the way ahead does not count [m].
-inline constexpr double kShortestDriven_m = 5.0;
+inline constexpr double kMinDriven_m = 5.0;
 /// The car of a scene stands on the driven path, up to its pose error [m].
 inline constexpr double kOffDriven_m = 3.0;
 

@@ -19,7 +19,7 @@ namespace bp = boost::polygon;
 using Coordinate = int;
 using Region = bp::polygon_set_data<Coordinate>;
 constexpr double kUnitsPerMetre = 1e6;
-constexpr double kLargestCoordinate = 1e9;
+constexpr double kMaxCoordinate = 1e9;
 
 bool has_region(const LaneOutline& lane) {
     return lane.left.size() >= 2 && lane.right.size() >= 2;
@@ -39,7 +39,7 @@ class Grid {
     /// Precondition: a vertex was covered.
     [[nodiscard]] double units_per_metre() const {
         const double half_extent_m = 0.5 * (highest_ - lowest_).maxCoeff();
-        return std::min(kUnitsPerMetre, kLargestCoordinate / half_extent_m);
+        return std::min(kUnitsPerMetre, kMaxCoordinate / half_extent_m);
     }
     [[nodiscard]] std::vector<bp::point_data<Coordinate>> rounded(const std::vector<Point>& vertices) const {
         const Point centre = 0.5 * (lowest_ + highest_);

@@ -97,10 +97,10 @@ bool is_width_kept(const LaneOutline& lane) {
     }
     const auto near_enough = [&](const std::vector<Point>& side, const std::vector<Point>& other) {
         return std::ranges::all_of(side, [&](const Point& vertex) {
-            return foot_on_polyline(vertex, other, lane.closed).distance_m <= kWidestLane_m;
+            return foot_on_polyline(vertex, other, lane.closed).distance_m <= kMaxLaneWidth_m;
         });
     };
-    return narrowest_m >= kNarrowestLane_m && near_enough(lane.left, lane.right) &&
+    return narrowest_m >= kMinLaneWidth_m && near_enough(lane.left, lane.right) &&
            near_enough(lane.right, lane.left);
 }
 
@@ -165,7 +165,7 @@ class Truth {
             driven_ = driven_ahead(scene.scene, boundaries->driven, scene.range_m);
             length_m_ = polyline_length_m(driven_);
         }
-        if (driven_.empty() || length_m_ < kShortestDriven_m) {
+        if (driven_.empty() || length_m_ < kMinDriven_m) {
             throw InvalidInput("ground_truth",
                                "scene \"" + scene.scene.id + "\" needs at least two cones on each side");
         }
@@ -241,9 +241,10 @@ class Truth {
     double length_m_ = 0.0;
 };
 
-/// Share of those for which the answer of `of` is known that it is yes; nothing where none is.
+/// Share of yes among the scenes whose answer is known; nothing where none is. Scenes of unknown answer do
+/// not count.
 template <typename Of>
-std::optional<double> share_of_known(std::span<const SceneScore> scores, Of of) {
+std::optional<double> share_among_known(std::span<const SceneScore> scores, Of of) {
     std::size_t known = 0;
     std::size_t yes = 0;
     for (const SceneScore& score : scores) {
@@ -265,14 +266,14 @@ class Steering {
         if (error.heading_rad) heading_rad_.push_back(*error.heading_rad);
     }
     void summarise(ScoreSummary& summary) const {
-        constexpr double kMost = 0.95;
+        constexpr double kMax = 0.95;
         if (!lateral_m_.empty()) {
             summary.lateral_median_m = median(lateral_m_);
-            summary.lateral_p95_m = quantile(lateral_m_, kMost);
+            summary.lateral_p95_m = quantile(lateral_m_, kMax);
         }
         if (!heading_rad_.empty()) {
             summary.heading_median_rad = median(heading_rad_);
-            summary.heading_p95_rad = quantile(heading_rad_, kMost);
+            summary.heading_p95_rad = quantile(heading_rad_, kMax);
         }
     }
 
@@ -281,9 +282,10 @@ class Steering {
     std::vector<double> heading_rad_;
 };
 
-/// Share of the scores for which `holds`; nothing where none of them is `known`.
+/// Share of all scenes for which `holds`; nothing where none of them is `known`. Scenes that are not known
+/// count as failures.
 template <typename Known, typename Holds>
-std::optional<double> share_if_known(std::span<const SceneScore> scores, Known known, Holds holds) {
+std::optional<double> share_of_all(std::span<const SceneScore> scores, Known known, Holds holds) {
     if (std::ranges::none_of(scores, known)) return std::nullopt;
     return static_cast<double>(std::ranges::count_if(scores, holds)) / static_cast<double>(scores.size());
 }
@@ -323,9 +325,9 @@ LaneOutline outline_of(const Lane& lane, const Scene& scene) {
 }
 
 bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
-    return has_ground_truth(scene) || (boundaries != nullptr && !boundaries->driven.empty() &&
-                                       polyline_length_m(driven_ahead(scene.scene, boundaries->driven,
-                                                                      scene.range_m)) >= kShortestDriven_m);
+    return has_ground_truth(scene) ||
+           (boundaries != nullptr && !boundaries->driven.empty() &&
+            polyline_length_m(driven_ahead(scene.scene, boundaries->driven, scene.range_m)) >= kMinDriven_m);
 }
 
 std::optional<bool> SceneScore::usable() const {
@@ -427,22 +429,22 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
         result.category_share[i] = static_cast<double>(of_category[i]) / count;
     }
     result.success_share = static_cast<double>(successes) / count;
-    result.usable_share = share_of_known(scores, [](const SceneScore& score) { return score.usable(); });
+    result.usable_share = share_among_known(scores, [](const SceneScore& score) { return score.usable(); });
     const std::optional<double> steady_share =
-        share_of_known(scores, [](const SceneScore& score) { return score.steady; });
+        share_among_known(scores, [](const SceneScore& score) { return score.steady; });
     if (steady_share) result.unsteady_share = 1.0 - *steady_share;
     steering.summarise(result);
     if (!ious.empty()) result.mean_iou = mean(ious);
     if (result.accuracy_scenes > 0) {
         result.accurate_share = static_cast<double>(accurate) / static_cast<double>(result.accuracy_scenes);
     }
-    result.solved_share = share_if_known(
+    result.solved_share = share_of_all(
         scores, [](const SceneScore& score) { return score.solved_to_optimality.has_value(); },
         [](const SceneScore& score) { return score.solved_to_optimality.value_or(false); });
-    result.complete_share = share_if_known(
+    result.complete_share = share_of_all(
         scores, [](const SceneScore& score) { return score.enumeration.has_value(); },
         [](const SceneScore& score) { return score.enumeration && score.enumeration->complete; });
-    result.best_candidate_near_share = share_if_known(
+    result.best_candidate_near_share = share_of_all(
         scores, [](const SceneScore& score) { return score.enumeration && score.enumeration->best_iou; },
         [](const SceneScore& score) {
             return score.enumeration && score.enumeration->best_iou.value_or(0.0) >= kNearGroundTruthIou;

@@ -28,7 +28,7 @@ inline constexpr double kNearGroundTruthIou = 0.98;    ///< of a candidate that 
 // Measures of the RLD paper, IV.
 inline constexpr double kRldTimeLimit_ms = 400.0;
 inline constexpr double kRldAbsoluteGap = 1e-5;
-inline constexpr double kNarrowestLane_m = 2.5;  ///< w_min; w_max is kWidestLane_m
+inline constexpr double kMinLaneWidth_m = 2.5;  ///< w_min; w_max is kMaxLaneWidth_m
 inline constexpr std::size_t kAllowedConeDifference = 1;
 
 /// What became of a detection: the first that fits in this order.
@@ -108,7 +108,7 @@ struct SceneScore {
 [[nodiscard]] LaneOutline outline_of(const Lane& lane, const Scene& scene);
 
 /// Whether a scene counts: it has a ground truth with at least two cones on each side, or is of a run whose
-/// driven path shows at least kShortestDriven_m of the way ahead (see driven_path.hpp).
+/// driven path shows at least kMinDriven_m of the way ahead (see driven_path.hpp).
 [[nodiscard]] bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries = nullptr);
 
 /// Scores one answer by both papers' measures. `nearest`: the method saw only that many cones ahead, and

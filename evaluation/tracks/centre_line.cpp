@@ -49,7 +49,7 @@ Polyline dense_boundary(const Polyline& vertices, bool closed, const std::string
     if (vertices.size() < (closed ? 3U : 2U)) throw InvalidInput(key, "has too few cones");
     const double length_m = polyline_length_m(vertices, closed);
     if (!(length_m > 0.0)) throw InvalidInput(key, "has no length");
-    if (!(length_m <= kLongestBoundary_m)) throw InvalidInput(key, "is longer than any track");
+    if (!(length_m <= kMaxBoundary_m)) throw InvalidInput(key, "is longer than any track");
     return resampled(vertices, closed, kBoundarySample_m);
 }
 
@@ -194,7 +194,7 @@ double rounded(double value, double digits) {
 }  // namespace
 
 std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double every_m) {
-    if (!(every_m >= kShortestEvery_m) || !std::isfinite(every_m)) {
+    if (!(every_m >= kMinEvery_m) || !std::isfinite(every_m)) {
         throw InvalidInput("every_m", "is not a length of at least 0.01 m");
     }
     const bool closed = boundaries.closed;

@@ -8,9 +8,9 @@
 namespace conelane {
 
 /// Longest boundary that centre_line_poses takes [m]; its matching takes time and memory quadratic in it.
-inline constexpr double kLongestBoundary_m = 5000.0;
+inline constexpr double kMaxBoundary_m = 5000.0;
 /// Shortest travel between two poses [m].
-inline constexpr double kShortestEvery_m = 0.01;
+inline constexpr double kMinEvery_m = 0.01;
 
 /// The poses of a car that drives the centre line of a track, one every `every_m` metres of travel, heading
 /// along it. Both boundaries are matched monotonically with the least sum of squared widths (dynamic time
@@ -20,8 +20,8 @@ inline constexpr double kShortestEvery_m = 0.01;
 /// at different places. An open one is driven from where both boundaries have begun to where the first of
 /// them ends. Positions are multiples of 1e-6 m, yaws in [-pi, pi] of 1e-9 rad.
 ///
-/// Throws InvalidInput where `every_m` is not finite or below kShortestEvery_m (key `every_m`), or a boundary
-/// has fewer than two cones (three on a closed course), no length, or more than kLongestBoundary_m (`left`,
+/// Throws InvalidInput where `every_m` is not finite or below kMinEvery_m (key `every_m`), or a boundary
+/// has fewer than two cones (three on a closed course), no length, or more than kMaxBoundary_m (`left`,
 /// `right`).
 [[nodiscard]] std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double every_m);
 

@@ -59,7 +59,7 @@ std::vector<Corner> legs(int count, double length_m, double pitch_m, Draw& draw)
 /// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing where that is
 /// less than `least_radius_m`.
 std::optional<std::vector<Corner>> loop(int count, double radius_m, double least_radius_m, Draw& draw) {
-    constexpr double kLargestRadius_m = 16.0;
+    constexpr double kMaxRadius_m = 16.0;
     std::vector<Point> vertices;
     for (int k = 0; k < count; ++k) {
         const double angle_rad = 2.0 * std::numbers::pi * (k + draw.uniform(-0.2, 0.2)) / count;
@@ -76,7 +76,7 @@ std::optional<std::vector<Corner>> loop(int count, double radius_m, double least
         const double room_m = 0.48 * std::min(before.norm(), after.norm());
         const double fitting_m = room_m / std::max(std::tan(half_turn_rad), 1e-3);
         if (fitting_m < least_radius_m) return std::nullopt;
-        corners.push_back({vertices[k], std::floor(10.0 * std::min(fitting_m, kLargestRadius_m)) / 10.0});
+        corners.push_back({vertices[k], std::floor(10.0 * std::min(fitting_m, kMaxRadius_m)) / 10.0});
     }
     return corners;
 }

@@ -160,23 +160,23 @@ Boundary in_order(const std::vector<Cone>& cones, const Boundary& boundary, bool
 }
 
 /// Whether cones can be the boundary of a closed course: their shortest tour takes no edge that stands out
-/// beside those of their shortest path, or, at a gate without cones of a colour, goes straight on there.
+/// beside those of their shortest path, or, at a gate without cones of a color, goes straight on there.
 bool may_close(const std::vector<Cone>& cones, const Boundary& boundary) {
     constexpr double kOutstanding = 1.5;
-    constexpr double kLeastCosine = 0.5;  // of the turns at both ends of a gate
+    constexpr double kMinCosine = 0.5;  // of the turns at both ends of a gate
     if (boundary.size() < 3) return false;
     const std::vector<Point> path = positions(cones, in_order(cones, boundary, false));
     const std::vector<Point> tour = positions(cones, in_order(cones, boundary, true));
-    double longest_m = 0.0;
+    double max_length_m = 0.0;
     for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-        longest_m = std::max(longest_m, (path[i + 1] - path[i]).norm());
+        max_length_m = std::max(max_length_m, (path[i + 1] - path[i]).norm());
     }
-    if (polyline_length_m(tour, true) - polyline_length_m(path, false) <= kOutstanding * longest_m)
+    if (polyline_length_m(tour, true) - polyline_length_m(path, false) <= kOutstanding * max_length_m)
         return true;
     const Point gap = (path.front() - path.back()).normalized();
     const Point out = (path.back() - path[path.size() - 2]).normalized();
     const Point in = (path[1] - path[0]).normalized();
-    return gap.dot(out) >= kLeastCosine && gap.dot(in) >= kLeastCosine;
+    return gap.dot(out) >= kMinCosine && gap.dot(in) >= kMinCosine;
 }
 
 using BoostPoint = boost::geometry::model::d2::point_xy<double>;
@@ -273,7 +273,7 @@ void order_boundaries(Track& track, const Boundary& orange) {
     drop_beside(track.right, track.cones, track.closed);
 }
 
-/// Gives the ordered boundaries of a closed course their direction, which the colours fix: who has the inner
+/// Gives the ordered boundaries of a closed course their direction, which the colors fix: who has the inner
 /// boundary on the left drives counter-clockwise.
 void direct_closed_boundaries(Track& track, const std::filesystem::path& file) {
     const Ring left_ring = ring(positions(track.cones, track.left));

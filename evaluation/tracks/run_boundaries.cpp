@@ -10,13 +10,13 @@
 namespace conelane {
 namespace {
 
-constexpr double kPathStep_m = 0.5;      ///< a car that stands does not draw loops
-constexpr double kFarthestCone_m = 6.5;  ///< from the path: the widest lane
-constexpr double kShortestLap_m = 30.0;  ///< travel before the path may be back at its start
-constexpr double kBackAtStart_m = 3.0;   ///< from the start
-constexpr double kBeyondPath_m = 15.0;   ///< straight on from where the path ends
-constexpr double kEndDirection_m = 2.0;  ///< the path ends in the direction of its last metres
-constexpr std::size_t kFewestConesOfALap = 3;
+constexpr double kPathStep_m = 0.5;         ///< a car that stands does not draw loops
+constexpr double kMaxConeDistance_m = 6.5;  ///< from the path: the widest lane
+constexpr double kMinLap_m = 30.0;          ///< travel before the path may be back at its start
+constexpr double kBackAtStart_m = 3.0;      ///< from the start
+constexpr double kBeyondPath_m = 15.0;      ///< straight on from where the path ends
+constexpr double kEndDirection_m = 2.0;     ///< the path ends in the direction of its last metres
+constexpr std::size_t kMinConesOfALap = 3;
 
 struct DrivenLap {
     std::vector<Point> path;  ///< places kPathStep_m apart at least
@@ -37,7 +37,7 @@ DrivenLap first_lap(std::span<const Point> path) {
         const Point along = lap.path[i] - lap.path[i - 1];
         travelled_m += along.norm();
         const double away_m = (lap.path[i] - lap.path[0]).norm();
-        if (travelled_m < kShortestLap_m || away_m > kBackAtStart_m || along.dot(start_direction) <= 0.0) {
+        if (travelled_m < kMinLap_m || away_m > kBackAtStart_m || along.dot(start_direction) <= 0.0) {
             if (back) break;
         } else if (!back || away_m < (lap.path[*back] - lap.path[0]).norm()) {
             back = i;
@@ -78,8 +78,8 @@ struct PassedCone {
     double off_m;
 };
 
-/// Where the car passes a cone on the side that its colour demands, nearest to the path; nothing where it is
-/// too far off, behind the start, or of unknown colour.
+/// Where the car passes a cone on the side that its color demands, nearest to the path; nothing where it is
+/// too far off, behind the start, or of unknown color.
 std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<const Segment> path,
                                  bool closed) {
     const ConeColor color = run.cones[cone].color;
@@ -98,7 +98,7 @@ std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<c
         const double on_segment_m = std::clamp(ahead_m, 0.0, length_m);
         const double off_m = (off - on_segment_m / length_m * along).norm();
         const bool own_side = color == ConeColor::orange || left == (color == ConeColor::blue);
-        if (own_side && !beyond_ends && off_m <= kFarthestCone_m && (!nearest || off_m < nearest->off_m)) {
+        if (own_side && !beyond_ends && off_m <= kMaxConeDistance_m && (!nearest || off_m < nearest->off_m)) {
             nearest = {cone, before_m + on_segment_m, left, off_m};
         }
         before_m += length_m;
@@ -123,7 +123,7 @@ bool set_boundaries_along(std::span<const Point> path, Track& run) {
     bounded.cones = run.cones;
     bounded.closed = lap.closed;
     for (const PassedCone& cone : all) (cone.left ? bounded.left : bounded.right).push_back(cone.cone);
-    const std::size_t fewest = lap.closed ? kFewestConesOfALap : 2;
+    const std::size_t fewest = lap.closed ? kMinConesOfALap : 2;
     if (bounded.left.size() < fewest || bounded.right.size() < fewest) return false;
     const TrackBoundaries lines = boundaries(bounded);
     const std::vector<Segment> left = segments(lines.left, lap.closed);

@@ -22,7 +22,7 @@ namespace {
 constexpr double kSameCone_m = 0.8;  ///< between two frames
 constexpr double kRunOver_m = 0.5;   ///< from the middle of the car
 
-/// The colours of the five lists of a map.
+/// The colors of the five lists of a map.
 constexpr std::array kListColors{ConeColor::unknown, ConeColor::yellow, ConeColor::blue, ConeColor::orange,
                                  ConeColor::orange};
 
@@ -135,12 +135,12 @@ Track read_run_log(const std::filesystem::path& file) {
     });
     if (run.cones.empty()) throw InputError(file, 0, "slam_cones", "no frame has a cone");
 
-    const auto coloured = [&](ConeColor color) {
+    const auto colored = [&](ConeColor color) {
         return std::ranges::count(run.cones, color, &Cone::color) >= 2;
     };
     std::vector<Point> path;
     for (const RunFrame& frame : run.frames) path.push_back(frame.pose.position);
-    if (coloured(ConeColor::blue) && coloured(ConeColor::yellow)) {
+    if (colored(ConeColor::blue) && colored(ConeColor::yellow)) {
         if (set_boundaries_along(path, run)) return without_doubled_cones(std::move(run));
         run.warnings.emplace_back(
             "its coloured cones bound no lane along the driven path; the path alone counts");

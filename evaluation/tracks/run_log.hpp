@@ -11,10 +11,10 @@ namespace conelane {
 /// two frames are one cone of the track where they are the nearest within 0.8 m; cones that a frame lacks
 /// keep their last place.
 ///
-/// Where the last map holds blue and yellow cones, its coloured cones within 6.5 m of the driven path on
+/// Where the last map holds blue and yellow cones, its colored cones within 6.5 m of the driven path on
 /// their side of it are the boundaries, in the order in which the car passes them; orange ones are of the
 /// side that they are on. A run that comes back to its start is a closed course, driven more than once maybe.
-/// Where such boundaries or the path cross, or a side is too short, and where there are no colours, the track
+/// Where such boundaries or the path cross, or a side is too short, and where there are no colors, the track
 /// has no boundaries but `driven`: the path up to where it runs over a cone of the last map (within 0.5 m of
 /// the car's middle), since what follows says nothing of a lane.
 ///

@@ -6,9 +6,9 @@
 namespace conelane {
 namespace {
 
-constexpr double kSmallestGain_m = 1e-9;
-constexpr std::size_t kMostStarts = 16;
-constexpr std::size_t kLongestMovedRun = 3;
+constexpr double kMinGain_m = 1e-9;
+constexpr std::size_t kMaxStarts = 16;
+constexpr std::size_t kMaxMovedRun = 3;
 
 using Tour = std::vector<std::size_t>;
 
@@ -39,7 +39,7 @@ class TourImprovement {
             for (std::size_t j = i + 1; j < n; ++j) {
                 const double old_m = distance_m(at(i), at(i + 1)) + distance_m(at(j), at(j + 1));
                 const double new_m = distance_m(at(i), at(j)) + distance_m(at(i + 1), at(j + 1));
-                if (new_m < old_m - kSmallestGain_m) {
+                if (new_m < old_m - kMinGain_m) {
                     std::reverse(tour_.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                                  tour_.begin() + static_cast<std::ptrdiff_t>(j) + 1);
                     return true;
@@ -53,7 +53,7 @@ class TourImprovement {
     /// shortens the tour.
     bool move_a_run() {
         const std::size_t n = tour_.size();
-        for (std::size_t length = 1; length <= kLongestMovedRun && length + 2 <= n; ++length) {
+        for (std::size_t length = 1; length <= kMaxMovedRun && length + 2 <= n; ++length) {
             for (std::size_t first = 0; first < n; ++first) {
                 const std::size_t head = at(first);
                 const std::size_t tail = at(first + length - 1);
@@ -67,7 +67,7 @@ class TourImprovement {
                     const double kept_m = distance_m(a, head) + distance_m(tail, b);
                     const double turned_m = distance_m(a, tail) + distance_m(head, b);
                     const double added_m = std::min(kept_m, turned_m) - distance_m(a, b);
-                    if (added_m < removed_m - kSmallestGain_m) {
+                    if (added_m < removed_m - kMinGain_m) {
                         move_run(first, length, gap, turned_m < kept_m);
                         return true;
                     }
@@ -119,7 +119,7 @@ double length_m(std::span<const Point> points, const Tour& tour, bool closed) {
 Tour best_tour(std::span<const Point> points, bool closed) {
     Tour best;
     double best_m = std::numeric_limits<double>::infinity();
-    const std::size_t starts = std::min(points.size(), kMostStarts);
+    const std::size_t starts = std::min(points.size(), kMaxStarts);
     for (std::size_t start = 0; start < starts; ++start) {
         Tour tour = nearest_neighbour_tour(points, start * points.size() / starts);
         if (!closed) tour.push_back(points.size());
@@ -129,7 +129,7 @@ Tour best_tour(std::span<const Point> points, bool closed) {
             tour.erase(tour.begin());
         }
         const double tour_m = length_m(points, tour, closed);
-        if (tour_m < best_m - kSmallestGain_m) {
+        if (tour_m < best_m - kMinGain_m) {
             best_m = tour_m;
             best = std::move(tour);
         }

@@ -22,9 +22,9 @@ std::string file_content(const std::filesystem::path& file) {
 }
 
 std::string coordinate_fault(double coordinate_m) {
-    constexpr double kFarthest_m = 1e7;  // a map in UTM coordinates fits
+    constexpr double kMaxCoordinate_m = 1e7;  // a map in UTM coordinates fits
     if (!std::isfinite(coordinate_m)) return "is not finite";
-    if (std::abs(coordinate_m) > kFarthest_m) return "is beyond 10^7 m";
+    if (std::abs(coordinate_m) > kMaxCoordinate_m) return "is beyond 10^7 m";
     return "";
 }
 

@@ -19,7 +19,7 @@ inline constexpr double kDoubledCone_m = 0.3;
 
 /// Track `number` of a folder of the FSD racetrack dataset: `cone_map_N.yaml` (id -> [x, y]) and
 /// `boundaries_N.yaml` (ids of `left:` and `right:` in driving order). A closed course; a last id that
-/// repeats the first is dropped. Colours are unknown. An id twice, or one without a cone, is an error.
+/// repeats the first is dropped. Colors are unknown. An id twice, or one without a cone, is an error.
 [[nodiscard]] Track read_fsd_track(const std::filesystem::path& directory, int number);
 
 /// A PacSim track. Cones of `unknown:` stay in the map as cones of no boundary; `time_keeping:` holds no
@@ -30,10 +30,10 @@ inline constexpr double kDoubledCone_m = 0.3;
 /// An EUFS track: unordered cones of one course, blue ones left and yellow ones right of the driving
 /// direction. Each boundary becomes the shortest tour of its cones that starts at the cone nearest ahead of
 /// `car_start`; without one, at the first left cone of the file and the right one nearest to it. Where
-/// neither colour can close without an edge that stands out and turns back, the course is open: each boundary
+/// neither color can close without an edge that stands out and turns back, the course is open: each boundary
 /// becomes the shortest path of its cones, from end to end. Orange cones join the boundary they are nearer
 /// to, but those beside a cone of its line none; nor do cones of any other tag, which a warning counts,
-/// except `unknown`. Ids count the cones in file order. Colours of a closed course that do not bound a ring,
+/// except `unknown`. Ids count the cones in file order. Colors of a closed course that do not bound a ring,
 /// or that contradict the direction of `car_start`, are an error.
 [[nodiscard]] Track read_eufs_track(const std::filesystem::path& file);
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
 /// The paper formulation takes seconds beyond.
-constexpr std::int64_t kLargestPaperSize = 12;
+constexpr std::int64_t kMaxPaperSize = 12;
 
 std::vector<LaneGraphProblem> problems_of(const std::vector<Scene>& scenes, EdgeExtent extent) {
     std::vector<LaneGraphProblem> problems;
@@ -98,7 +98,7 @@ void register_all(const Scenes& all) {
     for (const RldSolverEntry& entry : rld_solvers()) {
         for (const std::int64_t size : kSizes) {
             register_solve(all, entry, Formulation::tight, size);
-            if (entry.uses_formulation && size <= kLargestPaperSize)
+            if (entry.uses_formulation && size <= kMaxPaperSize)
                 register_solve(all, entry, Formulation::paper, size);
         }
     }

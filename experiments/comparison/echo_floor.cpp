@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostScenes = 200;
+constexpr std::size_t kMaxScenes = 200;
 
 /// As one word of a shell command.
 std::string quoted(const std::string& word) {
@@ -31,7 +31,7 @@ EchoFloor measure_echo_floor(std::span<const AnnotatedScene> scenes) {
     std::error_code failure;
     const fs::path program = fs::read_symlink("/proc/self/exe", failure);
     if (failure) return {};
-    const std::size_t step = std::max<std::size_t>(1, (scenes.size() + kMostScenes - 1) / kMostScenes);
+    const std::size_t step = std::max<std::size_t>(1, (scenes.size() + kMaxScenes - 1) / kMaxScenes);
     std::vector<AnnotatedScene> some;
     for (std::size_t i = 0; i < scenes.size(); i += step) some.push_back(scenes[i]);
     RunOptions options;

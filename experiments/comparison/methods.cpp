@@ -43,22 +43,22 @@ std::unique_ptr<LaneDetector> longest_lane() {
 std::vector<Method> all_methods() {
     std::vector<Method> all;
     for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe});
-    const auto add = [&all](std::string_view name, std::string_view meaning, const auto& how,
-                            bool is_ablation) {
-        all.push_back({{name, meaning, how}, is_ablation});
+    const auto add = [&all](std::string_view name, std::string_view description,
+                            const LearnedFrom& learned_from, const auto& how, bool is_ablation) {
+        all.push_back({{name, description, learned_from, how}, is_ablation});
     };
     if (find_rld_solver("cbc") != nullptr) {
-        add("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones",
+        add("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", LearnedFrom::nothing(),
             RldRecipe{tight_cbc, {kRldConeSet, std::nullopt}}, false);
         add("rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones",
-            RldRecipe{printed_cbc, {kRldConeSet, std::nullopt}}, false);
+            LearnedFrom::nothing(), RldRecipe{printed_cbc, {kRldConeSet, std::nullopt}}, false);
     }
-    add("clc-no-beam", "clc whose first search follows no lane of a beam search", OtherRecipe{without_beam},
-        true);
+    add("clc-no-beam", "clc whose first search follows no lane of a beam search",
+        LearnedFrom(kClcRankWeights), OtherRecipe{without_beam}, true);
     add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
-        OtherRecipe{on_delaunay_graph}, true);
-    add("clc-longest", "CLC without network: the longest of the enumerated lanes", OtherRecipe{longest_lane},
-        true);
+        LearnedFrom(kPaperClcWeights), OtherRecipe{on_delaunay_graph}, true);
+    add("clc-longest", "CLC without network: the longest of the enumerated lanes", LearnedFrom::nothing(),
+        OtherRecipe{longest_lane}, true);
     return all;
 }
 

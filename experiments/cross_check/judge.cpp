@@ -25,8 +25,8 @@ namespace {
 constexpr double kTolerance = 1e-6;
 constexpr double kOwnSearch_ms = 20.0;
 constexpr double kTravelOfAFrame_m = 1.0;
-constexpr std::size_t kMostCertifiedCones = 12;
-constexpr std::int64_t kMostCertificateSteps = 20'000;
+constexpr std::size_t kMaxCertifiedCones = 12;
+constexpr std::int64_t kMaxCertificateSteps = 20'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class Asked { generously, tightly, from_a_start };
@@ -77,7 +77,7 @@ class Judgement {
         hold_against_each_other();
         conclude();
         if (verdict_.outcome == CrossCheckOutcome::infeasible) search_without_solvers();
-        if (drawn_.scene.cones.size() <= kMostCertifiedCones) repeat_proof();
+        if (drawn_.scene.cones.size() <= kMaxCertifiedCones) repeat_proof();
         if (!verdict_.findings.empty()) verdict_.outcome = CrossCheckOutcome::differ;
         return std::move(verdict_);
     }
@@ -90,7 +90,7 @@ class Judgement {
 
     void ask(double limit_ms, Asked asked) {
         for (const Contestant& contestant : contestants_) {
-            if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
+            if (contestant.max_cones && drawn_.scene.cones.size() > *contestant.max_cones) continue;
             answers_.push_back({fmt::format("{} within {} ms", contestant.name, limit_ms), asked,
                                 contestant.solve(drawn_.scene, drawn_.parameters, limit_ms)});
         }
@@ -101,7 +101,7 @@ class Judgement {
     [[nodiscard]] std::optional<LaneGraph> answer_of_previous_frame() const {
         if (contestants_.empty()) return std::nullopt;
         const Contestant& first = contestants_.front();
-        if (first.most_cones && drawn_.scene.cones.size() > *first.most_cones) return std::nullopt;
+        if (first.max_cones && drawn_.scene.cones.size() > *first.max_cones) return std::nullopt;
         Scene previous = drawn_.scene;
         previous.pose.position -= kTravelOfAFrame_m * previous.pose.heading();
         return first.solve(previous, drawn_.parameters, time_limit_ms_).lane_graph;
@@ -138,7 +138,7 @@ class Judgement {
         const std::optional<LaneGraph> previous = answer_of_previous_frame();
         for (const Contestant& contestant : contestants_) {
             if (!contestant.solve_from) continue;
-            if (contestant.most_cones && drawn_.scene.cones.size() > *contestant.most_cones) continue;
+            if (contestant.max_cones && drawn_.scene.cones.size() > *contestant.max_cones) continue;
             for (const NamedStart& start : starts(contestant.name, previous)) {
                 const bool is_feasible_start = is_feasible(problem, start.graph);
                 std::vector<double> limits{drawn_.tight_limit_ms};
@@ -227,7 +227,7 @@ class Judgement {
         const SearchCertificate certificate =
             certify_search(make_problem(drawn_.scene, drawn_.parameters), time_limit_ms_);
         const SearchVerdict proof =
-            verify_search(drawn_.scene, drawn_.parameters, certificate, kMostCertificateSteps);
+            verify_search(drawn_.scene, drawn_.parameters, certificate, kMaxCertificateSteps);
         if (proof.kind == SearchVerdict::Kind::refused && certificate.bound > -kInfinity)
             find("the certificate of path-pair is refused: {}", proof.reason);
         verdict_.certified = proof.kind == SearchVerdict::Kind::verified;
@@ -262,7 +262,7 @@ std::vector<Contestant> make_contestants(std::span<const std::string> names, For
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
                  return solve_scene(*solver, scene, parameters, {time_limit_ms}).report;
              },
-             entry->most_cones,
+             entry->max_cones,
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms,
                       const LaneGraph& start) {
                  return solve_scene(*solver, scene, parameters, {time_limit_ms}, &start).report;

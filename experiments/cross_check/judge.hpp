@@ -17,7 +17,7 @@ namespace conelane::experiments {
 struct Contestant {
     std::string name;
     std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms)> solve;
-    std::optional<std::size_t> most_cones{};  ///< it is not asked about more
+    std::optional<std::size_t> max_cones{};  ///< it is not asked about more
     /// The same from a start; it is not asked from starts where this is empty.
     std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms, const LaneGraph& start)>
         solve_from = {};

@@ -9,8 +9,8 @@ namespace {
 class Shrinking {
   public:
     Shrinking(CrossCheckCase drawn, const std::function<bool(const CrossCheckCase&)>& differs,
-              std::size_t most_trials)
-        : smallest_(std::move(drawn)), differs_(differs), trials_left_(most_trials) {}
+              std::size_t max_trials)
+        : smallest_(std::move(drawn)), differs_(differs), trials_left_(max_trials) {}
 
     CrossCheckCase run() {
         for (std::size_t together = smallest_.scene.cones.size() / 2; together > 1; together /= 2)
@@ -71,8 +71,8 @@ class Shrinking {
 }  // namespace
 
 CrossCheckCase shrink(CrossCheckCase drawn, const std::function<bool(const CrossCheckCase&)>& differs,
-                      std::size_t most_trials) {
-    return Shrinking(std::move(drawn), differs, most_trials).run();
+                      std::size_t max_trials) {
+    return Shrinking(std::move(drawn), differs, max_trials).run();
 }
 
 }  // namespace conelane::experiments

@@ -8,10 +8,10 @@
 namespace conelane::experiments {
 
 /// The case with as many cones left out, and as many parameters at their defaults, as `differs` allows: it
-/// holds for the result, and no single further cone can go. It is asked `most_trials` times at most.
+/// holds for the result, and no single further cone can go. It is asked `max_trials` times at most.
 /// Precondition: it holds for `drawn`.
 [[nodiscard]] CrossCheckCase shrink(CrossCheckCase drawn,
                                     const std::function<bool(const CrossCheckCase&)>& differs,
-                                    std::size_t most_trials = 2000);
+                                    std::size_t max_trials = 2000);
 
 }  // namespace conelane::experiments

@@ -86,7 +86,7 @@ void learn_clc(const LearningOptions& options, const fs::path& folder) {
     run.training.scenes_a_step = 16;
     run.training.learning_rate = 0.004;
     run.training.weight_decay = 0.05;
-    run.candidates.most_per_scene = 200;
+    run.candidates.max_per_scene = 200;
     run.training.late_divergence_penalty = 0.2;
     run.training.unusable_penalty = 2.0;
     const TrainingRun result = run_training(run);
@@ -96,7 +96,7 @@ void learn_clc(const LearningOptions& options, const fs::path& folder) {
 void learn_clc_paper(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(folder / kPaperNet)) return;
     TrainingRunOptions run = network_options(options);
-    run.candidates.most_per_scene = 120;
+    run.candidates.max_per_scene = 120;
     run.training.epochs = 30;
     const TrainingRun result = run_training(run);
     write(folder / kPaperNet, rank_net_json(result.weights, result.record));

@@ -61,7 +61,7 @@ struct Instance {
 /// optimum of the file is that of the scene, which path-pair finds on its own, without a program. Where CBC
 /// does not come to its end, no rows are added, and the scene's optimum is `best` of a program that may have
 /// a lower one. Nothing where there is no program: it would have no columns, or more entries than
-/// kMostProgramEntries. Throws std::logic_error where the engines contradict each other.
+/// kMaxProgramEntries. Throws std::logic_error where the engines contradict each other.
 [[nodiscard]] std::optional<Instance> make_instance(const Scene& scene, const std::string& name,
                                                     Formulation formulation, const InstanceOptions& options);
 

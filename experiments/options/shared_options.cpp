@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 /// Marks the options of add_output_option.
 constexpr const char* kOutput = "output";
-constexpr unsigned kMostThreads = 1024;
+constexpr unsigned kMaxThreads = 1024;
 
 /// What is wrong with the text of a seed, nothing where it is right. Negative and larger ones would wrap.
 std::string seed_fault(const std::string& text) {
@@ -174,8 +174,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->capture_default_str();
 }
 
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning) {
-    command.add_option("--seed", seed, meaning)->check(CLI::Validator(seed_fault, ""));
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description) {
+    command.add_option("--seed", seed, description)->check(CLI::Validator(seed_fault, ""));
 }
 
 RldParameters ParameterSource::load() const {
@@ -208,11 +208,12 @@ void add_parameter_options(CLI::App& command, ParameterSource& source, const std
         ->check(CLI::IsMember({"paper", "near_far"}));
 }
 
-void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning) {
+void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest,
+                        const std::string& description) {
     command
         .add_option_function<std::size_t>(
-            "--nearest", [&nearest](std::size_t count) { nearest = count; }, meaning)
-        ->check(whole_number(1, kMostCones));
+            "--nearest", [&nearest](std::size_t count) { nearest = count; }, description)
+        ->check(whole_number(1, kMaxCones));
 }
 
 void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
@@ -222,12 +223,12 @@ void add_time_limit_option(CLI::App& command, double& time_limit_ms) {
 }
 
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
-                               const std::string& meaning, bool or_standard_output) {
+                               const std::string& description, bool or_standard_output) {
     if (or_standard_output) {
         const auto fault = [](const std::string& text) { return text == "-" ? "" : output_fault(text); };
-        return command.add_option(name, file, meaning)->check(CLI::Validator(fault, "", kOutput));
+        return command.add_option(name, file, description)->check(CLI::Validator(fault, "", kOutput));
     }
-    return command.add_option(name, file, meaning)->check(CLI::Validator(output_fault, "", kOutput));
+    return command.add_option(name, file, description)->check(CLI::Validator(output_fault, "", kOutput));
 }
 
 void refuse_lost_inputs(CLI::App& command) {
@@ -248,9 +249,9 @@ void refuse_lost_inputs(CLI::App& command) {
     }
 }
 
-void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning) {
-    command.add_option("--threads", threads, meaning)
-        ->check(whole_number(1, kMostThreads))
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& description) {
+    command.add_option("--threads", threads, description)
+        ->check(whole_number(1, kMaxThreads))
         ->capture_default_str();
 }
 

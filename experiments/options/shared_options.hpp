@@ -34,7 +34,8 @@ struct ParameterSource {
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);
 
 /// --nearest N
-void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest, const std::string& meaning);
+void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest,
+                        const std::string& description);
 /// For methods that are compared in real time, as in the RLD paper.
 inline constexpr double kRealTimeLimit_ms = 400.0;
 /// --time-limit MS; what `time_limit_ms` holds is the default
@@ -42,15 +43,15 @@ void add_time_limit_option(CLI::App& command, double& time_limit_ms);
 /// A file to write, or standard output by the name "-" where that is allowed. That it can be written is
 /// looked at before the work, not after it.
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
-                               const std::string& meaning, bool or_standard_output = false);
+                               const std::string& description, bool or_standard_output = false);
 /// Refuses the options of a command that is about to run where a file of add_output_option would replace an
 /// input or another output: the same file, be it under another name, through a symbolic or a hard link. Any
 /// other option that names a file counts as an input, a track by its SPEC and a scenes file with its
 /// companion too. Throws CLI::ValidationError naming both.
 void refuse_lost_inputs(CLI::App& command);
 /// --seed N, for where another place holds the default
-void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& meaning);
+void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description);
 /// --threads T
-void add_threads_option(CLI::App& command, unsigned& threads, const std::string& meaning);
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& description);
 
 }  // namespace conelane::experiments

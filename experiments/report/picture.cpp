@@ -69,7 +69,7 @@ void write_picture(const Picture& picture, const std::filesystem::path& file,
     AtomicFile description(how);
     description.stream() << ordered_json{
         {"noise_m", noise_of(picture.scene.condition)},
-        {"longest_gap_m", DrivableOptions{}.longest_gap_m},
+        {"longest_gap_m", DrivableOptions{}.max_gap_m},
         {"with_given", picture.with_given},
         {"with_truth", picture.with_truth},
         {"title", picture.title},

@@ -47,8 +47,8 @@ std::string published() {
                               {"miss_rate", condition.miss_rate},
                               {"persistent", condition.persistent}});
     }
-    return nlohmann::ordered_json{{"longest_gap_m", DrivableOptions{}.longest_gap_m},
-                                  {"usual_width_m", DrivableOptions{}.usual_width_m},
+    return nlohmann::ordered_json{{"longest_gap_m", DrivableOptions{}.max_gap_m},
+                                  {"usual_width_m", DrivableOptions{}.default_width_m},
                                   {"conditions", conditions},
                                   {"clc", clc},
                                   {"clc_median_below_ms", kPublishedClcMedianBelow_ms},

@@ -69,7 +69,7 @@ class Driver {
 /// Whether the solver of the backend takes cone sets of this size.
 bool takes(const Backend& backend, std::size_t size) {
     const RldSolverEntry& entry = entry_of(backend);
-    return !entry.most_cones || size <= *entry.most_cones;
+    return !entry.max_cones || size <= *entry.max_cones;
 }
 
 /// All scenes that have as many cones, lap by lap.
@@ -203,7 +203,7 @@ class BackendsStudy : public Study {
             for (const std::size_t size : options_.sizes) {
                 if (takes(backend, size)) continue;
                 lines += fmt::format("{} takes at most {} cones: left out at n = {}\n", backend.label(),
-                                     *entry_of(backend).most_cones, size);
+                                     *entry_of(backend).max_cones, size);
             }
         }
         return lines;

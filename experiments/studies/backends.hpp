@@ -59,7 +59,7 @@ struct BackendRow {
 };
 
 /// Rows by size, backend and scene. For each size, scenes with fewer cones are left out, and so are backends
-/// whose solver takes no cone set of that size (RldSolverEntry::most_cones). Throws InvalidInput where a
+/// whose solver takes no cone set of that size (RldSolverEntry::max_cones). Throws InvalidInput where a
 /// backend's solver is not in this build.
 [[nodiscard]] std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes,
                                                    const BackendOptions& options);

@@ -153,9 +153,9 @@ nlohmann::ordered_json to_json(const ConfidenceColorRow& row, const ConfidenceCo
     return json;
 }
 
-class ConfidenceAndColourStudy : public Study {
+class ConfidenceAndColorStudy : public Study {
   public:
-    ConfidenceAndColourStudy()
+    ConfidenceAndColorStudy()
         : Study({"confidence-and-colour",
                  "how much more accurate is RLD with detection confidences, or with cone colours of which "
                  "some are wrong?",
@@ -219,7 +219,7 @@ ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file) {
         }
         scenes.seed = json.member("seed").unsigned_integer();
         options.evaluation.time_limit_ms = json.member("time_limit_ms").non_negative_number();
-        options.evaluation.most_nodes = json.member("most_nodes").non_negative_integer();
+        options.evaluation.max_nodes = json.member("most_nodes").non_negative_integer();
         if (const auto nearest = json.find("nearest"))
             options.evaluation.nearest = nearest->unsigned_integer();
         if (const auto context = json.find("context"))
@@ -281,8 +281,8 @@ std::string confidence_color_table(std::span<const ConfidenceColorRow> rows) {
     return table.text();
 }
 
-std::unique_ptr<Study> make_confidence_and_colour_study() {
-    return std::make_unique<ConfidenceAndColourStudy>();
+std::unique_ptr<Study> make_confidence_and_color_study() {
+    return std::make_unique<ConfidenceAndColorStudy>();
 }
 
 }  // namespace conelane::experiments

@@ -16,8 +16,8 @@ namespace conelane::experiments {
 
 class Study;
 
-/// RLD with simulated confidences and colours of cones against geometry alone.
-[[nodiscard]] std::unique_ptr<Study> make_confidence_and_colour_study();
+/// RLD with simulated confidences and colors of cones against geometry alone.
+[[nodiscard]] std::unique_ptr<Study> make_confidence_and_color_study();
 
 /// Tracks that a fit has not seen, and what it found on the others.
 struct HeldOut {
@@ -26,7 +26,7 @@ struct HeldOut {
 };
 
 /// The scenes and folds of a tuning whose parameters were fitted to geometry alone, and what is simulated on
-/// them. With confidences the weight w_b, which they lower, and with colours the weight w_color are, in each
+/// them. With confidences the weight w_b, which they lower, and with colors the weight w_color are, in each
 /// fold, those that are most accurate on the tracks that are not held out; of equal ones the smallest.
 struct ConfidenceColorOptions {
     std::vector<std::string> tracks;  ///< as in make_scene_set
@@ -46,7 +46,7 @@ struct ConfidenceColorOptions {
 /// What is simulated beside the geometry: one of both or nothing.
 struct SimulatedKnowledge {
     bool confidence = false;
-    std::optional<double> color_error;  ///< share of wrong colours; absent without colours
+    std::optional<double> color_error;  ///< share of wrong colors; absent without colors
 
     bool operator==(const SimulatedKnowledge&) const = default;
 };
@@ -59,10 +59,10 @@ struct ConfidenceColorRow {
     std::size_t scenes = 0;       ///< whose cone set holds a ground truth
     double accurate = 0.0;        ///< share of them (RLD paper, IV-B)
     double success = 0.0;         ///< share of all scenes (CLC paper, Table I)
-    std::vector<double> weights;  ///< w_b with confidences, w_color with colours, by fold; empty with neither
+    std::vector<double> weights;  ///< w_b with confidences, w_color with colors, by fold; empty with neither
 };
 
-/// Rows by knowledge: geometry alone, confidences, colours in the order of their errors; then by rate. Throws
+/// Rows by knowledge: geometry alone, confidences, colors in the order of their errors; then by rate. Throws
 /// InvalidInput where a fold holds out a track that has no scene, or none holds out one of `only`.
 [[nodiscard]] std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options);
 

@@ -98,7 +98,7 @@ DeadlineRow measure(std::span<const AnnotatedScene> scenes, const TimedCall& cal
     const std::size_t count = std::min(options.limit.value_or(scenes.size()), scenes.size());
     std::vector<double> wall_ms;
     std::vector<double> cpu_ms;
-    double most_cpu_ms = -1.0;
+    double max_cpu_ms = -1.0;
     LimitProbe probe;
     call.run(scenes.front().scene, limit_ms);  // code and memory are loaded outside of any time
     for (std::size_t k = 0; k < count * options.repeats; ++k) {
@@ -114,8 +114,8 @@ DeadlineRow measure(std::span<const AnnotatedScene> scenes, const TimedCall& cal
         ++row.struck;
         wall_ms.push_back(std::max(0.0, late_ms));
         cpu_ms.push_back(*late_cpu_ms);
-        if (*late_cpu_ms <= most_cpu_ms) continue;
-        most_cpu_ms = *late_cpu_ms;
+        if (*late_cpu_ms <= max_cpu_ms) continue;
+        max_cpu_ms = *late_cpu_ms;
         row.slowest_scene = scene.id;
         row.slowest_cones = scene.cones.size();
     }

@@ -24,8 +24,8 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr std::size_t kFewestConesDrawn = 12;
-constexpr std::size_t kMostConesDrawn = 40;
+constexpr std::size_t kMinConesDrawn = 12;
+constexpr std::size_t kMaxConesDrawn = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What the solver proved and found: the optimum is in [lower, upper].
@@ -150,7 +150,7 @@ DifferentialCase draw_case(std::span<const AnnotatedScene> scenes, std::uint64_t
     DifferentialCase drawn;
     drawn.number = number;
     drawn.scene = &scenes[Size(0, scenes.size() - 1)(random)];
-    drawn.cones = Size(kFewestConesDrawn, kMostConesDrawn)(random);
+    drawn.cones = Size(kMinConesDrawn, kMaxConesDrawn)(random);
     const boost::random::bernoulli_distribution<> coin(0.5);
     drawn.pairing = coin(random) ? Pairing::paper : Pairing::near_far;
     drawn.shape_costs = coin(random);
@@ -172,7 +172,7 @@ std::vector<DifferentialRow> differential_rows(std::span<const AnnotatedScene> s
                                                const DifferentialOptions& options) {
     if (scenes.empty()) throw InvalidInput("--scenes", "hold no scene");
     const RldSolverEntry* const entry = find_rld_solver(options.reference);
-    if (entry == nullptr || !entry->exact || entry->most_cones)
+    if (entry == nullptr || !entry->exact || entry->max_cones)
         throw InvalidInput("--reference", "'" + options.reference + "' is no exact solver of any size");
     const std::unique_ptr<RldSolver> path_pair = find_rld_solver("path-pair")->make(Formulation::tight);
     const std::unique_ptr<RldSolver> reference = entry->make(Formulation::tight);

@@ -23,7 +23,7 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     studies.push_back(make_differential_study());
     studies.push_back(make_formulations_study());
     studies.push_back(make_relaxations_study());
-    studies.push_back(make_confidence_and_colour_study());
+    studies.push_back(make_confidence_and_color_study());
     studies.push_back(make_front_beam_study());
     studies.push_back(make_deadlines_study());
     studies.push_back(make_memory_study());

@@ -84,7 +84,7 @@ std::vector<CandidateList> enumerate_candidates(const SceneSet& set, const Candi
             list.false_positive_rate = scene.false_positive_rate.value_or(0.0);
             list.range_m = scene.range_m.value_or(0.0);
             for (const std::size_t k :
-                 draw(options.most_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
+                 draw(options.max_per_scene, pairs.found().size(), scene.scene.id, options.seed)) {
                 list.lanes.push_back(pairs.features()[k]);
                 const LaneOutline lane =
                     outline(search.lane(pairs.found()[k], scene.scene), scene.scene, index_of);

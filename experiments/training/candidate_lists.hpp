@@ -27,7 +27,7 @@ struct CandidateList {
 struct CandidateListOptions {
     CandidateSearchOptions search;
     /// At most so many candidates of a scene are kept, drawn without replacement; 0 keeps all.
-    std::size_t most_per_scene = 0;
+    std::size_t max_per_scene = 0;
     std::uint64_t seed = 0;  ///< of that draw, together with the id of the scene
     unsigned threads = 1;    ///< same lists with any number
     bool show_progress = true;

@@ -12,8 +12,8 @@ namespace {
 
 /// -log(probability) of what came out.
 double cross_entropy(double probability, bool happened) {
-    constexpr double kLeast = 1e-9;
-    return -std::log(std::max(kLeast, happened ? probability : 1.0 - probability));
+    constexpr double kMin = 1e-9;
+    return -std::log(std::max(kMin, happened ? probability : 1.0 - probability));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kNone = FrontSearch::kNone;
 /// A derivative below this is left out.
-constexpr double kLeastFactor = 1e-4;
+constexpr double kMinFactor = 1e-4;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const Fron
     ++loss.decisions;
     for (std::size_t i = 0; i < probabilities.size(); ++i) {
         const double factor = static_cast<double>(probabilities[i]) - (i == start ? 1.0 : 0.0);
-        if (std::abs(factor) > kLeastFactor) add_start(i, factor, weights, derivatives);
+        if (std::abs(factor) > kMinFactor) add_start(i, factor, weights, derivatives);
     }
     std::size_t node = front_.add({0.0, kNone, {}, kLeft, start});
     while (!front_.node(node).state.finished()) {
@@ -74,7 +74,7 @@ FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const Fron
         std::ranges::copy(cost.state_features_seen(), inputs.begin());
         for (std::size_t i = 0; i < probabilities.size(); ++i) {
             const double factor = static_cast<double>(probabilities[i]) - (i == right ? 1.0 : 0.0);
-            if (std::abs(factor) <= kLeastFactor) continue;
+            if (std::abs(factor) <= kMinFactor) continue;
             if (i < moves_.extensions.size()) {
                 std::ranges::copy(cost.extend_features_seen().subspan(i * kExtendFeatures, kExtendFeatures),
                                   inputs.begin() + kStateFeatures);
@@ -243,7 +243,7 @@ void FrontLearner::add_list_loss(std::span<const FrontSearch::Finished> lanes,
     for (std::size_t i = 0; i < lanes.size(); ++i) {
         const double factor = options.minimum_risk * probabilities[i] * (risks[i] - expected) +
                               options.listwise * (probabilities[i] - wanted[i]);
-        if (std::abs(factor) <= kLeastFactor) continue;
+        if (std::abs(factor) <= kMinFactor) continue;
         coefficients_.resize(std::max(coefficients_.size(), lanes[i].parent + 1), 0.0);
         coefficients_[lanes[i].parent] += factor;
         finishing_.push_back({lanes[i].parent, lanes[i].side, factor});
@@ -257,7 +257,7 @@ void FrontLearner::add_coefficients(const FrontWeights& weights, FrontCost& cost
     // A node comes after its parent.
     for (std::size_t number = coefficients_.size(); number-- > 0;) {
         const double factor = coefficients_[number];
-        if (std::abs(factor) <= kLeastFactor) continue;
+        if (std::abs(factor) <= kMinFactor) continue;
         const FrontSearch::Node& node = front_.node(number);
         if (node.parent == kNone) {
             add_start(node.start, factor, weights, derivatives);

@@ -26,21 +26,21 @@ constexpr double kPoseEvery_m = 0.5;
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 // How often and how far a course is changed and disturbed.
 constexpr double kScaledShare = 0.7;
-constexpr double kLargestLogScale = 0.22;
+constexpr double kMaxLogScale = 0.22;
 constexpr double kSwirledShare = 0.6;
-constexpr double kLargestSwirl = 0.22;  ///< displacement per metre of each wave
+constexpr double kMaxSwirl = 0.22;  ///< displacement per metre of each wave
 constexpr double kRespacedShare = 0.5;
-constexpr double kLeastSpacing = 0.6;  ///< of the course's own
-constexpr double kMostSpacing = 1.5;
+constexpr double kMinSpacing = 0.6;  ///< of the course's own
+constexpr double kMaxSpacing = 1.5;
 constexpr double kSpacingJitter = 0.2;
-constexpr double kLongestSpacing_m = 5.6;
+constexpr double kMaxSpacing_m = 5.6;
 constexpr double kOtherCourseShare = 0.35;
 constexpr double kOtherCourseOff_m = 3.4;  ///< from the centre line: outside the lane
 constexpr double kDisturbedShare = 0.68;
-constexpr double kMostNoise_m = 0.2;
-constexpr double kMostMissed = 0.1;
-constexpr double kMostLateral_m = 0.5;
-constexpr double kMostYaw_rad = 8.0 * kDegree_rad;
+constexpr double kMaxNoise_m = 0.2;
+constexpr double kMaxMissed = 0.1;
+constexpr double kMaxLateral_m = 0.5;
+constexpr double kMaxYaw_rad = 8.0 * kDegree_rad;
 constexpr double kShortSightShare = 0.15;
 constexpr double kCleanShare = 0.1;  ///< without false positives
 
@@ -60,8 +60,7 @@ class Warp {
     Warp(Random& random, bool bends) {
         mirrored_ = one_in(random, 0.5);
         if (!bends) return;
-        if (one_in(random, kScaledShare))
-            scale_ = std::exp(uniform(random, -kLargestLogScale, kLargestLogScale));
+        if (one_in(random, kScaledShare)) scale_ = std::exp(uniform(random, -kMaxLogScale, kMaxLogScale));
         if (!one_in(random, kSwirledShare)) return;
         for (Wave& wave : waves_) {
             const double direction_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
@@ -69,7 +68,7 @@ class Warp {
             wave.number = number_1_m * Point(std::cos(direction_rad), std::sin(direction_rad));
             const double to_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
             wave.amplitude =
-                uniform(random, 0.0, kLargestSwirl) / number_1_m * Point(std::cos(to_rad), std::sin(to_rad));
+                uniform(random, 0.0, kMaxSwirl) / number_1_m * Point(std::cos(to_rad), std::sin(to_rad));
             wave.phase_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
         }
     }
@@ -109,7 +108,7 @@ std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, dou
     while (place <= std::min(end, last)) {
         result.push_back(at(place));
         double step = spacing * (1.0 + uniform(random, -kSpacingJitter, kSpacingJitter));
-        while (step > 1.0 && (at(std::min(place + step, last)) - result.back()).norm() > kLongestSpacing_m)
+        while (step > 1.0 && (at(std::min(place + step, last)) - result.back()).norm() > kMaxSpacing_m)
             step *= 0.9;
         place += step;
     }
@@ -119,7 +118,7 @@ std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, dou
 /// The course after the warp; boundaries swapped where that mirrors or the course is driven backwards.
 Track changed(const Track& track, const Warp& warp, bool backwards, bool respace, Random& random) {
     const double spacing =
-        respace && one_in(random, kRespacedShare) ? uniform(random, kLeastSpacing, kMostSpacing) : 1.0;
+        respace && one_in(random, kRespacedShare) ? uniform(random, kMinSpacing, kMaxSpacing) : 1.0;
     Track result;
     result.closed = track.closed;
     std::array<std::vector<Point>, 2> sides;
@@ -241,10 +240,10 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         const double range_m = kind < 0.4 ? 30.0 : kind < 0.8 ? 50.0 : uniform(random, 25.0, 55.0);
         const double rate = one_in(random, kCleanShare) ? 0.0 : uniform(random, 0.0, options_.highest_rate);
         if (options_.disturb && one_in(random, kDisturbedShare)) {
-            scenes.noise_sigma_m = uniform(random, 0.0, kMostNoise_m);
-            scenes.miss_rate = uniform(random, 0.0, kMostMissed);
-            scenes.pose_noise_lateral_m = uniform(random, 0.0, kMostLateral_m);
-            scenes.pose_noise_yaw_rad = uniform(random, 0.0, kMostYaw_rad);
+            scenes.noise_sigma_m = uniform(random, 0.0, kMaxNoise_m);
+            scenes.miss_rate = uniform(random, 0.0, kMaxMissed);
+            scenes.pose_noise_lateral_m = uniform(random, 0.0, kMaxLateral_m);
+            scenes.pose_noise_yaw_rad = uniform(random, 0.0, kMaxYaw_rad);
         }
         const bool short_sight = options_.short_sight && one_in(random, kShortSightShare);
         scenes.ranges_m = {short_sight ? range_m * uniform(random, 0.6, 0.95) : range_m};

@@ -25,9 +25,9 @@ namespace conelane::experiments {
 namespace {
 
 /// Where a weight hardly ever counts, its derivative is mostly rounding.
-constexpr double kSmallestDeviation = 1e-5;
+constexpr double kMinDeviation = 1e-5;
 /// No step follows a longer gradient: single scenes that went all wrong.
-constexpr double kLongestGradient = 5.0;
+constexpr double kMaxGradient = 5.0;
 
 /// He's initial values for the hidden layer, small ones for the outputs.
 FrontWeights initial_weights(std::uint64_t seed) {
@@ -104,7 +104,7 @@ class Training {
         : options_(options),
           scenes_(courses, options.scenes, options.seed),
           weights_(initial_weights(options.seed)),
-          adam_(static_cast<Eigen::Index>(parameter_count(weights_)), kSmallestDeviation),
+          adam_(static_cast<Eigen::Index>(parameter_count(weights_)), kMinDeviation),
           slots_(options.draws_per_step) {
         leave_out(options.without, weights_);
         values_ = flat(weights_);
@@ -120,7 +120,7 @@ class Training {
 
     void step(std::size_t number, FrontProgress& progress) {
         if (number == options_.imitation_steps || number == first_judging())
-            adam_ = Adam(values_.size(), kSmallestDeviation);
+            adam_ = Adam(values_.size(), kMinDeviation);
         oneapi::tbb::parallel_for(std::size_t{0}, slots_.size(), [&](std::size_t i) {
             fill(slots_[i], static_cast<std::uint64_t>(number) * slots_.size() + i, stage(number));
         });
@@ -135,7 +135,7 @@ class Training {
         leave_out(options_.without, sum);
         Eigen::ArrayXd derivatives = flat(sum) / static_cast<double>(scenes);
         const double length = std::sqrt(derivatives.square().sum());
-        if (length > kLongestGradient) derivatives *= kLongestGradient / length;
+        if (length > kMaxGradient) derivatives *= kMaxGradient / length;
         adam_.add(derivatives);
         values_ -= rate(number) * adam_.mean() / adam_.deviation();
         set(weights_, values_);

@@ -23,7 +23,7 @@ namespace {
 using Generator = boost::random::mt19937_64;
 
 /// As Adam's authors propose.
-constexpr double kSmallestDeviation = 1e-8;
+constexpr double kMinDeviation = 1e-8;
 
 /// All candidates, a column each, and where each list of them begins.
 struct Candidates {
@@ -137,9 +137,9 @@ class Optimiser {
   public:
     Optimiser(const RankNetParameters& parameters, double weight_decay)
         : weight_decay_(weight_decay),
-          hidden_(parameters.hidden.size(), kSmallestDeviation),
-          hidden_bias_(parameters.hidden_bias.size(), kSmallestDeviation),
-          output_(parameters.output.size(), kSmallestDeviation) {}
+          hidden_(parameters.hidden.size(), kMinDeviation),
+          hidden_bias_(parameters.hidden_bias.size(), kMinDeviation),
+          output_(parameters.output.size(), kMinDeviation) {}
 
     void step(const RankNetParameters& gradient, double learning_rate, RankNetParameters& parameters) {
         parameters.hidden *= 1.0 - learning_rate * weight_decay_;

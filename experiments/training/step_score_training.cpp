@@ -21,10 +21,10 @@ namespace conelane::experiments {
 namespace {
 
 /// Where a score hardly ever counts, its derivative is mostly rounding.
-constexpr double kSmallestDeviation = 1e-6;
+constexpr double kMinDeviation = 1e-6;
 
 /// A lane less likely than this adds nothing to a derivative.
-constexpr double kLeastProbability = 1e-3;
+constexpr double kMinProbability = 1e-3;
 
 /// A scene in the search graph with its ground truth, and the beam that is to keep it.
 class RightLane {
@@ -120,7 +120,7 @@ class RightLane {
         for (const std::size_t number : competitors_) {
             const double probability = std::exp(beam_.state(number).score - highest) / sum;
             const double factor = number == right ? probability - 1.0 : probability;
-            if (std::abs(factor) < kLeastProbability) continue;
+            if (std::abs(factor) < kMinProbability) continue;
             for (std::size_t at = number; at != LaneBeam::kNone; at = beam_.state(at).parent) {
                 add_score_derivatives(beam_.state(at).step, factor, derivatives);
             }
@@ -161,7 +161,7 @@ StepScores train_step_scores(const SceneSet& set, const StepScoreTrainingOptions
     StepScores scores{std::vector<double>(count, 0.0)};
     std::vector<double> derivatives(count);
     const auto size = static_cast<Eigen::Index>(count);
-    Adam adam(size, kSmallestDeviation);
+    Adam adam(size, kMinDeviation);
     boost::random::mt19937_64 random(options.seed);
     RightLane lane(options.search);
     Progress progress("training", options.show_progress ? options.epochs : 0);

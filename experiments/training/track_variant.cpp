@@ -15,7 +15,7 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr double kLargestLogStretch = 0.15;
+constexpr double kMaxLogStretch = 0.15;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Track track_variant(Track track, std::size_t number, std::uint64_t seed) {
     track.driven.clear();
     boost::random::mt19937_64 random = generator_of(track.name, seed);
     const double axis_rad = boost::random::uniform_real_distribution<double>(0.0, std::numbers::pi)(random);
-    boost::random::uniform_real_distribution<double> log_stretch(-kLargestLogStretch, kLargestLogStretch);
+    boost::random::uniform_real_distribution<double> log_stretch(-kMaxLogStretch, kMaxLogStretch);
     const double along = std::exp(log_stretch(random));
     const double across = std::exp(log_stretch(random));
     const Point axis(std::cos(axis_rad), std::sin(axis_rad));

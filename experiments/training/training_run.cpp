@@ -103,7 +103,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
     const std::shared_ptr<const LaneRanking> ranking = make_rank_net(run.weights);
     run.trained = ranking_figures(lists, *ranking);
     CandidateListOptions all_candidates = options.candidates;
-    all_candidates.most_per_scene = 0;
+    all_candidates.max_per_scene = 0;
     run.held_out = ranking_figures(enumerate_candidates(held_out, all_candidates), *ranking);
 
     const Json record{{"tracks", trained_on},
@@ -111,7 +111,7 @@ TrainingRun run_training(const TrainingRunOptions& options) {
                       {"hold_out_tracks", track_names(held_out)},
                       {"scenes", scene_options_json(options.scenes)},
                       {"hold_out_every", options.hold_out_every_m},
-                      {"most_candidates_per_scene", options.candidates.most_per_scene},
+                      {"most_candidates_per_scene", options.candidates.max_per_scene},
                       {"iterations", options.candidates.search.iteration_limit},
                       {"steps", Json::parse(options.steps_record)},
                       {"network", describe(options.training)},

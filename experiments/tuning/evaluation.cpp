@@ -29,7 +29,7 @@ SceneValue value_on(RldSolver& solver, const AnnotatedScene& annotated, const Tr
     const EvaluatedScene evaluated = evaluate(solver, annotated.scene, parameters, options);
     if (evaluated.report.status == SolveStatus::feasible || evaluated.report.status == SolveStatus::stopped)
         return {0.0, true};
-    if (evaluated.report.nodes > options.most_nodes) return {};
+    if (evaluated.report.nodes > options.max_nodes) return {};
     return {value_of(evaluated.answer, annotated, boundaries, options)};
 }
 
@@ -110,7 +110,7 @@ std::vector<LapFigure> Evaluation::operator()(const RldParameters& parameters) c
     const std::vector<AnnotatedScene>& scenes = set_.scenes;
     std::vector<double> values(scenes.size(), 0.0);
     std::atomic<std::size_t> timed_out{0};
-    const double timed_out_limit = options_.most_timed_out * static_cast<double>(scenes.size());
+    const double timed_out_limit = options_.max_timed_out * static_cast<double>(scenes.size());
     const auto abandoned = [&] { return static_cast<double>(timed_out.load()) > timed_out_limit; };
     oneapi::tbb::enumerable_thread_specific<std::unique_ptr<RldSolver>> solvers(
         [] { return make_path_pair_solver(); });

@@ -30,9 +30,9 @@ struct EvaluationOptions {
     std::optional<std::size_t> context{};  ///< as ConeSet::context
     /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, has value 0.
     double time_limit_ms = 20.0;
-    std::int64_t most_nodes = 1000;
+    std::int64_t max_nodes = 1000;
     /// Once more of the scenes than this have run into the time limit, all scenes have value 0.
-    double most_timed_out = 0.02;
+    double max_timed_out = 0.02;
     unsigned threads = 1;
 };
 

@@ -9,7 +9,7 @@
 
 namespace conelane::experiments {
 
-/// What each weight of the objective multiplies: of (29), and of the terms for colour and shape beside it.
+/// What each weight of the objective multiplies: of (29), and of the terms for color and shape beside it.
 enum class ObjectiveTerm { benefit, spacing, angle, heading, color, unevenness, facing, near_ends };
 inline constexpr std::size_t kObjectiveTermCount = 8;
 

@@ -19,7 +19,7 @@ constexpr double kGlobalShare = 0.3;
 constexpr double kReach = 0.2;
 /// Of the unit cube: the figures are flat between points closer than that.
 constexpr double kFirstStep = 0.08;
-constexpr double kSmallestStep = 1e-3;
+constexpr double kMinStep = 1e-3;
 
 std::vector<LapFigure> laps_of(const std::vector<LapFigure>& laps, const std::set<std::string>& tracks) {
     std::vector<LapFigure> chosen;
@@ -60,7 +60,7 @@ class Fit {
         search.set_max_objective(&Fit::value, this);
         search.set_maxeval(static_cast<int>(evaluations));
         search.set_initial_step(kFirstStep);
-        search.set_xtol_abs(kSmallestStep);
+        search.set_xtol_abs(kMinStep);
         // A random search must leave its first points behind: NLopt's ten of them a dimension are for longer
         // ones.
         if (algorithm == nlopt::GN_CRS2_LM) {

@@ -30,14 +30,14 @@ class Fit {
     }
 
     void run() {
-        constexpr int kMostSteps = 500;
-        constexpr double kSmallestStep = 1e-6;
+        constexpr int kMaxSteps = 500;
+        constexpr double kMinStep = 1e-6;
         nlopt::opt search(nlopt::LD_MMA, static_cast<unsigned>(best_point_.size()));
         search.set_lower_bounds(lower_);
         search.set_upper_bounds(upper_);
         search.set_max_objective(&Fit::value, this);
-        search.set_maxeval(kMostSteps);
-        search.set_xtol_abs(kSmallestStep);
+        search.set_maxeval(kMaxSteps);
+        search.set_xtol_abs(kMinStep);
         std::vector<double> point = best_point_;
         double reached = 0.0;
         try {

@@ -157,7 +157,7 @@ void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scen
     budget_.iteration_limit = limit;
     if (twice && !complete) {
         EnumerationRules narrow = rules_;
-        narrow.most_discrepancies = options_.second_search_discrepancies;
+        narrow.max_discrepancies = options_.second_search_discrepancies;
         (void)enumeration_.run(graph_, seed.start, scene.pose.heading(), narrow, budget_, pairs_, seed.guide);
     }
     report.complete &= complete;
@@ -165,14 +165,14 @@ void CandidateSearch::run_from(const Seed& seed, bool is_last, const Scene& scen
 
 void CandidateSearch::add_scene_features(const Scene& scene) {
     const std::span<LaneFeatures> features = pairs_.features();
-    double longest_m = 0.0;
-    for (const LaneFeatures& lane : features) longest_m = std::max(longest_m, lane[kLength]);
+    double max_length_m = 0.0;
+    for (const LaneFeatures& lane : features) max_length_m = std::max(max_length_m, lane[kLength]);
     std::size_t i = 0;
     for (const Seed& seed : seeds()) {  // those behind them are of scenes before
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];
-            lane[kLongestShare] = lane[kLength] / longest_m;
+            lane[kMaxShare] = lane[kLength] / max_length_m;
             lane[kStartAsymmetry] = measures.asymmetry_m;
             lane[kStartDistance] = measures.distance_m;
             lane[kSceneCones] = static_cast<double>(scene.cones.size());

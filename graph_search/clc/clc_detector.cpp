@@ -16,7 +16,7 @@ namespace {
 /// Cones stand at most 5 m apart by the rules, so this is the gap that one missed cone leaves. With the 5.5 m
 /// of the paper a lane ends there, and where one cone in twenty is missed a third of the lanes is too short
 /// to be driven by.
-constexpr double kLargestGap_m = 10.0;
+constexpr double kMaxGap_m = 10.0;
 /// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
 /// positives.
 constexpr double kNextVertexDistanceWeight = 1.45;
@@ -106,7 +106,7 @@ ClcOptions paper_clc_options() {
 
 CandidateSearchOptions extended_search_options() {
     CandidateSearchOptions options;
-    options.d_max_m = kLargestGap_m;
+    options.d_max_m = kMaxGap_m;
     options.next_vertex_distance_weight = kNextVertexDistanceWeight;
     options.step_scores = shipped_step_scores();
     options.second_search_discrepancies = kSecondSearchDiscrepancies;

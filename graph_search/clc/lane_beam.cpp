@@ -67,7 +67,7 @@ Place place(std::size_t measure, double value) {
 
 /// A first segment may turn farther from the heading than two segments from each other: the car need not
 /// stand along the lane.
-constexpr double kLargestFirstTurn_rad = 110.0 * kDegree;
+constexpr double kMaxFirstTurn_rad = 110.0 * kDegree;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
 
@@ -123,7 +123,7 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     scores_ = &scores;
     bounds_ = bounds;
     turn_limit_ = turning_measure(bounds.phi_max_rad);
-    first_turn_limit_ = turning_measure(kLargestFirstTurn_rad);
+    first_turn_limit_ = turning_measure(kMaxFirstTurn_rad);
     heading_ = scene.pose.heading();
     width_ = width;
     states_.clear();

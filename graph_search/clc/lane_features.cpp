@@ -245,19 +245,19 @@ LaneFeatures LaneGrowth::features() const {
     features[kMeanDegree] = degree_.mean();
     features[kSharpestTurn] = whole_.sharpest_turn_rad;
     features[kSharpestTurnChange] = whole_.sharpest_turn_change_rad;
-    features[kLongestSegment] = whole_.longest_segment_m;
+    features[kMaxSegment] = whole_.longest_segment_m;
     features[kMeanSquaredSkew] = whole_.skew.mean_of_squares();
     features[kMeanAcross] = across_.mean();
     features[kAcrossVariance] = across_.variance();
-    features[kShortestSegment] = whole_.shortest_segment_m;
+    features[kMinSegment] = whole_.shortest_segment_m;
     features[kStartSkew] = start_skew_;
     features[kConesBeside] = whole_.cones.beside;
     features[kEndTurn] = std::max(std::abs(left.last_turn_rad), std::abs(right.last_turn_rad));
     features[kEndSegment] = std::max(left.last_segment_m, right.last_segment_m);
     features[kEndTurnChange] = last_turn_change_rad_;
-    features[kLargestOffset] = whole_.largest_offset_m;
+    features[kMaxOffset] = whole_.largest_offset_m;
     features[kRmsOffset] = std::sqrt(whole_.offsets_m.mean_of_squares());
-    features[kLargestSkew] = whole_.largest_skew;
+    features[kMaxSkew] = whole_.largest_skew;
     features[kNearSharpestTurn] = near_.sharpest_turn_rad;
     features[kNearSharpestTurnChange] = near_.sharpest_turn_change_rad;
     features[kNearRmsTurnChange] = std::sqrt(near_.turn_changes.mean_of_squares());
@@ -311,9 +311,9 @@ void add_width_features(const OnlineLaneWidth& width, const std::array<std::size
         }
     }
     lane[kWidthVariance] = width.variance();
-    lane[kNarrowest] = whole.narrowest_m;
-    lane[kWidest] = whole.widest_m;
-    lane[kLargestWidthChange] = whole.largest_change_m;
+    lane[kMinWidth] = whole.narrowest_m;
+    lane[kMaxWidth] = whole.widest_m;
+    lane[kMaxWidthChange] = whole.largest_change_m;
     lane[kNearNarrowest] = near.narrowest_m;
     lane[kNearWidest] = near.widest_m;
     lane[kNearMeanWidth] = near_widths.mean();

@@ -31,7 +31,7 @@ enum LaneFeature : std::size_t {
     kTurnVarianceLeft,
     kTurnVarianceRight,
     // Length over that of the longest candidate of the scene.
-    kLongestShare,
+    kMaxShare,
     // Of the two first cones, as StartVertexRules has them.
     kStartAsymmetry,
     kStartDistance,
@@ -45,7 +45,7 @@ enum LaneFeature : std::size_t {
     kMeanDegree,
     kSharpestTurn,
     kSharpestTurnChange,
-    kLongestSegment,
+    kMaxSegment,
     // Chord between the direction of a segment and that of the last one opposite when it was added, squared.
     kMeanSquaredSkew,
     // Between the two last cones after each step.
@@ -57,7 +57,7 @@ enum LaneFeature : std::size_t {
     kAbsoluteMeanTurnRight,
     kMeanSquaredTurnChangeLeft,
     kMeanSquaredTurnChangeRight,
-    kShortestSegment,
+    kMinSegment,
     // Largest chord between the direction of a first segment and the car's heading.
     kStartSkew,
     // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
@@ -67,13 +67,13 @@ enum LaneFeature : std::size_t {
     kEndSegment,
     kEndTurnChange,
     // Vertices off where the two on each side of them would have one; skew as above.
-    kLargestOffset,
+    kMaxOffset,
     kRmsOffset,
-    kLargestSkew,
+    kMaxSkew,
     // Of the widths at the vertices; a change is from a vertex to the next of its side.
-    kNarrowest,
-    kWidest,
-    kLargestWidthChange,
+    kMinWidth,
+    kMaxWidth,
+    kMaxWidthChange,
     // Of the near part alone.
     kNearSharpestTurn,
     kNearSharpestTurnChange,
@@ -153,7 +153,7 @@ class LaneGrowth {
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
     /// All features but those of the width, which add_width_features sets, and what belongs to the scene
-    /// (kLongestShare, kSceneCones, of kStart* all but kStartSkew); these are left 0.
+    /// (kMaxShare, kSceneCones, of kStart* all but kStartSkew); these are left 0.
     [[nodiscard]] LaneFeatures features() const;
     /// By side, the vertices of the near part, its first one included.
     [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;

@@ -267,7 +267,7 @@ void PathPairEnumeration::extend(const Choice& choice, const std::array<bool, 2>
 }
 
 bool PathPairEnumeration::drop_visited(Call& call, Side side) const {
-    if (call.discrepancies + call.tried[side] > rules_.most_discrepancies) return false;
+    if (call.discrepancies + call.tried[side] > rules_.max_discrepancies) return false;
     NextVertexDecider::Range& unvisited = call.unvisited[side];
     while (unvisited.begin != unvisited.end) {
         const Vertex vertex = next_vertex_.option(unvisited.begin).vertex;

@@ -32,7 +32,7 @@ struct EnumerationRules {
     double next_vertex_distance_weight = 0.0;  ///< of NVD; 0: equation (3)
     /// Limited-discrepancy search: lanes with more are left out. A vertex that NVD puts in place k + 1 counts
     /// k, and a lane's are added up.
-    std::uint32_t most_discrepancies = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t max_discrepancies = std::numeric_limits<std::uint32_t>::max();
     bool with_features = false;  ///< whether PathPairs::features is filled
 };
 
@@ -133,7 +133,7 @@ class PathPairs {
 class PathPairEnumeration {
   public:
     /// Adds to `pairs` all feasible path pairs from `start` with at least two vertices a side and at most
-    /// rules.most_discrepancies that are not there yet by the same steps, in the order met; each one that can
+    /// rules.max_discrepancies that are not there yet by the same steps, in the order met; each one that can
     /// be closed (section IV-E) is followed by itself, closed. Draws on `budget`, in which an iteration is
     /// one run of the loop in line 3; where it is spent the search stops, and what was found stays. Returns
     /// whether the enumeration is complete. Keeps memory from call to call. Precondition: `heading` is a unit

@@ -59,13 +59,13 @@ void StartPairs::find_candidates(const Scene& scene) {
     }
     complete_ = true;
     for (std::vector<Candidate>& side : candidates_) {
-        if (side.size() <= kMostVertices) continue;
+        if (side.size() <= kMaxVertices) continue;
         complete_ = false;
         const auto order = [](const Candidate& candidate) {
             return std::pair(candidate.distance_m, candidate.vertex);
         };
-        std::ranges::nth_element(side, side.begin() + kMostVertices, {}, order);
-        side.resize(kMostVertices);
+        std::ranges::nth_element(side, side.begin() + kMaxVertices, {}, order);
+        side.resize(kMaxVertices);
     }
 }
 

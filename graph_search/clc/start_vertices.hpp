@@ -47,7 +47,7 @@ class StartPairs {
   public:
     /// Of each side only so many vertices, the nearest to the car, are looked at: this bounds time and memory
     /// however many cones stand around the car.
-    static constexpr std::size_t kMostVertices = 128;
+    static constexpr std::size_t kMaxVertices = 128;
 
     /// Finds all pairs within the largest radius. Keeps memory from call to call.
     void find(const Scene& scene, const StartVertexRules& rules, const LaneBounds& bounds);

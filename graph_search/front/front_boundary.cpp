@@ -40,7 +40,7 @@ std::optional<Side> BoundarySearch::find(FrontMap& map, SearchBudget& budget, st
             if (is_boundary(chain) && (best == kNone || chain.score > chains_[best].score)) {
                 best = number;
             }
-            if (chain.count < rules_.most_cones) extend(map, number);
+            if (chain.count < rules_.max_cones) extend(map, number);
             if (budget.read_clock()) return std::nullopt;
         }
         keep_best(last);
@@ -81,7 +81,7 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
             front_angle(cross(chain.direction, edge.direction), chain.direction.dot(edge.direction));
         const double turn_size_rad = std::abs(turn_rad);
         if (length_m > kShortSegment_m) {
-            if (chain.count < rules_.fewest_cones || length_m > kLongestSegment_m) break;
+            if (chain.count < rules_.fewest_cones || length_m > kMaxSegment_m) break;
             if (turn_size_rad > rules_.largest_bridging_turn_rad || map.neighbourhood(chain.last, i).blocked)
                 continue;
         }

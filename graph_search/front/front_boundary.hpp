@@ -27,7 +27,7 @@ struct BoundaryRules {
     double farthest_m = 4.5;
     double usual_distance_m = 1.75;  ///< half a usual lane
     std::size_t fewest_cones = 3;
-    std::size_t most_cones = 100;
+    std::size_t max_cones = 100;
     // Of all segments together, and of their mean: three cones must be nearly perfect, more need not.
     double least_score = 1.6;
     double least_mean_score = 0.6;
@@ -38,7 +38,7 @@ struct BoundaryRules {
 /// begins beside the car. A segment counts 1, less for uneven spacing, for a turn and for a change of it,
 /// less for being shorter than 2 m. The side is that on which it passes the car: the arc through its first
 /// three cones is followed back to where the car stands, so in a bend the outer boundary may begin on the
-/// other side of the heading. From the third cone on cones are bridged, by up to kLongestSegment_m. Keeps
+/// other side of the heading. From the third cone on cones are bridged, by up to kMaxSegment_m. Keeps
 /// memory from call to call.
 class BoundarySearch {
   public:

@@ -17,10 +17,10 @@ namespace {
 constexpr double kRepeatBonus = 0.2;
 /// A lane that is less surely usable gives way to a boundary seen alone. Of views that show one boundary
 /// only, half have such a lane at best; of the others one in a thousand.
-constexpr double kLeastConfidence = 0.1;
-constexpr std::size_t kFewestInsteadOfALane = 5;  ///< cones of such a boundary: fewer are found in noise
+constexpr double kMinConfidence = 0.1;
+constexpr std::size_t kMinConesInsteadOfLane = 5;  ///< cones of such a boundary: fewer are found in noise
 /// A wide lane may widen by a quarter before its far ends are dropped.
-constexpr double kWidestEnd = 1.25;
+constexpr double kMaxEndWidth = 1.25;
 
 double distance_m(const FrontMap& map, Vertex cone, std::span<const Vertex> boundary) {
     const Point& at = map.position(cone);
@@ -68,13 +68,13 @@ class FrontDetector final : public LaneDetector {
         answer.enumeration = {front_.expanded(), !answer.stopped_by && !front_.left_out(), {}};
         if (choose(budget.stopped_by.has_value())) {
             answer.status = LaneStatus::found;
-            answer.lane = {ids(kLeft, scene), ids(kRight, scene)};
+            answer.lane = {ids(cones_[kLeft], scene), ids(cones_[kRight], scene)};
             answer.confidence = judge_.confidence(chosen_);
             answer.trusted_m =
                 judge_.trusted_m(front_, chosen_, {cones_[kLeft].size(), cones_[kRight].size()});
             if (limits.keep_candidates) add_best_lanes(scene, *answer.enumeration);
-            if (!answer.stopped_by && *answer.confidence < kLeastConfidence)
-                answer_one_boundary(scene, budget, answer, kFewestInsteadOfALane);
+            if (!answer.stopped_by && *answer.confidence < kMinConfidence)
+                answer_one_boundary(scene, budget, answer, kMinConesInsteadOfLane);
             const bool two_sided = !answer.lane.left.empty() && !answer.lane.right.empty();
             if (evidence_ && two_sided) evidence_->remember(answer.lane);
         } else if (!answer.stopped_by) {
@@ -90,15 +90,14 @@ class FrontDetector final : public LaneDetector {
     /// stays, but for what the budget says.
     void answer_one_boundary(const Scene& scene, SearchBudget& budget, LaneAnswer& answer,
                              std::size_t fewest_cones = 0) {
-        const std::optional<Side> side = boundary_.find(front_.map(), budget, cones_[kLeft]);
+        const std::optional<Side> side = boundary_.find(front_.map(), budget, boundary_cones_);
         if (budget.stopped_by) {
             if (answer.status != LaneStatus::found) answer.status = LaneStatus::stopped;
             answer.stopped_by = budget.stopped_by;
-        } else if (side && cones_[kLeft].size() >= fewest_cones) {
+        } else if (side && boundary_cones_.size() >= fewest_cones) {
             answer.status = LaneStatus::found;
-            std::vector<ConeId> boundary = ids(kLeft, scene);
             answer.lane = {};
-            (side == kLeft ? answer.lane.left : answer.lane.right) = std::move(boundary);
+            (side == kLeft ? answer.lane.left : answer.lane.right) = ids(boundary_cones_, scene);
             answer.confidence.reset();
             answer.trusted_m.reset();
         }
@@ -122,16 +121,18 @@ class FrontDetector final : public LaneDetector {
         }
         if (contenders_.empty()) return false;
         judge_.look(front_, contenders_);
-        return std::ranges::any_of(judge_.order(), [&](std::size_t place) {
+        for (const std::size_t place : judge_.order()) {
+            if (!take(contenders_[place].node)) continue;
             chosen_ = place;
-            return take(contenders_[place].node);
-        });
+            return true;
+        }
+        return false;
     }
 
     void add_best_lanes(const Scene& scene, Enumeration& best) {
         for (const std::size_t place : judge_.order()) {
             if (!take(contenders_[place].node)) continue;
-            Lane lane{ids(kLeft, scene), ids(kRight, scene)};
+            Lane lane{ids(cones_[kLeft], scene), ids(cones_[kRight], scene)};
             if (std::ranges::find(best.candidates, lane, &LaneCandidate::lane) != best.candidates.end())
                 continue;
             const auto number = static_cast<std::int64_t>(best.candidates.size() + 1);
@@ -145,10 +146,10 @@ class FrontDetector final : public LaneDetector {
         return cones_[kLeft].size() > 1 && cones_[kRight].size() > 1;
     }
 
-    [[nodiscard]] std::vector<ConeId> ids(Side side, const Scene& scene) {
+    [[nodiscard]] std::vector<ConeId> ids(std::span<const Vertex> cones, const Scene& scene) const {
         std::vector<ConeId> ids;
-        ids.reserve(cones_[side].size());
-        for (const Vertex cone : cones_[side]) ids.push_back(scene.cones[front_.map().scene_index(cone)].id);
+        ids.reserve(cones.size());
+        for (const Vertex cone : cones) ids.push_back(scene.cones[front_.map().scene_index(cone)].id);
         return ids;
     }
 
@@ -160,7 +161,8 @@ class FrontDetector final : public LaneDetector {
     std::vector<FrontJudge::Contender> contenders_;
     std::size_t chosen_ = 0;
     BoundarySearch boundary_;
-    std::array<std::vector<Vertex>, 2> cones_;
+    std::vector<Vertex> boundary_cones_;        ///< of the boundary that is seen alone
+    std::array<std::vector<Vertex>, 2> cones_;  ///< of the lane, by side
 };
 
 }  // namespace
@@ -186,9 +188,10 @@ void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cone
         }
         return counts;
     };
-    std::array<std::size_t, 2> counts = evened(kWidestLane_m);
+    std::array<std::size_t, 2> counts = evened(kMaxLaneWidth_m);
     if (std::min(counts[kLeft], counts[kRight]) < 2) {
-        counts = evened(kWidestEnd * 0.5 * (near_width_m(map, left, right) + near_width_m(map, right, left)));
+        counts =
+            evened(kMaxEndWidth * 0.5 * (near_width_m(map, left, right) + near_width_m(map, right, left)));
     }
     left.resize(counts[kLeft]);
     right.resize(counts[kRight]);

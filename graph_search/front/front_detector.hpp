@@ -46,8 +46,9 @@ struct FrontOptions {
 /// range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 
-/// The cones of a lane without its far ends, as even_far_ends, on positions. Where kWidestLane_m would leave
-/// no lane, which is a wide one, they may be apart a quarter more than its nearer half is. For training too.
+/// The cones of a lane without its far ends, as even_far_ends, on positions. Where kMaxLaneWidth_m would
+/// leave no lane, which is a wide one, they may be apart a quarter more than its nearer half is. For training
+/// too.
 void even_far_ends(const FrontMap& map, std::array<std::vector<Vertex>, 2>& cones);
 
 }  // namespace conelane

@@ -114,10 +114,10 @@ constexpr double kFarBeyond = 2.0;
 constexpr double kPartnerReach_m = 3.0;
 constexpr double kPlaceReach_m = 2.5;
 constexpr double kFarOff_m = 6.0;
-constexpr double kUsualWidth = 0.9;
+constexpr double kDefaultWidth = 0.9;
 constexpr double kStrip_m = 1.5;
 constexpr double kRounding_m = 1e-3;  // lengths of edges are float
-constexpr float kMostCounted = 3.0F;
+constexpr float kMaxCounted = 3.0F;
 
 float scaled(double value, double unit, double most = 4.0) {
     return static_cast<float>(std::clamp(value / unit, -most, most));
@@ -153,7 +153,7 @@ double mean_segment_m(const FrontState& state) {
 constexpr double kClearly = 1e-9;
 
 /// Cones of `from`'s neighbours strictly inside the triangle of `from`, b and the other end c, up to
-/// kMostCounted.
+/// kMaxCounted.
 float inside_triangle(FrontMap& map, Vertex from, const Point& b, const Point& c, Vertex b_cone,
                       Vertex c_cone, const StateMeasures& measures) {
     const Point& a = map.position(from);
@@ -173,7 +173,7 @@ float inside_triangle(FrontMap& map, Vertex from, const Point& b, const Point& c
         if (sign * cross(b - a, p - a) > 0.0 && sign * cross(c - b, p - b) > 0.0 &&
             sign * cross(a - c, p - c) > 0.0) {
             count += 1.0F;
-            if (count == kMostCounted) break;
+            if (count == kMaxCounted) break;
         }
     }
     return count;
@@ -204,7 +204,7 @@ std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const Fr
             nearest_m2 = off_m2;
             farthest_m = reach_m + std::max(std::sqrt(nearest_m2), kPlaceReach_m);
         }
-        if (off_m2 < kPlaceReach_m * kPlaceReach_m) near = std::min(near + 1.0F, kMostCounted);
+        if (off_m2 < kPlaceReach_m * kPlaceReach_m) near = std::min(near + 1.0F, kMaxCounted);
     }
     return {std::sqrt(nearest_m2), near};
 }
@@ -232,7 +232,7 @@ StateMeasures measure(FrontMap& map, const FrontState& state, Side side) {
     measures.mean_width_m = state.mean_width_m();
     measures.mean_segment_m = mean_segment_m(state);
     measures.log_mean_segment = static_cast<float>(std::log(measures.mean_segment_m));
-    static_assert(FrontMap::kMostEdges <= std::numeric_limits<std::uint8_t>::max());
+    static_assert(FrontMap::kMaxEdges <= std::numeric_limits<std::uint8_t>::max());
     const Point across = map.position(other.cones[0]) - map.position(end);
     const std::span<const FrontEdge> edges = map.edges(end);
     std::size_t left = 0;
@@ -273,7 +273,7 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
             static_cast<float>(std::abs(skew_rad)),
             scaled((facing - at).norm(), kLength_m),
             scaled(measures.width_m, kLength_m),
-            scaled(measures.mean_width_m, kLength_m) - static_cast<float>(kUsualWidth),
+            scaled(measures.mean_width_m, kLength_m) - static_cast<float>(kDefaultWidth),
             scaled(lag_m, kLength_m, 2.0),
             scaled(measures.mean_segment_m, kLength_m),
             map.density(own.cones[0]),
@@ -331,7 +331,7 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
             static_cast<float>(std::abs(turn_other_rad)),
             static_cast<float>(skew_rad),
             static_cast<float>(std::abs(skew_rad)),
-            scaled(width_m, kLength_m) - static_cast<float>(kUsualWidth),
+            scaled(width_m, kLength_m) - static_cast<float>(kDefaultWidth),
             scaled(std::abs(width_m - mean_width_m), 1.0),
             scaled(width_m - measures.width_m, kLength_m),
             scaled((facing - at).norm(), kLength_m),
@@ -339,7 +339,7 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
             inside_triangle(map, from, at, facing, move.to, other.cones[0], measures),
             about.nearest_beside[side == kRight ? kLeft : kRight],
             about.nearest_beside[side],
-            std::min(about.beside, kMostCounted),
+            std::min(about.beside, kMaxCounted),
             std::min(about.within_disc, 4.0F) / 2.0F,
             about.continuation,
             scaled(std::sqrt(partner_m2), kPartnerReach_m, 1.0),
@@ -391,7 +391,7 @@ StartCone start_cone(FrontMap& map, Vertex cone) {
     for (const FrontEdge& edge : map.edges(cone)) {
         const Point way = map.position(edge.to) - at;
         if (way.x() < 0.0 && std::abs(way.y()) < kStrip_m && map.position(edge.to).x() > -0.6) {
-            start.behind = std::min(start.behind + 1.0F, kMostCounted);
+            start.behind = std::min(start.behind + 1.0F, kMaxCounted);
         }
         if (edge.length_m > static_cast<float>(kShortSegment_m)) continue;
         const auto bend_rad = std::abs(edge.bearing_rad);
@@ -419,7 +419,7 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
         if (edge.to == other.cone) continue;
         const Point& p = map.position(edge.to);
         if (sign * cross(a, p) > 0.0 && sign * cross(b - a, p - a) > 0.0 && sign * cross(-b, p - b) > 0.0) {
-            inside = std::min(inside + 1.0F, kMostCounted);
+            inside = std::min(inside + 1.0F, kMaxCounted);
         }
     }
     return {scaled(a.x(), 5.0),

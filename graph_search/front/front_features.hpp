@@ -60,7 +60,7 @@ struct StateMeasures {
     float log_mean_segment;
     /// The ways from the side's end to the left and to the right of the line to the other end, those along it
     /// in both: places in FrontMap::edges, ascending.
-    std::array<std::array<std::uint8_t, FrontMap::kMostEdges>, 2> ways;
+    std::array<std::array<std::uint8_t, FrontMap::kMaxEdges>, 2> ways;
     std::array<std::size_t, 2> way_counts;
 };
 [[nodiscard]] StateMeasures measure(FrontMap& map, const FrontState& state, Side side);

@@ -58,10 +58,10 @@ constexpr std::array<FrontFeature, kWholeLaneFeatures> kWholeLaneTable{{
 constexpr double kNear_m = 20.0;
 constexpr double kTrustMargin_m = 0.5;
 constexpr float kScore = 4.0F;
-constexpr float kMost = 2.0F;
+constexpr float kMax = 2.0F;
 
 float score_input(double score) {
-    return std::clamp(static_cast<float>(score) / kScore, -kMost, kMost);
+    return std::clamp(static_cast<float>(score) / kScore, -kMax, kMax);
 }
 
 /// Without what the search adds for FrontEvidence.
@@ -75,10 +75,10 @@ double probability_of(double log_odds) {
 
 /// What the cones of a lane have in all, and at worst.
 struct Tally {
-    float least_lead = kMost;
+    float least_lead = kMax;
     float least_share = 1.0F;
-    float least_score = kMost;
-    float least_margin = kMost;
+    float least_score = kMax;
+    float least_margin = kMax;
     double right_near = 1.0;
     double right = 1.0;
     double shared_m = 0.0;
@@ -239,9 +239,9 @@ void FrontJudge::find_shared(FrontSearch& search) {
 }
 
 void FrontJudge::see_cones(FrontSearch& search) {
-    least_share_.resize(steps_.size());
+    min_share_.resize(steps_.size());
     const double lane_lead =
-        scores_.size() > 1 ? scores_[0] - scores_[1] : static_cast<double>(kMost * kScore);
+        scores_.size() > 1 ? scores_[0] - scores_[1] : static_cast<double>(kMax * kScore);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         Step& step = steps_[i];
         const FrontSearch::Node& node = search.node(step.node);
@@ -253,14 +253,14 @@ void FrontJudge::see_cones(FrontSearch& search) {
         const auto best = static_cast<std::size_t>(std::countr_zero(with));
         const auto rival = static_cast<std::size_t>(std::countr_one(with));
         const double lead =
-            rival < scores_.size() ? scores_[best] - scores_[rival] : static_cast<double>(kMost * kScore);
-        least_share_[i] = std::min(static_cast<float>(share), is_first ? 1.0F : least_share_[step.parent]);
+            rival < scores_.size() ? scores_[best] - scores_[rival] : static_cast<double>(kMax * kScore);
+        min_share_[i] = std::min(static_cast<float>(share), is_first ? 1.0F : min_share_[step.parent]);
         const double own_score = is_first ? plain(node) : plain(node) - plain(search.node(node.parent));
         step.inputs = {is_first ? 1.0F : 0.0F,
                        score_input(own_score),
                        score_input(static_cast<double>(node.margin)),
                        static_cast<float>(share),
-                       least_share_[i],
+                       min_share_[i],
                        score_input(lead),
                        score_input(lane_lead),
                        static_cast<float>(probability_[best])};
@@ -296,10 +296,10 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
                             static_cast<float>(all.right_near),
                             static_cast<float>(all.right),
                             static_cast<float>(both_m / 2.0 / view_m),
-                            std::clamp(static_cast<float>(std::log(both_m / expected_m_)), -kMost, kMost),
+                            std::clamp(static_cast<float>(std::log(both_m / expected_m_)), -kMax, kMax),
                             static_cast<float>(std::min(all.length_m[kLeft], all.length_m[kRight]) /
                                                std::max(all.length_m[kLeft], all.length_m[kRight])),
-                            std::min(moves / 20.0F, kMost),
+                            std::min(moves / 20.0F, kMax),
                             std::min(all.bridges, 4.0F) / 2.0F,
                             all.longest,
                             std::min(all.inside, 4.0F) / 2.0F,

@@ -93,7 +93,7 @@ class FrontJudge {
     std::vector<Step> steps_;
     std::vector<std::uint32_t> step_of_node_;
     std::vector<std::uint32_t> on_contenders_;  ///< of each step: a bit for each lane that shares its segment
-    std::vector<float> least_share_;            ///< of each step: of it and all before it
+    std::vector<float> min_share_;              ///< of each step: of it and all before it
     std::vector<Shared> shared_;
     std::array<std::vector<std::uint32_t>, kContenders> paths_;
     std::vector<double> scores_;  ///< of the contenders, without bonus

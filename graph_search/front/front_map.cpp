@@ -74,9 +74,9 @@ void FrontMap::find_view_radius() {
 
 bool FrontMap::is_alone(Vertex cone) const {
     const Point& at = positions_[cone];
-    const auto [first, last] = ahead_between(at.x() - kLongestSegment_m, at.x() + kLongestSegment_m);
+    const auto [first, last] = ahead_between(at.x() - kMaxSegment_m, at.x() + kMaxSegment_m);
     for (Vertex other = first; other < last; ++other) {
-        if (other != cone && (positions_[other] - at).squaredNorm() <= kLongestSegment_m * kLongestSegment_m)
+        if (other != cone && (positions_[other] - at).squaredNorm() <= kMaxSegment_m * kMaxSegment_m)
             return false;
     }
     return true;
@@ -104,12 +104,12 @@ void FrontMap::find_edges(Vertex from) {
     found_.clear();
     // Shorter ones have no direction or, as float, no length: the two cones stand at one place.
     constexpr double kOnePlace_m = 1e-9;
-    find(kOnePlace_m, kLongestSegment_m);
-    std::size_t most = kMostEdges;
+    find(kOnePlace_m, kMaxSegment_m);
+    std::size_t most = kMaxEdges;
     if (found_.size() < kFewEdges) {
         most = kFewEdges;
-        find(kLongestSegment_m, kLongestAmongFew_m);
-    } else if (found_.size() > kMostEdges) {
+        find(kMaxSegment_m, kMaxLengthAmongFew_m);
+    } else if (found_.size() > kMaxEdges) {
         left_out_edges_ = true;
     }
     const auto shorter = [](const FrontEdge& a, const FrontEdge& b) {

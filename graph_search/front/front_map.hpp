@@ -18,8 +18,8 @@ inline constexpr Vertex kNoCone = ~Vertex{0};
 
 /// Longest segment of a boundary [m]: where cones are many, and where they are few; and the longest one that
 /// needs no reason (the rules ask for a cone every 5 m; a longer one bridges cones that were not seen).
-inline constexpr double kLongestSegment_m = 11.5;
-inline constexpr double kLongestAmongFew_m = 15.5;
+inline constexpr double kMaxSegment_m = 11.5;
+inline constexpr double kMaxLengthAmongFew_m = 15.5;
 inline constexpr double kShortSegment_m = 5.8;
 
 /// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 where both are 0. An approximation
@@ -82,8 +82,8 @@ struct EdgeNeighbourhood {
 /// the map before.
 class FrontMap {
   public:
-    static constexpr std::size_t kFewEdges = 12;    ///< a cone that has fewer looks farther
-    static constexpr std::size_t kMostEdges = 160;  ///< from a cone, the shortest ones
+    static constexpr std::size_t kFewEdges = 12;   ///< a cone that has fewer looks farther
+    static constexpr std::size_t kMaxEdges = 160;  ///< from a cone, the shortest ones
 
     void build(const Scene& scene);
 
@@ -93,14 +93,14 @@ class FrontMap {
     [[nodiscard]] std::size_t scene_index(Vertex cone) const { return order_[cone]; }
     /// Cones with x in [low, high] are those from the first to the second.
     [[nodiscard]] std::pair<Vertex, Vertex> ahead_between(double low_m, double high_m) const;
-    /// Distance from the car of the farthest cone that has another one within kLongestSegment_m: about as far
+    /// Distance from the car of the farthest cone that has another one within kMaxSegment_m: about as far
     /// as the car sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one
     /// where all are alone.
     [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
 
-    /// The ways from a cone of at most kLongestSegment_m, the shortest first; where they are fewer than
-    /// kFewEdges, as many of at most kLongestAmongFew_m. Cones at the same place are not joined. Stays valid
-    /// until the next `build`.
+    /// The ways from a cone of at most kMaxSegment_m, the shortest first; where they are fewer than
+    /// kFewEdges, as many of at most kMaxLengthAmongFew_m. Cones at the same place are not joined. Stays
+    /// valid until the next `build`.
     [[nodiscard]] std::span<const FrontEdge> edges(Vertex from) {
         if (places_[from].count == kNotAsked) find_edges(from);
         const Place& place = places_[from];

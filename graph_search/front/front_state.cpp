@@ -6,12 +6,12 @@ namespace conelane {
 namespace {
 
 /// A usual lane, which counts as one width measured.
-constexpr float kUsualWidth_m = 3.6F;
+constexpr float kDefaultWidth_m = 3.6F;
 
 }  // namespace
 
 float FrontState::mean_width_m() const {
-    return (kUsualWidth_m + width_sum_m) / static_cast<float>(1 + widths);
+    return (kDefaultWidth_m + width_sum_m) / static_cast<float>(1 + widths);
 }
 
 bool FrontState::same_front(const FrontState& other) const {

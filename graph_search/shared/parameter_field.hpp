@@ -17,7 +17,7 @@ struct ParameterField {
     double lowest;          ///< valid, as `highest` is
     double highest;
     bool logarithmic;  ///< tuning takes equal steps in ratio; `lowest` is positive
-    std::string_view meaning;
+    std::string_view description;
 };
 
 /// Throws InvalidInput naming the first parameter that is not a number in its range.

@@ -8,7 +8,7 @@ namespace conelane::constraints {
 namespace {
 
 /// Above every valid d_max; numbers beyond it would only disturb solvers [m].
-constexpr double kLongestDistance_m = 1e6;
+constexpr double kMaxDistance_m = 1e6;
 /// Share of d_max, or of 1 m, by which a distance has to exceed it to be felt: solvers meet rows within 1e-7.
 constexpr double kFelt = 1e-5;
 
@@ -43,7 +43,7 @@ void far_distance(const FamilyContext& context) {
             if (i == j) continue;
             if (rows.stop()) return;
             // Any distance above d_max says the same.
-            double distance = std::min(problem.distance_m[i][j], kLongestDistance_m);
+            double distance = std::min(problem.distance_m[i][j], kMaxDistance_m);
             // Of two far cones one that nearly ties must say to a solver what it says here.
             if (are_apart[i * n + j])
                 distance = std::max(distance, felt);

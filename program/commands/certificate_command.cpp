@@ -35,7 +35,7 @@ struct Options {
     std::optional<std::size_t> nearest;
     double time_limit_ms = std::numeric_limits<double>::infinity();
     bool whole = false;
-    std::int64_t most_steps = 5'000'000;
+    std::int64_t max_steps = 5'000'000;
     ParameterSource parameters;
 };
 
@@ -188,7 +188,7 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
                         ConeId missing{};
                         SearchVerdict verdict;
                         if (const auto certificate = from_search_record(scene, record, missing)) {
-                            verdict = verify_search(scene, parameters, *certificate, options.most_steps);
+                            verdict = verify_search(scene, parameters, *certificate, options.max_steps);
                         } else {
                             verdict.reason = no_cone(missing);
                         }
@@ -201,13 +201,13 @@ void verify_searches(const Options& options, const RldParameters& parameters) {
                     });
     fmt::print(
         "verified: {} optima, {} infeasible, {} lower bounds; {} refused; {} not verified within {} steps\n",
-        optima, infeasible, bounds, refused, unverified, options.most_steps);
+        optima, infeasible, bounds, refused, unverified, options.max_steps);
     report_none_verified(options, refused + unverified == records.size());
     if (refused + unverified > 0) throw CLI::RuntimeError(1);
 }
 
 bool claims_nothing(double bound) {
-    return !(bound > -SearchCertificate::kMostBound);
+    return !(bound > -SearchCertificate::kMaxBound);
 }
 
 /// Says of which scenes nothing was proven. Throws CLI::RuntimeError of exit code 1 where that is all.
@@ -262,7 +262,7 @@ void add_certify_command(CLI::App& program) {
         "of the whole search, verified in rational arithmetic, not of the root's bound alone; --verify "
         "sees what a file holds");
     command
-        .add_option("--most-steps", options->most_steps,
+        .add_option("--most-steps", options->max_steps,
                     "labels and fronts for verifying a whole search; with more it is not verified")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
         ->capture_default_str();

@@ -144,7 +144,7 @@ void add_sweep_command(CLI::App& program) {
     add_shared_options(command, *options);
     command.add_option("--sizes", *sizes, "cone-set sizes")
         ->delimiter(',')
-        ->check(whole_number(1, kMostCones))
+        ->check(whole_number(1, kMaxCones))
         ->capture_default_str();
     command.callback([options, sizes] {
         for (const std::string& method : split_methods(options->methods)) {

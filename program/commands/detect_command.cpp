@@ -150,7 +150,7 @@ void add_methods_command(CLI::App& program) {
             const ConeSet set = cone_set(method, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
-            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.meaning);
+            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.description);
         }
     });
 }

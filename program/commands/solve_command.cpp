@@ -112,7 +112,7 @@ void add_solvers_command(CLI::App& program) {
     program.add_subcommand("solvers", "the RLD solvers of this build")->callback([] {
         for (const RldSolverEntry& solver : rld_solvers()) {
             fmt::print("{:<16} {:<28} {}\n", solver.name,
-                       solver.uses_formulation ? "formulations: tight, paper" : "", solver.meaning);
+                       solver.uses_formulation ? "formulations: tight, paper" : "", solver.description);
         }
     });
 }

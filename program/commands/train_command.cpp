@@ -25,7 +25,7 @@ struct Options {
         run.scenes.false_positive_rates = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5};
         run.scenes.ranges_m = {30.0, 50.0};
         run.scenes.every_m = 1.0;
-        run.candidates.most_per_scene = 120;
+        run.candidates.max_per_scene = 120;
     }
     TrainingRunOptions run;
     bool extended = false;
@@ -118,18 +118,18 @@ void train(Options& options) {
     print("hold-out", result.held_out);
 }
 
-constexpr int kMost = 1'000'000;
+constexpr int kMax = 1'000'000;
 
 CLI::Option& add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
-                              const std::string& meaning, int least = 1) {
-    return *command.add_option(name, count, meaning)
-                ->check(whole_number(static_cast<std::size_t>(least), kMost))
+                              const std::string& description, int least = 1) {
+    return *command.add_option(name, count, description)
+                ->check(whole_number(static_cast<std::size_t>(least), kMax))
                 ->capture_default_str();
 }
 
 void add_number_option(CLI::App& command, const std::string& name, double& number,
-                       const std::string& meaning) {
-    command.add_option(name, number, meaning)->capture_default_str();
+                       const std::string& description) {
+    command.add_option(name, number, description)->capture_default_str();
 }
 
 /// What is trained on, and what only measured on.
@@ -202,10 +202,10 @@ void add_train_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     CLI::Option& variants = add_track_options(command, run);
-    add_count_option(command, "--candidates", run.candidates.most_per_scene,
+    add_count_option(command, "--candidates", run.candidates.max_per_scene,
                      "of a scene at most, drawn at random; 0 for all", 0);
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
-        ->check(whole_number(1, kMost))
+        ->check(whole_number(1, kMax))
         ->capture_default_str();
     add_kind_options(command, *options, variants);
     add_step_options(command, options->step_training);

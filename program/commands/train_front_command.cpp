@@ -59,16 +59,16 @@ void train(const Options& options) {
 }
 
 void add_count_option(CLI::App& command, const std::string& name, std::size_t& count,
-                      const std::string& meaning, int least = 1) {
-    constexpr int kMost = 10'000'000;
-    command.add_option(name, count, meaning)
-        ->check(whole_number(static_cast<std::size_t>(least), kMost))
+                      const std::string& description, int least = 1) {
+    constexpr int kMax = 10'000'000;
+    command.add_option(name, count, description)
+        ->check(whole_number(static_cast<std::size_t>(least), kMax))
         ->capture_default_str();
 }
 
 void add_number_option(CLI::App& command, const std::string& name, double& number,
-                       const std::string& meaning) {
-    command.add_option(name, number, meaning)->capture_default_str();
+                       const std::string& description) {
+    command.add_option(name, number, description)->capture_default_str();
 }
 
 }  // namespace

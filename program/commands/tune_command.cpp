@@ -52,7 +52,7 @@ ordered_json conditions(const Options& options, const RldParameters& start) {
                       {"objective", to_string(options.evaluation.objective)}};
     json.update(scene_options_json(options.scenes));
     json.update(ordered_json{{"time_limit_ms", options.evaluation.time_limit_ms},
-                             {"most_nodes", options.evaluation.most_nodes},
+                             {"most_nodes", options.evaluation.max_nodes},
                              {"pairing", to_string(start.pairing)},
                              {"w_color", start.w_color},
                              {"shape", has_shape_costs(start)},
@@ -261,7 +261,7 @@ void add_tune_command(CLI::App& program) {
     add_scene_options(command, options->scenes);
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
-        .add_option("--most-nodes", options->evaluation.most_nodes,
+        .add_option("--most-nodes", options->evaluation.max_nodes,
                     "of a scene's search; one that takes more counts as wrong")
         ->check(whole_number(1, 1'000'000'000))
         ->capture_default_str();

@@ -29,7 +29,7 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] std::vector<Point> points(py::handle object, const char* key);
 /// (x, y, yaw)
 [[nodiscard]] Pose pose(py::handle object);
-/// An (N, 2) array and beside it, where they are not None, N ids, colours and confidences. Without ids a cone
+/// An (N, 2) array and beside it, where they are not None, N ids, colors and confidences. Without ids a cone
 /// has its index.
 [[nodiscard]] std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
                                       py::handle confidences);

@@ -74,7 +74,7 @@ class DetectorObject {
         const DetectorRecipe* const recipe = find_recipe(name);
         const DetectorOptions options = options_of(recipe, given);
         detector_ = make_detector(name, options);
-        meaning_ = recipe->meaning;
+        description_ = recipe->description;
         nearest_ = cone_set(*recipe, options).nearest;
     }
 
@@ -105,11 +105,11 @@ class DetectorObject {
     }
 
     [[nodiscard]] const std::string& name() const { return name_; }
-    [[nodiscard]] const std::string& meaning() const { return meaning_; }
+    [[nodiscard]] const std::string& description() const { return description_; }
 
   private:
     std::string name_;
-    std::string meaning_;
+    std::string description_;
     std::optional<std::size_t> nearest_;
     std::unique_ptr<LaneDetector> detector_;
     std::mutex mutex_;
@@ -224,7 +224,7 @@ The same for a `Scene`, whose id the lane bears.
 Forgets what was carried from earlier calls: for a new lap or another place.
 )")
         .def_property_readonly("name", &DetectorObject::name, "str: as `methods` has it")
-        .def_property_readonly("meaning", &DetectorObject::meaning, "str: one line")
+        .def_property_readonly("meaning", &DetectorObject::description, "str: one line")
         .def("__repr__",
              [](const DetectorObject& detector) { return "<conelane.Detector '" + detector.name() + "'>"; });
 
@@ -233,7 +233,7 @@ Forgets what was carried from earlier calls: for a new lap or another place.
         [] {
             py::dict all;
             for (const DetectorInfo& info : detectors())
-                all[py::str(std::string(info.name))] = std::string(info.meaning);
+                all[py::str(std::string(info.name))] = std::string(info.description);
             return all;
         },
         R"(methods()

@@ -185,13 +185,13 @@ where no lane or the right boundary alone was found.)")
             "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car")
         .def(
             "centre_line",
-            [](const LaneObject& l, double step_m, double smoothing_m, double usual_width_m) {
+            [](const LaneObject& l, double step_m, double smoothing_m, double default_width_m) {
                 return centre_line(
-                    l, {.step_m = step_m, .smoothing_m = smoothing_m, .usual_width_m = usual_width_m});
+                    l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = default_width_m});
             },
             py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
             py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
-            py::arg("usual_width_m") = DrivableOptions{}.usual_width_m,
+            py::arg("usual_width_m") = DrivableOptions{}.default_width_m,
             R"(centre_line(step_m=0.5, *, smoothing_m=1.75, usual_width_m=3.5)
 
 The middle of the lane from the car on.

@@ -11,10 +11,10 @@ namespace conelane::detail {
 /// Locks the mutex, waiting until the deadline at most. Owns no lock where that has passed.
 [[nodiscard]] inline std::unique_lock<std::timed_mutex> lock_until(std::timed_mutex& mutex,
                                                                    const Deadline& deadline) {
-    constexpr double kLongestWait_ms = 1e9;  // a clock's integers overflow at larger ones
+    constexpr double kMaxWait_ms = 1e9;  // a clock's integers overflow at larger ones
     std::unique_lock lock(mutex, std::defer_lock);
     while (!lock.owns_lock() && !deadline.passed()) {
-        const double wait_ms = std::min(deadline.remaining_ms(), kLongestWait_ms);
+        const double wait_ms = std::min(deadline.remaining_ms(), kMaxWait_ms);
         (void)lock.try_lock_for(std::chrono::duration<double, std::milli>(wait_ms));
     }
     return lock;

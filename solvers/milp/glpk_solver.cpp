@@ -42,10 +42,10 @@ void look(glp_tree* tree, void* data) {
 /// GLPK goes by tolerances of a relaxation's values and reduced costs. Beside a cost of 1e13 a rounding error
 /// of 1e-13 weighs as much as a lane, and the optimum gets lost. So columns that cost more than this wait at
 /// 0, where no better point can have them, see solve().
-constexpr double kMostCostAtFirst = 1e3;
+constexpr double kMaxCostAtFirst = 1e3;
 constexpr double kCostStep = 1e3;
 /// As of Clp: beyond it no answer is of use.
-constexpr double kMostCostTaken = 1e25;
+constexpr double kMaxCostTaken = 1e25;
 
 /// GLPK keeps an environment in each thread that has used it, and frees none.
 struct ThreadEnvironment {
@@ -68,8 +68,8 @@ class GlpkSession : public MilpSession {
             const BinaryProgram::Column& column = program.columns[c];
             const int index = static_cast<int>(c) + 1;
             if (column.integer) glp_set_col_kind(problem_, index, GLP_IV);
-            least_of_rest_ += std::min(0.0, column.objective) * column.upper;
-            if (column.objective > kMostCostAtFirst && column.lower == 0.0) {
+            min_of_rest_ += std::min(0.0, column.objective) * column.upper;
+            if (column.objective > kMaxCostAtFirst && column.lower == 0.0) {
                 waiting_.push_back({index, column.objective, column.upper});
                 glp_set_col_bnds(problem_, index, GLP_FX, 0.0, 0.0);
             } else {
@@ -97,7 +97,7 @@ class GlpkSession : public MilpSession {
     GlpkSession(const GlpkSession&) = delete;
     GlpkSession& operator=(const GlpkSession&) = delete;
 
-    /// A point with a column that waits costs at least `least_of_waiting`: one that is cheaper is the best of
+    /// A point with a column that waits costs at least `min_of_waiting`: one that is cheaper is the best of
     /// all. Where there is none, those join that may be part of a better one; with no point at all the
     /// cheapest thousandfold, so that the costs in play stay within a thousand of the objective.
     MilpReport solve(const MilpLimits& limits) override {
@@ -106,15 +106,15 @@ class GlpkSession : public MilpSession {
         double earlier_value = limits.cutoff;
         while (true) {
             MilpReport report = solve_without_waiting(limits, deadline);
-            const double least_of_waiting = waiting_.empty() ? std::numeric_limits<double>::infinity()
-                                                             : waiting_.front().cost + least_of_rest_;
-            if (report.bound) report.bound = std::min(*report.bound, least_of_waiting);
+            const double min_of_waiting = waiting_.empty() ? std::numeric_limits<double>::infinity()
+                                                           : waiting_.front().cost + min_of_rest_;
+            if (report.bound) report.bound = std::min(*report.bound, min_of_waiting);
             const double value = report.point.empty() ? limits.cutoff : glp_mip_obj_val(problem_);
             const bool decided =
                 report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible;
             if (!decided) return with_earlier(std::move(report), value, earlier, earlier_value);
-            if (least_of_waiting >= value) return report;
-            join(std::isfinite(value) ? value - least_of_rest_ : kCostStep * waiting_.front().cost);
+            if (min_of_waiting >= value) return report;
+            join(std::isfinite(value) ? value - min_of_rest_ : kCostStep * waiting_.front().cost);
             if (!report.point.empty()) {
                 earlier = std::move(report);
                 earlier_value = value;
@@ -154,11 +154,11 @@ class GlpkSession : public MilpSession {
     }
 
     /// Columns up to this cost, the cheapest in any case, wait no longer.
-    void join(double most_cost) {
-        const auto stay = std::ranges::upper_bound(waiting_, std::max(most_cost, waiting_.front().cost), {},
+    void join(double max_cost) {
+        const auto stay = std::ranges::upper_bound(waiting_, std::max(max_cost, waiting_.front().cost), {},
                                                    &WaitingColumn::cost);
         for (auto column = waiting_.begin(); column != stay; ++column) {
-            if (!(column->cost < kMostCostTaken)) throw std::runtime_error("a cost is too large for GLPK");
+            if (!(column->cost < kMaxCostTaken)) throw std::runtime_error("a cost is too large for GLPK");
             glp_set_obj_coef(problem_, column->index, column->cost);
             glp_set_col_bnds(problem_, column->index, GLP_DB, 0.0, column->upper);
         }
@@ -260,7 +260,7 @@ class GlpkSession : public MilpSession {
 
     glp_prob* problem_;
     std::vector<WaitingColumn> waiting_;  ///< fixed at 0 and without a cost, the cheapest first
-    double least_of_rest_ = 0.0;          ///< all negative costs together
+    double min_of_rest_ = 0.0;            ///< all negative costs together
 };
 
 class GlpkSolver : public MilpSolver {

@@ -19,7 +19,7 @@ namespace {
 using namespace path_pair;  // NOLINT(google-build-using-namespace): this file is its interface
 
 // Labels are exact to less than this, so smaller gaps cannot be told from none.
-constexpr double kLeastGap = 1e-10;
+constexpr double kMinGap = 1e-10;
 
 class PathPairSolver : public RldSolver {
   public:
@@ -33,7 +33,7 @@ class PathPairSolver : public RldSolver {
         incumbent_.reset(graph_, 0.0);
         near_to_far(problem);
         BoundCertificate certificate;
-        certificate.bound = search_.run_root(system_, kLeastGap, [&deadline] { return deadline.passed(); });
+        certificate.bound = search_.run_root(system_, kMinGap, [&deadline] { return deadline.passed(); });
         const Multipliers& multipliers = search_.root_multipliers();
         certificate.cone_multiplier = multipliers.cone;
         certificate.heading_multiplier = multipliers.heading;
@@ -50,7 +50,7 @@ class PathPairSolver : public RldSolver {
         SearchCertificate certificate{{}, report.lane_graph, report.objective, -kUnreachable};
         if (report.status == SolveStatus::infeasible) {
             certificate.bound = kUnreachable;
-        } else if (report.bound && std::abs(*report.bound) < SearchCertificate::kMostBound) {
+        } else if (report.bound && std::abs(*report.bound) < SearchCertificate::kMaxBound) {
             // Sums of doubles are off by less.
             certificate.bound = *report.bound - std::max(1e-9, 1e-12 * std::abs(*report.bound));
         }
@@ -91,7 +91,7 @@ class PathPairSolver : public RldSolver {
         // No two lane graphs differ by more: beyond it a wider gap means the same.
         const double most = cost_limit(problem);
         const double tolerance =
-            std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kLeastGap);
+            std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kMinGap);
         search_.reset_nodes();
         const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
         // Nearly every lane costs less than 0; the rare scene without one is searched again with a cutoff
@@ -202,8 +202,8 @@ class PathPairSolver : public RldSolver {
         const std::vector<Multipliers> stages =
             search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });
         const auto units = [](double multiplier) {
-            constexpr auto kMost = static_cast<double>(SearchCertificate::kMostUnits);
-            return std::llround(std::min(multiplier / kUnit, kMost));
+            constexpr auto kMax = static_cast<double>(SearchCertificate::kMaxUnits);
+            return std::llround(std::min(multiplier / kUnit, kMax));
         };
         std::vector<std::size_t> place(static_cast<std::size_t>(search_.cliques().size()), 0);  // from 1
         for (const Multipliers& multipliers : stages) {

@@ -23,7 +23,7 @@ using Ipopt::Number;
 constexpr Number kInfinity = 2e19;  // beyond Ipopt's default of 1e19
 /// The rounding sees values down to 1e-3 only.
 constexpr double kTolerance = 1e-5;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 
 class RelaxationProgram : public Ipopt::TNLP {
   public:
@@ -152,7 +152,7 @@ std::optional<std::vector<double>> minimise(const LaneGraphProblem& problem, con
     application->Options()->SetStringValue("jac_d_constant", "yes");
     application->Options()->SetStringValue("hessian_constant", "yes");
     application->Options()->SetNumericValue("tol", kTolerance);
-    application->Options()->SetIntegerValue("max_iter", kMostIterations);
+    application->Options()->SetIntegerValue("max_iter", kMaxIterations);
     if (application->Initialize("") == Ipopt::Solve_Succeeded) {
         (void)application->OptimizeTNLP(Ipopt::SmartPtr<Ipopt::TNLP>(Ipopt::GetRawPtr(program)));
     }

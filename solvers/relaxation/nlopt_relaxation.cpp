@@ -18,9 +18,9 @@ namespace {
 
 /// What rows may be violated by: the rounding sees values down to 1e-3 only.
 constexpr double kRowTolerance = 1e-5;
-constexpr double kSmallestStep = 1e-4;
-constexpr int kMostEvaluations = 500;
-constexpr int kMostEvaluationsOfOneBoxProblem = 100;
+constexpr double kMinStep = 1e-4;
+constexpr int kMaxEvaluations = 500;
+constexpr int kMaxEvaluationsOfOneBoxProblem = 100;
 
 /// One side of a row as NLopt takes it: factor (terms - limit), at most zero or equal to zero.
 struct RowSide {
@@ -53,8 +53,8 @@ class RelaxationDescent {
     std::vector<double> run() {
         const auto n = static_cast<unsigned>(relaxation_.variables());
         nlopt::opt in_box(nlopt::LD_MMA, n);
-        in_box.set_xtol_abs(kSmallestStep);
-        in_box.set_maxeval(kMostEvaluationsOfOneBoxProblem);
+        in_box.set_xtol_abs(kMinStep);
+        in_box.set_maxeval(kMaxEvaluationsOfOneBoxProblem);
         nlopt::opt search(nlopt::AUGLAG, n);
         search.set_local_optimizer(in_box);
         search.set_lower_bounds(0.0);
@@ -64,8 +64,8 @@ class RelaxationDescent {
                                           std::vector<double>(inequalities_.size(), kRowTolerance));
         search.add_equality_mconstraint(&RelaxationDescent::row_values, &equalities_,
                                         std::vector<double>(equalities_.size(), kRowTolerance));
-        search.set_xtol_abs(kSmallestStep);
-        search.set_maxeval(kMostEvaluations);
+        search.set_xtol_abs(kMinStep);
+        search.set_maxeval(kMaxEvaluations);
         std::vector<double> point = best_point_;
         double reached = 0.0;
         try {

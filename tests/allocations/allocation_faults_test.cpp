@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Detectors, DetectorMemory, testing::ValuesIn(detector_n
 class SolverMemory : public testing::TestWithParam<const RldSolverEntry*> {};
 
 TEST_P(SolverMemory, MayRunOutAnywhereInASolve) {
-    const std::size_t cones = GetParam()->most_cones.value_or(40);
+    const std::size_t cones = GetParam()->max_cones.value_or(40);
     const LaneGraphProblem problem = make_problem(tests::random_scene(kSeed, cones), {});
     const auto make = [] { return GetParam()->make(Formulation::tight); };
     const RldReport expected = make()->solve(problem, {});

@@ -52,16 +52,16 @@ TEST(PathPairAllocation, DoesNotGrowWithTheNodes) {
     options.root_steps = 1;
     options.node_steps = 1;
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver(options);
-    std::int64_t most_nodes = 0;
+    std::int64_t max_nodes = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const LaneGraphProblem problem = make_problem(tests::random_scene(seed, 20), {});
         solve(*solver, problem);  // the workspace grows to its size
         const Count again = solve(*solver, problem);
-        most_nodes = std::max(most_nodes, again.nodes);
+        max_nodes = std::max(max_nodes, again.nodes);
         EXPECT_LT(again.allocations, 40) << again.nodes << " nodes";
     }
-    EXPECT_GT(most_nodes, 400);
+    EXPECT_GT(max_nodes, 400);
 }
 
 TEST(PathPairAllocation, DoesNotGrowWithTheLabelsOfTheTandemSearch) {

@@ -401,7 +401,7 @@ TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
     }
     for (const DetectorInfo& detector : detectors()) {
         EXPECT_THAT(message, HasSubstr(std::string(detector.name)));
-        EXPECT_FALSE(detector.meaning.empty());
+        EXPECT_FALSE(detector.description.empty());
     }
 }
 

@@ -73,8 +73,8 @@ void read_all(std::string_view bytes) {
             ConeId missing{};
             const auto certificate = from_search_record(scene, record, missing);
             if (!certificate) continue;
-            constexpr std::int64_t kMostSteps = 10'000;
-            const auto verdict = verify_search(scene, {}, *certificate, kMostSteps);
+            constexpr std::int64_t kMaxSteps = 10'000;
+            const auto verdict = verify_search(scene, {}, *certificate, kMaxSteps);
             if (verdict.kind == SearchVerdict::Kind::verified) {
                 require(certificate->bound <= kOptimum + kTolerance, "no bound above the optimum is proven");
             } else {

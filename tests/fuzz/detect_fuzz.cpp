@@ -96,7 +96,7 @@ void require_centre_line(const LaneAnswer& answer, const Scene& scene) {
 
 void detect_on(FuzzedDataProvider& input) {
     constexpr double kLimits_ms[]{0.0, 0.5, 2.0, 5.0, 20.0};
-    constexpr double kMostSeconds =
+    constexpr double kMaxSeconds =
         2.0;  // of a processor under a sanitizer; the limits above are 0.02 s at most
     const std::span<const experiments::Method> all = experiments::methods();
     const experiments::Method& method = all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)];
@@ -110,7 +110,7 @@ void detect_on(FuzzedDataProvider& input) {
         const Scene scene = fuzzed_scene(input, 60);
         const double begin_s = processor_seconds();
         const LaneAnswer answer = chosen.detect(scene, limits);
-        require(processor_seconds() - begin_s < kMostSeconds, "a detector ends soon after its limit");
+        require(processor_seconds() - begin_s < kMaxSeconds, "a detector ends soon after its limit");
         require_contract(scene, answer, method.name.starts_with("front"));
         require_centre_line(answer, scene);
     }

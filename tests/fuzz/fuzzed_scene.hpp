@@ -91,17 +91,17 @@ inline Cone fuzzed_cone(FuzzedDataProvider& input, const Point& position, std::s
 }
 
 /// Readers of tracks refuse what is farther from the origin. There the numbers of double stand 2e-9 m apart.
-constexpr double kFarthestMap_m = 1e7;
+constexpr double kMaxMapDistance_m = 1e7;
 
 inline bool is_on_a_map(const Scene& scene) {
-    const auto is_near = [](const Point& point) { return point.cwiseAbs().maxCoeff() <= kFarthestMap_m; };
+    const auto is_near = [](const Point& point) { return point.cwiseAbs().maxCoeff() <= kMaxMapDistance_m; };
     return is_near(scene.pose.position) &&
            std::ranges::all_of(scene.cones, [&](const Cone& cone) { return is_near(cone.position); });
 }
 
-/// A scene that `validate` takes, made of the bytes: a drawing of up to `most_cones` cones, turned with the
+/// A scene that `validate` takes, made of the bytes: a drawing of up to `max_cones` cones, turned with the
 /// car, scaled and moved away from the origin.
-inline Scene fuzzed_scene(FuzzedDataProvider& input, std::size_t most_cones) {
+inline Scene fuzzed_scene(FuzzedDataProvider& input, std::size_t max_cones) {
     constexpr double kUnits[]{1.0, 1.0, 1.0, 1.0, 1e-9, 1e-3, 0.3, 3.0, 1e3, 1e6, 1e150, 1e300};
     constexpr double kAway_m[]{0.0, 0.0, 0.0, 0.0, 1.0, 1e3, 1e6, 1e9, 1e15, 1e200};
     const double unit = input.PickValueInArray(kUnits);
@@ -114,7 +114,7 @@ inline Scene fuzzed_scene(FuzzedDataProvider& input, std::size_t most_cones) {
     const double cosine = std::cos(turn);
     const double sine = std::sin(turn);
 
-    const auto cones = input.ConsumeIntegralInRange<std::size_t>(0, most_cones);
+    const auto cones = input.ConsumeIntegralInRange<std::size_t>(0, max_cones);
     std::vector<Point> drawing;
     std::set<ConeId> ids;
     for (std::size_t i = 0; i < cones && input.remaining_bytes() > 0; ++i) {

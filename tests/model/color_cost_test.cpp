@@ -1,4 +1,4 @@
-// On which side an edge near the car is, as its colour is judged: ahead of the car on a straight, and in
+// On which side an edge near the car is, as its color is judged: ahead of the car on a straight, and in
 // bends, where neither the car's axis nor the line of the edge tells alone.
 
 #include "conelane/check.hpp"
@@ -24,7 +24,7 @@ double color_cost(const Point& from, ConeColor from_color, const Point& to, Cone
     return make_problem(scene, {}).edges.at(0).color_cost;
 }
 
-/// As a boundary of that colour, from either end.
+/// As a boundary of that color, from either end.
 double color_cost(ConeColor color, const Point& from, const Point& to) {
     const double cost = color_cost(from, color, to, color);
     EXPECT_EQ(color_cost(to, color, from, color), cost);

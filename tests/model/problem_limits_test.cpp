@@ -95,8 +95,8 @@ TEST(ProblemLimits, LargeScenesEndAtTheDeadlineOrAtTheBoundOfMemory) {
 
 TEST(ProblemLimits, AreTheNumbersThatStandThere) {
     LaneGraphProblem problem;
-    problem.edges.resize(kMostProblemEdges);
-    problem.conflicts.resize(kMostProblemEntries);
+    problem.edges.resize(kMaxProblemEdges);
+    problem.conflicts.resize(kMaxProblemEntries);
     EXPECT_FALSE(is_too_large(problem));
     problem.edges.emplace_back();
     EXPECT_TRUE(is_too_large(problem));

@@ -46,7 +46,7 @@ TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
     EXPECT_FALSE(std::filesystem::exists(path("other.json")));
 }
 
-TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColourStudyUses) {
+TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
     const std::string tune =
         "tune --tracks generated:circle generated:straight --nearest 8 --context 16 --fp 0.3 --every 30 "
         "--shape --folds 2 --rounds 1 --evaluations 3 --time-limit 1000 --log p.jsonl --out p.json";

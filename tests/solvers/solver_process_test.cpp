@@ -20,12 +20,12 @@
 namespace conelane {
 namespace {
 
-constexpr unsigned kLongest_s = 60;
+constexpr unsigned kMaxDuration_s = 60;
 
 /// Solves again and again; SIGINT comes from a thread of its own in the midst of it. Relaxations of the
 /// printed rows with 40 cones take seconds, so nearly all of the time is spent inside of Clp.
 [[noreturn]] void be_interrupted_in(const char* name, Formulation formulation, std::size_t cones) {
-    alarm(kLongest_s);  // where SIGINT is swallowed, this ends the process
+    alarm(kMaxDuration_s);  // where SIGINT is swallowed, this ends the process
     const std::unique_ptr<RldSolver> solver = find_rld_solver(name)->make(formulation);
     const LaneGraphProblem problem =
         make_problem(tests::random_scene(1, cones), {}, parts(formulation).extent);

@@ -88,9 +88,9 @@ TEST_P(SolverRobustness, ADeadlineAnywhereInTheSolveMakesNoFalseProof) {
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
     int stopped = 0;
     for (const std::uint64_t seed : {1, 3, 5}) {
-        const std::size_t most_cones = GetParam().entry->most_cones.value_or(24);
+        const std::size_t max_cones = GetParam().entry->max_cones.value_or(24);
         const std::size_t cones =
-            std::min<std::size_t>(most_cones, GetParam().formulation == Formulation::paper ? 10 : 24);
+            std::min<std::size_t>(max_cones, GetParam().formulation == Formulation::paper ? 10 : 24);
         const LaneGraphProblem problem = problem_of(tests::random_scene(seed, cones));
         const RldReport reference = path_pair->solve(problem, {});
         const Stopwatch watch;

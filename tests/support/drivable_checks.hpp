@@ -55,14 +55,14 @@ inline void expect_drivable(const Course& course, const DrivableLane& lane, doub
     std::vector<Point> right_beside = right;
     const auto drop_far = [&](std::vector<Point>& boundary, const Point& end) {
         Point far = boundary.back();
-        while (!closed && boundary.size() > 1 && (boundary.back() - end).norm() > kWidestLane_m) {
+        while (!closed && boundary.size() > 1 && (boundary.back() - end).norm() > kMaxLaneWidth_m) {
             far = boundary.back();
             boundary.pop_back();
         }
         Point near = boundary.back();
-        for (int i = 0; i < 40; ++i) {  // to where it is kWidestLane_m away
+        for (int i = 0; i < 40; ++i) {  // to where it is kMaxLaneWidth_m away
             const Point middle = 0.5 * (near + far);
-            ((middle - end).norm() > kWidestLane_m ? far : near) = middle;
+            ((middle - end).norm() > kMaxLaneWidth_m ? far : near) = middle;
         }
         boundary.push_back(near);
     };

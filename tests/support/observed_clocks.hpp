@@ -17,7 +17,7 @@ namespace conelane::tests {
 struct ClockLooks {
     std::int64_t monotonic = 0;
     std::int64_t time_of_day = 0;
-    double longest_gap_ms = 0.0;  ///< processor time of this thread between two looks at the monotonic clock
+    double max_gap_ms = 0.0;  ///< processor time of this thread between two looks at the monotonic clock
     double last_look_ms = 0.0;
     std::int64_t away_at = 0;  ///< the look at the monotonic clock from which it is ahead; 0: none
     std::int64_t away_s = 0;   ///< by so much
@@ -36,7 +36,7 @@ inline double thread_cpu_ms() {
 /// A look at the clock, and what ends a call.
 inline void note_look() {
     const double now_ms = thread_cpu_ms();
-    clock_looks.longest_gap_ms = std::max(clock_looks.longest_gap_ms, now_ms - clock_looks.last_look_ms);
+    clock_looks.max_gap_ms = std::max(clock_looks.max_gap_ms, now_ms - clock_looks.last_look_ms);
     clock_looks.last_look_ms = thread_cpu_ms();
 }
 inline void forget_looks() {

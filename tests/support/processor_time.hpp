@@ -20,13 +20,13 @@ inline double processor_time_ms() {
 /// looks at its clock is `ample_ms`: a try below it is the last.
 template <typename Call>
 double overrun_ms(double limit_ms, double ample_ms, const Call& call) {
-    double least_ms = std::numeric_limits<double>::infinity();
-    for (int attempt = 0; attempt < 3 && least_ms > ample_ms; ++attempt) {
+    double min_ms = std::numeric_limits<double>::infinity();
+    for (int attempt = 0; attempt < 3 && min_ms > ample_ms; ++attempt) {
         const double before_ms = processor_time_ms();
         call();
-        least_ms = std::min(least_ms, (processor_time_ms() - before_ms - limit_ms) / kSlowness);
+        min_ms = std::min(min_ms, (processor_time_ms() - before_ms - limit_ms) / kSlowness);
     }
-    return least_ms;
+    return min_ms;
 }
 
 }  // namespace conelane::tests

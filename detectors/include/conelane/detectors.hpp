@@ -26,7 +26,7 @@ namespace conelane {
 /// A detector of the library, as `make_detector` knows it.
 struct DetectorInfo {
     std::string_view name;
-    std::string_view meaning;  ///< one line
+    std::string_view description;  ///< one line
 };
 
 /// All of them, the one to drive by first.

@@ -42,7 +42,7 @@ struct DrivableLane {
     /// Arc length up to which the detector trusts the lane, at most length_m; absent where it does not know.
     std::optional<double> trusted_m;
     std::vector<BridgedGap> bridged;  ///< left ones first, then by from_s_m
-    /// No cone of this boundary is known: it is taken to lie DrivableOptions::usual_width_m from the other
+    /// No cone of this boundary is known: it is taken to lie DrivableOptions::default_width_m from the other
     /// one, and the widths to that side say no more than that. At most one of both.
     bool left_inferred = false;
     bool right_inferred = false;
@@ -53,10 +53,10 @@ struct DrivableOptions {
     /// Length scale of the smoothing, in [0.25, 5]: waves of the centre line that are shorter than 2 pi times
     /// it are taken out, a bend whose radius is twice as long keeps it within 2 %.
     double smoothing_m = 1.75;
-    double longest_gap_m = 5.5;  ///< longer ones are bridged; 5 m by the rules and a margin for noise; > 0
+    double max_gap_m = 5.5;  ///< longer ones are bridged; 5 m by the rules and a margin for noise; > 0
     /// Width of a lane of which one boundary alone is known, in [1, 6.5]. The rules ask for 3 m at least;
     /// recorded courses are about 3.5 m wide.
-    double usual_width_m = 3.5;
+    double default_width_m = 3.5;
 };
 
 /// The centre line of a lane from the car's foot point on.
@@ -68,7 +68,7 @@ struct DrivableOptions {
 /// A lane that begins ahead of the car has it at its beginning.
 ///
 /// An open lane begins where both boundaries have begun. Where one boundary ends first, the lane goes on
-/// along the other and keeps its width, as far as that stays within kWidestLane_m of the end and does not
+/// along the other and keeps its width, as far as that stays within kMaxLaneWidth_m of the end and does not
 /// pass the line between both ends. Any lane ends before the first place where it is narrower than about 0.8
 /// m, where its boundaries cross or where left and right are swapped; a closed one is then open.
 ///

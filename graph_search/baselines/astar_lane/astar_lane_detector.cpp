@@ -39,7 +39,7 @@ constexpr std::array kFields{
     ParameterField<P>{"w_slope", &P::w_slope, "1", 0.1, 100.0, true, "weight of a boundary's slope"},
     ParameterField<P>{"heuristic", &P::heuristic, "1/m", 0.0, 1.0, false, "estimated cost ahead"},
 };
-constexpr std::int64_t kMostSteps = 1'000'000;
+constexpr std::int64_t kMaxSteps = 1'000'000;
 
 /// Of an arc, and of a cell of the lattice [m].
 constexpr double kStep_m = 1.5;
@@ -51,11 +51,11 @@ constexpr int kHardestTurn = 2;
 /// Between samples of the path that boundaries are read off [m].
 constexpr double kSample_m = 0.25;
 /// Paths tried for boundaries; the next ones are hardly different.
-constexpr int kMostReadings = 50;
+constexpr int kMaxReadings = 50;
 /// What reading boundaries may take once the time is up.
 constexpr double kLastReading_ms = 2.0;
 /// Two cones a side.
-constexpr std::size_t kFewestPlaces = 4;
+constexpr std::size_t kMinPlaces = 4;
 
 struct Node {
     std::int32_t parent;
@@ -100,7 +100,7 @@ class AstarLaneDetector : public LaneDetector {
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         SearchBudget budget;
         budget.deadline = Deadline(limits.time_limit_ms);
-        budget.iteration_limit = parameters_.most_steps;
+        budget.iteration_limit = parameters_.max_steps;
         boundaries_.reset();
         LaneAnswer answer;
         bool complete = false;
@@ -138,7 +138,7 @@ class AstarLaneDetector : public LaneDetector {
         std::vector<Point> places;
         for (const Point& point : points_) {
             if (std::ranges::find(places, point) == places.end()) places.push_back(point);
-            if (places.size() >= kFewestPlaces) return true;
+            if (places.size() >= kMinPlaces) return true;
         }
         return false;
     }
@@ -158,7 +158,7 @@ class AstarLaneDetector : public LaneDetector {
             const Node node = nodes_[static_cast<std::size_t>(taken.node)];
             if (taken.end) {
                 if (read_boundaries(taken.node, budget)) return true;
-                if (++readings >= kMostReadings || budget.stopped_by) return false;
+                if (++readings >= kMaxReadings || budget.stopped_by) return false;
                 continue;
             }
             if (!closed_.insert(key_of(node)).second) continue;
@@ -326,8 +326,8 @@ std::span<const ParameterField<AstarLaneParameters>> astar_lane_fields() {
 
 void validate(const AstarLaneParameters& parameters) {
     require_in_range(parameters, astar_lane_fields());
-    if (parameters.most_steps < 1 || parameters.most_steps > kMostSteps)
-        throw InvalidInput("most_steps", "must be between 1 and " + std::to_string(kMostSteps));
+    if (parameters.max_steps < 1 || parameters.max_steps > kMaxSteps)
+        throw InvalidInput("most_steps", "must be between 1 and " + std::to_string(kMaxSteps));
 }
 
 std::unique_ptr<LaneDetector> make_astar_lane_detector(const AstarLaneParameters& parameters) {

@@ -12,21 +12,21 @@ namespace conelane {
 /// What a path is, what it costs, and how boundaries are read off it. Costs are relative to that of a metre
 /// with no cone on one side, which is 1.
 struct AstarLaneParameters {
-    double least_radius_m = 4.0;       ///< of the tightest turn of a path
-    double horizon_m = 25.0;           ///< length of a path
-    double w_end = 1.5;                ///< cost of each metre that a path is shorter than the horizon
-    double w_turn = 0.1;               ///< weight of the squared curvature, 1 at the tightest turn
-    double w_steer = 0.1;              ///< weight of the squared change of curvature between two steps
-    double clearance_m = 1.6;          ///< distance from cones that a path keeps where it can
-    double w_clearance = 4.0;          ///< weight of the squared share of the clearance that is missing
-    double w_hit = 5.0;                ///< cost of a metre that is nearer to a cone than half a car
-    double window_m = 2.8;             ///< a cone so far before or behind stands beside the path
-    double widest_side_m = 4.0;        ///< a cone farther to one side does not
-    double expected_width_m = 4.0;     ///< between the nearest cones on both sides
-    double w_width = 0.3;              ///< weight of the squared error of this width [1/m^2]
-    double w_slope = 4.0;              ///< of a boundary's squared slope against the path, relative to a cone
-    double heuristic = 0.2;            ///< estimated cost of a metre ahead
-    std::int64_t most_steps = 10'000;  ///< expanded by the search, in [1, 1000000]
+    double least_radius_m = 4.0;      ///< of the tightest turn of a path
+    double horizon_m = 25.0;          ///< length of a path
+    double w_end = 1.5;               ///< cost of each metre that a path is shorter than the horizon
+    double w_turn = 0.1;              ///< weight of the squared curvature, 1 at the tightest turn
+    double w_steer = 0.1;             ///< weight of the squared change of curvature between two steps
+    double clearance_m = 1.6;         ///< distance from cones that a path keeps where it can
+    double w_clearance = 4.0;         ///< weight of the squared share of the clearance that is missing
+    double w_hit = 5.0;               ///< cost of a metre that is nearer to a cone than half a car
+    double window_m = 2.8;            ///< a cone so far before or behind stands beside the path
+    double widest_side_m = 4.0;       ///< a cone farther to one side does not
+    double expected_width_m = 4.0;    ///< between the nearest cones on both sides
+    double w_width = 0.3;             ///< weight of the squared error of this width [1/m^2]
+    double w_slope = 4.0;             ///< of a boundary's squared slope against the path, relative to a cone
+    double heuristic = 0.2;           ///< estimated cost of a metre ahead
+    std::int64_t max_steps = 10'000;  ///< expanded by the search, in [1, 1000000]
 };
 
 /// The numbers that are tuned, in the order of files.

@@ -8,7 +8,7 @@ namespace conelane {
 void NearCones::build(std::span<const Point> points, double reach_m, double radius_m) {
     reach_m_ = reach_m;
     const double fitting = std::floor(2.0 * reach_m / radius_m);
-    cells_a_side_ = static_cast<std::int64_t>(std::clamp(fitting, 1.0, static_cast<double>(kMostCells)));
+    cells_a_side_ = static_cast<std::int64_t>(std::clamp(fitting, 1.0, static_cast<double>(kMaxCells)));
     // A little wider, so that a point at the far end has a cell.
     cell_m_ = 2.0 * reach_m / static_cast<double>(cells_a_side_) * (1.0 + 1e-9);
     const auto number_of = [this](const Point& point) {

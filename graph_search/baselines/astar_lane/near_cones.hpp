@@ -13,7 +13,7 @@ namespace conelane {
 class NearCones {
   public:
     /// Precondition: every point is within `reach_m` of the origin. Cells are at least as wide as `radius_m`
-    /// and at most kMostCells a side.
+    /// and at most kMaxCells a side.
     void build(std::span<const Point> points, double reach_m, double radius_m);
 
     /// Calls `visit` with every point within the radius of `place`, and with some others. Returns how many.
@@ -35,7 +35,7 @@ class NearCones {
     }
 
   private:
-    static constexpr std::int64_t kMostCells = 64;
+    static constexpr std::int64_t kMaxCells = 64;
 
     [[nodiscard]] std::int64_t cell_of(double coordinate) const {
         return static_cast<std::int64_t>((coordinate + reach_m_) / cell_m_);

@@ -11,7 +11,7 @@ namespace conelane {
 namespace {
 
 /// Steeper chains have no use; this only keeps the slope finite.
-constexpr double kLeastAdvance_m = 0.1;
+constexpr double kMinAdvance_m = 0.1;
 
 /// A point in the frame of the path.
 struct Beside {
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> best_chain(const std::vector<Beside>& side, double w_
         if (budget.spend(1 + i)) return {};
         for (std::size_t j = 0; j < i; ++j) {
             const double advance_m = side[i].along_m - side[j].along_m;
-            if (advance_m < kLeastAdvance_m) continue;
+            if (advance_m < kMinAdvance_m) continue;
             const double slope = (side[i].across_m - side[j].across_m) / advance_m;
             const double chained = worth[j] - w_slope * slope * slope;
             if (chained <= worth[i]) continue;

@@ -36,8 +36,8 @@ constexpr std::array kFields{
     ParameterField<P>{"start_radius_m", &P::start_radius_m, "m", 3.0, 15.0, false,
                       "farthest first middle point"},
 };
-constexpr double kLargestColorWeight = 1000.0;
-constexpr std::size_t kWidestBeam = 10'000;
+constexpr double kMaxColorWeight = 1000.0;
+constexpr std::size_t kMaxBeamWidth = 10'000;
 /// Nearer middle points have no direction from the car that means anything.
 constexpr double kNoDirection_m = 0.5;
 /// For SearchBudget::spend.
@@ -82,7 +82,7 @@ double turn_rad(const Point& a, const Point& b) {
     return std::abs(std::atan2(cross(a, b), a.dot(b)));
 }
 
-/// Probability that a cone of this colour is none of that side's.
+/// Probability that a cone of this color is none of that side's.
 double wrong_color(ConeColor color, Side side) {
     if (color == ConeColor::blue) return side == kLeft ? 0.0 : 1.0;
     if (color == ConeColor::yellow) return side == kRight ? 0.0 : 1.0;
@@ -300,10 +300,10 @@ std::span<const ParameterField<DelaunayBeamParameters>> delaunay_beam_fields() {
 
 void validate(const DelaunayBeamParameters& parameters) {
     require_in_range(parameters, delaunay_beam_fields());
-    if (!(parameters.w_color >= 0.0 && parameters.w_color <= kLargestColorWeight))
-        throw InvalidInput("w_color", "must be between 0 and " + std::to_string(kLargestColorWeight));
-    if (parameters.beam_width < 1 || parameters.beam_width > kWidestBeam)
-        throw InvalidInput("beam_width", "must be between 1 and " + std::to_string(kWidestBeam));
+    if (!(parameters.w_color >= 0.0 && parameters.w_color <= kMaxColorWeight))
+        throw InvalidInput("w_color", "must be between 0 and " + std::to_string(kMaxColorWeight));
+    if (parameters.beam_width < 1 || parameters.beam_width > kMaxBeamWidth)
+        throw InvalidInput("beam_width", "must be between 1 and " + std::to_string(kMaxBeamWidth));
 }
 
 std::unique_ptr<LaneDetector> make_delaunay_beam_detector(const DelaunayBeamParameters& parameters) {

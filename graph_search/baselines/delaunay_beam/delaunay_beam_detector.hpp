@@ -24,8 +24,8 @@ struct DelaunayBeamParameters {
     double longest_spacing_m = 6.5;   ///< longest edge of a boundary
     double start_radius_m = 7.0;      ///< farthest middle point that a path may begin with
 
-    // Not tuned: scenes are scored without colours, and a wider beam only takes longer.
-    /// Weight of the mean probability that a cone has the colour of the other side, in [0, 1000].
+    // Not tuned: scenes are scored without colors, and a wider beam only takes longer.
+    /// Weight of the mean probability that a cone has the color of the other side, in [0, 1000].
     double w_color = 1.0;
     /// Paths kept at each depth of the tree, in [1, 10000].
     std::size_t beam_width = 100;
@@ -43,7 +43,7 @@ void validate(const DelaunayBeamParameters& parameters);
 /// edge crossed are the boundaries' cones there, so with each triangle one boundary goes on by one cone. Of
 /// each depth only the paths of the lowest cost stay (beam search), and the answer is the path of the lowest
 /// cost of all: one that turns little, whose width and spacings vary little, that is about as long as the
-/// expected range and, where colours are known, has few cones of the wrong colour. None of this is a
+/// expected range and, where colors are known, has few cones of the wrong color. None of this is a
 /// constraint.
 ///
 /// Two terms are added to the paper's: the error of the mean width (the competition's rules give it) and the

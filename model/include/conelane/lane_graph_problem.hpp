@@ -17,7 +17,7 @@ namespace conelane {
 class Deadline;  // internal
 
 /// The car's distance to an edge's midpoint is at least this in (25): the cost has a pole where it is 0 [m].
-inline constexpr double kShortestCarDistance_m = 0.5;
+inline constexpr double kMinCarDistance_m = 0.5;
 
 /// An edge of the problem and its numbers. Cone indices i < j.
 struct ProblemEdge {
@@ -80,9 +80,9 @@ struct LaneGraphProblem {
 
 /// A larger problem is not solved: what solvers keep of it grows with the square of its edges. No scene of a
 /// car comes near: 234 cones within 50 m, half of them false, give a tenth of these edges.
-inline constexpr std::size_t kMostProblemEdges = 16'384;
+inline constexpr std::size_t kMaxProblemEdges = 16'384;
 /// And this many turns, conflicts and pairs that are far apart together, below 256 MB.
-inline constexpr std::size_t kMostProblemEntries = 4'000'000;
+inline constexpr std::size_t kMaxProblemEntries = 4'000'000;
 [[nodiscard]] bool is_too_large(const LaneGraphProblem& problem);
 
 /// A problem, or the limit that its making ran into.

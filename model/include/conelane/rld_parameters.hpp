@@ -34,7 +34,7 @@ struct RldParameters {
     Pairing pairing = Pairing::near_far;
 
     // Extras that the paper's conclusion names; off by default.
-    double w_color = 0.0;          ///< weight of the colour cost, see ProblemEdge::color_cost
+    double w_color = 0.0;          ///< weight of the color cost, see ProblemEdge::color_cost
     bool use_confidence = false;   ///< an edge's benefit is w_b times the confidences of its two cones
     bool forbid_crossing = false;  ///< no two edges cross; (7) forbids most crossings already
 
@@ -55,7 +55,7 @@ struct RldParameterField {
     std::string_view unit;  ///< "m", "rad" or "1"
     double lowest;          ///< valid
     double highest;         ///< valid
-    std::string_view meaning;
+    std::string_view description;
 };
 /// All numeric parameters of the paper in the order of the file format.
 [[nodiscard]] std::span<const RldParameterField> rld_parameter_fields();

@@ -13,11 +13,11 @@ namespace conelane {
 /// A solver by its name.
 struct RldSolverEntry {
     std::string_view name;
-    std::string_view meaning;
+    std::string_view description;
     bool uses_formulation;  ///< else the formulation is ignored
     bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
     std::unique_ptr<RldSolver> (*make)(Formulation formulation);
-    std::optional<std::size_t> most_cones{};  ///< larger cone sets give status error; any where absent
+    std::optional<std::size_t> max_cones{};  ///< larger cone sets give status error; any where absent
 };
 
 }  // namespace conelane

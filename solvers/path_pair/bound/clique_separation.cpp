@@ -6,8 +6,8 @@
 namespace conelane::path_pair {
 namespace {
 
-constexpr double kLeastUse = 0.02;
-constexpr double kLeastViolation = 0.05;
+constexpr double kMinUse = 0.02;
+constexpr double kMinViolation = 0.05;
 
 }  // namespace
 
@@ -16,7 +16,7 @@ int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> ed
                                SearchClock& clock) {
     used_.clear();
     for (int e = 0; e < graph.edge_count(); ++e) {
-        if (edge_use[static_cast<std::size_t>(e)] > kLeastUse) used_.push_back(e);
+        if (edge_use[static_cast<std::size_t>(e)] > kMinUse) used_.push_back(e);
     }
     std::ranges::sort(used_, [&](int a, int b) {
         const double use_a = edge_use[static_cast<std::size_t>(a)];
@@ -45,7 +45,7 @@ int CliqueSeparation::separate(const ArcGraph& graph, std::span<const double> ed
             sum += edge_use[static_cast<std::size_t>(e)];
             join(e);
         }
-        if (sum <= 1.0 + kLeastViolation) continue;
+        if (sum <= 1.0 + kMinViolation) continue;
         for (std::size_t other = seed; other < used_.size(); ++other) {
             if (std::ranges::find(clique_, used_[other]) != clique_.end()) covered_[other] = 1;
         }

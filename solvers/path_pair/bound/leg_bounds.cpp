@@ -71,20 +71,20 @@ void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double
         return;
     }
     enum : int { unknown, on_the_way, known };
-    colour_.assign(size, unknown);
+    color_.assign(size, unknown);
     for (std::size_t last = 0; last < size; ++last) {
         walk_.clear();
-        for (auto a = static_cast<int>(last); a >= 0 && colour_[static_cast<std::size_t>(a)] == unknown;
+        for (auto a = static_cast<int>(last); a >= 0 && color_[static_cast<std::size_t>(a)] == unknown;
              a = before[static_cast<std::size_t>(a)]) {
-            colour_[static_cast<std::size_t>(a)] = on_the_way;
+            color_[static_cast<std::size_t>(a)] = on_the_way;
             walk_.push_back(a);
         }
         for (; !walk_.empty(); walk_.pop_back()) {
             const auto b = static_cast<std::size_t>(walk_.back());
-            colour_[b] = known;
+            color_[b] = known;
             label[b] = start[b] + reduced[b];
             const int a = std::exchange(before[b], -1);
-            if (a < 0 || colour_[static_cast<std::size_t>(a)] != known) continue;  // a cycle is cut open
+            if (a < 0 || color_[static_cast<std::size_t>(a)] != known) continue;  // a cycle is cut open
             const auto* const first = graph.in_arc.data() + graph.in_start[b];
             const auto* const end = graph.in_arc.data() + graph.in_start[b + 1];
             const auto* const found = std::find(first, end, a);
@@ -138,14 +138,14 @@ void LegBounds::backward(const ResidualGraph& graph, std::span<const double> red
 
 bool LegBounds::find_cycles(std::span<const int> before, std::vector<int>& cycles) {
     cycles.clear();
-    colour_.assign(before.size(), -1);
+    color_.assign(before.size(), -1);
     for (std::size_t first = 0; first < before.size(); ++first) {
         auto a = static_cast<int>(first);
-        while (a >= 0 && colour_[static_cast<std::size_t>(a)] < 0) {
-            colour_[static_cast<std::size_t>(a)] = static_cast<int>(first);
+        while (a >= 0 && color_[static_cast<std::size_t>(a)] < 0) {
+            color_[static_cast<std::size_t>(a)] = static_cast<int>(first);
             a = before[static_cast<std::size_t>(a)];
         }
-        if (a < 0 || colour_[static_cast<std::size_t>(a)] != static_cast<int>(first)) continue;
+        if (a < 0 || color_[static_cast<std::size_t>(a)] != static_cast<int>(first)) continue;
         const auto begin = static_cast<std::ptrdiff_t>(cycles.size());
         int member = a;
         do {

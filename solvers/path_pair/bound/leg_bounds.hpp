@@ -39,7 +39,7 @@ class LegBounds {
 
     SearchClock* clock_ = nullptr;
     std::vector<std::uint64_t> open_;  ///< arcs whose label changed
-    std::vector<int> colour_;
+    std::vector<int> color_;
     std::vector<int> walk_;
 };
 

@@ -40,22 +40,23 @@ void PairRelaxation::bind(const ArcGraph& graph, const LegSystem& system, const 
 }
 
 bool PairRelaxation::may_end(const ResidualGraph& residual, int kind, int arc) const {
-    const int cone = residual.head[at(arc)];
-    return system_->kinds[at(kind)].end[at(cone)] != 0 && decisions_->end(cone) != Decisions::End::never &&
+    const int cone = residual.head[to_index(arc)];
+    return system_->kinds[to_index(kind)].end[to_index(cone)] != 0 &&
+           decisions_->end(cone) != Decisions::End::never &&
            decisions_->may_be_last(cone, residual.edge(arc));
 }
 
 void PairRelaxation::reduce_arc_costs(const ResidualGraph& residual, const Multipliers& multipliers) {
     reduce(*graph_, *cliques_, multipliers, residual, edge_multiplier_, reduced_);
     for (int kind = 0; kind < system_->kind_count; ++kind) {
-        std::vector<double>& start = legs_[at(kind)].start;
+        std::vector<double>& start = legs_[to_index(kind)].start;
         start.resize(residual.arc.size());
         for (int a = 0; a < residual.size(); ++a) {
-            const int cone = residual.tail[at(a)];
-            start[at(a)] = system_->kinds[at(kind)].start[at(cone)] != 0 &&
-                                   decisions_->may_be_last(cone, residual.edge(a))
-                               ? multipliers.cone[at(cone)]
-                               : kUnreachable;
+            const int cone = residual.tail[to_index(a)];
+            start[to_index(a)] = system_->kinds[to_index(kind)].start[to_index(cone)] != 0 &&
+                                         decisions_->may_be_last(cone, residual.edge(a))
+                                     ? multipliers.cone[to_index(cone)]
+                                     : kUnreachable;
         }
     }
 }
@@ -63,7 +64,7 @@ void PairRelaxation::reduce_arc_costs(const ResidualGraph& residual, const Multi
 double PairRelaxation::evaluate(const ResidualGraph& residual, Multipliers& multipliers) {
     reduce_arc_costs(residual, multipliers);
     for (int kind = 0; kind < system_->kind_count; ++kind) {
-        Legs& legs = legs_[at(kind)];
+        Legs& legs = legs_[to_index(kind)];
         const bool bounded =
             bounds_.forward(residual, reduced_, legs.start, legs.forward, legs.before, cycles_);
         if (clock_->out_of_time(residual.out_arc.size())) return -kUnreachable;
@@ -80,13 +81,13 @@ double PairRelaxation::evaluate(const ResidualGraph& residual, Multipliers& mult
 }
 
 void PairRelaxation::pick_ends(const ResidualGraph& residual, int kind) {
-    Legs& legs = legs_[at(kind)];
+    Legs& legs = legs_[to_index(kind)];
     legs.best.assign(static_cast<std::size_t>(graph_->cone_count()), kUnreachable);
     legs.best_arc.assign(static_cast<std::size_t>(graph_->cone_count()), -1);
     for (int a = 0; a < residual.size(); ++a) {
-        const std::size_t cone = at(residual.head[at(a)]);
-        if (legs.forward[at(a)] < legs.best[cone] && may_end(residual, kind, a)) {
-            legs.best[cone] = legs.forward[at(a)];
+        const std::size_t cone = to_index(residual.head[to_index(a)]);
+        if (legs.forward[to_index(a)] < legs.best[cone] && may_end(residual, kind, a)) {
+            legs.best[cone] = legs.forward[to_index(a)];
             legs.best_arc[cone] = a;
         }
     }
@@ -97,32 +98,32 @@ double PairRelaxation::combine() {
     ends_ = {-1, -1};
     if (!system_->ends_are_partners) {
         for (int kind = 0; kind < 2; ++kind) {
-            const std::vector<double>& best = legs_[at(other(kind))].best;
+            const std::vector<double>& best = legs_[to_index(other(kind))].best;
             const auto least = std::ranges::min_element(best);
-            legs_[at(kind)].rest.assign(best.size(), *least);
-            ends_[at(other(kind))] = static_cast<int>(least - best.begin());
+            legs_[to_index(kind)].rest.assign(best.size(), *least);
+            ends_[to_index(other(kind))] = static_cast<int>(least - best.begin());
         }
         bound = legs_[0].rest[0] + legs_[1].rest[0];
         return bound;
     }
     for (int kind = 0; kind < system_->kind_count; ++kind) {
-        Legs& legs = legs_[at(kind)];
-        const std::vector<double>& best = legs_[at(other(kind))].best;
+        Legs& legs = legs_[to_index(kind)];
+        const std::vector<double>& best = legs_[to_index(other(kind))].best;
         legs.rest.assign(best.size(), kUnreachable);
         for (int cone = 0; cone < graph_->cone_count(); ++cone) {
-            if (legs.best[at(cone)] == kUnreachable) continue;
-            double& rest = legs.rest[at(cone)];
+            if (legs.best[to_index(cone)] == kUnreachable) continue;
+            double& rest = legs.rest[to_index(cone)];
             int end = -1;
             for (const int partner : graph_->partners(cone)) {
-                if (best[at(partner)] < rest && decisions_->ends_fit(cone, partner)) {
-                    rest = best[at(partner)];
+                if (best[to_index(partner)] < rest && decisions_->ends_fit(cone, partner)) {
+                    rest = best[to_index(partner)];
                     end = partner;
                 }
             }
-            if (legs.best[at(cone)] + rest < bound) {
-                bound = legs.best[at(cone)] + rest;
-                ends_[at(kind)] = cone;
-                ends_[1 - at(kind)] = end;
+            if (legs.best[to_index(cone)] + rest < bound) {
+                bound = legs.best[to_index(cone)] + rest;
+                ends_[to_index(kind)] = cone;
+                ends_[1 - to_index(kind)] = end;
             }
         }
     }
@@ -132,36 +133,37 @@ double PairRelaxation::combine() {
 void PairRelaxation::evaluate_backward(const ResidualGraph& residual) {
     reachable_.resize(residual.arc.size());
     for (int kind = 0; kind < system_->kind_count; ++kind) {
-        Legs& legs = legs_[at(kind)];
+        Legs& legs = legs_[to_index(kind)];
         legs.end.resize(residual.arc.size());
         for (int a = 0; a < residual.size(); ++a) {
-            reachable_[at(a)] = legs.forward[at(a)] < kUnreachable ? 1 : 0;
-            legs.end[at(a)] = may_end(residual, kind, a) ? legs.rest[at(residual.head[at(a)])] : kUnreachable;
+            reachable_[to_index(a)] = legs.forward[to_index(a)] < kUnreachable ? 1 : 0;
+            legs.end[to_index(a)] =
+                may_end(residual, kind, a) ? legs.rest[to_index(residual.head[to_index(a)])] : kUnreachable;
         }
         bounds_.backward(residual, reduced_, legs.end, reachable_, legs.backward);
     }
 }
 
 void PairRelaxation::onward(const ResidualGraph& residual, int kind, std::vector<double>& label) {
-    const Legs& legs = legs_[at(kind)];
+    const Legs& legs = legs_[to_index(kind)];
     reachable_.resize(residual.arc.size());
     onward_end_.resize(residual.arc.size());
     for (int a = 0; a < residual.size(); ++a) {
-        reachable_[at(a)] = legs.forward[at(a)] < kUnreachable ? 1 : 0;
-        onward_end_[at(a)] = may_end(residual, kind, a) ? 0.0 : kUnreachable;
+        reachable_[to_index(a)] = legs.forward[to_index(a)] < kUnreachable ? 1 : 0;
+        onward_end_[to_index(a)] = may_end(residual, kind, a) ? 0.0 : kUnreachable;
     }
     bounds_.backward(residual, reduced_, onward_end_, reachable_, label);
 }
 
 const std::array<std::vector<int>, 2>& PairRelaxation::walks(const ResidualGraph&) {
     for (int leg = 0; leg < 2; ++leg) {
-        const Legs& legs = legs_[symmetric() ? 0 : at(leg)];
-        walks_[at(leg)].clear();
-        if (ends_[at(leg)] < 0) continue;
-        for (int a = legs.best_arc[at(ends_[at(leg)])]; a >= 0; a = legs.before[at(a)]) {
-            walks_[at(leg)].push_back(a);
+        const Legs& legs = legs_[symmetric() ? 0 : to_index(leg)];
+        walks_[to_index(leg)].clear();
+        if (ends_[to_index(leg)] < 0) continue;
+        for (int a = legs.best_arc[to_index(ends_[to_index(leg)])]; a >= 0; a = legs.before[to_index(a)]) {
+            walks_[to_index(leg)].push_back(a);
         }
-        std::ranges::reverse(walks_[at(leg)]);
+        std::ranges::reverse(walks_[to_index(leg)]);
     }
     return walks_;
 }

@@ -3,8 +3,8 @@
 #include "solvers/path_pair/bound/leg_bounds.hpp"
 #include "solvers/path_pair/bound/multipliers.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/at.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <array>
 #include <span>
@@ -87,14 +87,14 @@ class PairRelaxation {
     [[nodiscard]] int other(int kind) const { return symmetric() ? 0 : 1 - kind; }
     [[nodiscard]] double offset() const { return offset_; }
     [[nodiscard]] std::span<const double> reduced() const { return reduced_; }
-    [[nodiscard]] std::span<const double> start(int kind) const { return legs_[at(kind)].start; }
-    [[nodiscard]] std::span<const double> forward(int kind) const { return legs_[at(kind)].forward; }
-    [[nodiscard]] std::span<const double> backward(int kind) const { return legs_[at(kind)].backward; }
+    [[nodiscard]] std::span<const double> start(int kind) const { return legs_[to_index(kind)].start; }
+    [[nodiscard]] std::span<const double> forward(int kind) const { return legs_[to_index(kind)].forward; }
+    [[nodiscard]] std::span<const double> backward(int kind) const { return legs_[to_index(kind)].backward; }
     /// By arc: h of its head, kUnreachable where a leg must not end with it.
-    [[nodiscard]] std::span<const double> end(int kind) const { return legs_[at(kind)].end; }
+    [[nodiscard]] std::span<const double> end(int kind) const { return legs_[to_index(kind)].end; }
     /// F by cone.
     [[nodiscard]] double best(int kind, int cone) const {
-        return legs_[at(kind)].best[static_cast<std::size_t>(cone)];
+        return legs_[to_index(kind)].best[static_cast<std::size_t>(cone)];
     }
     [[nodiscard]] bool ends_fit(int cone, int other) const {
         return !system_->ends_are_partners ||

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <algorithm>
 
@@ -22,20 +22,21 @@ void DominatedEdges::find(const ResidualGraph& residual, const PairRelaxation& r
     edges_ = &edges;
     const std::size_t words = edges.words();
     const auto work = [&](int a) {
-        return static_cast<std::size_t>(residual.out_start[at(a) + 1] - residual.out_start[at(a)]) *
+        return static_cast<std::size_t>(residual.out_start[to_index(a) + 1] -
+                                        residual.out_start[to_index(a)]) *
                (2 + words);
     };
     for (int kind = 0; kind < relaxation.system().kind_count; ++kind) {
-        std::vector<std::uint64_t>& before = before_[at(kind)];
-        std::vector<std::uint64_t>& after = after_[at(kind)];
+        std::vector<std::uint64_t>& before = before_[to_index(kind)];
+        std::vector<std::uint64_t>& after = after_[to_index(kind)];
         before.assign(residual.arc.size() * words, ~std::uint64_t{0});
         after.assign(residual.arc.size() * words, propagate ? ~std::uint64_t{0} : 0);
         for (int a = 0; a < residual.size(); ++a) {
-            if (!propagate || relaxation.start(kind)[at(a)] < kUnreachable) {
-                std::copy_n(edges.lost_after(a), words, before.data() + at(a) * words);
+            if (!propagate || relaxation.start(kind)[to_index(a)] < kUnreachable) {
+                std::copy_n(edges.lost_after(a), words, before.data() + to_index(a) * words);
             }
             if (relaxation.may_end(residual, kind, a)) {
-                std::fill_n(after.data() + at(a) * words, words, std::uint64_t{0});
+                std::fill_n(after.data() + to_index(a) * words, words, std::uint64_t{0});
             }
         }
         if (!propagate) continue;
@@ -44,12 +45,12 @@ void DominatedEdges::find(const ResidualGraph& residual, const PairRelaxation& r
             again = false;
             for (int a = 0; a < residual.size(); ++a) {
                 if (clock.out_of_time(work(a))) return;
-                for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
-                    const int b = residual.out_arc[at(p)];
+                for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
+                    const int b = residual.out_arc[to_index(p)];
                     if (EdgeSets::contains(row(before_, kind, a), edges.number(b))) continue;
                     const bool changed =
-                        intersect_with_union(before.data() + at(b) * words, before.data() + at(a) * words,
-                                             edges.lost_after(b), words);
+                        intersect_with_union(before.data() + to_index(b) * words,
+                                             before.data() + to_index(a) * words, edges.lost_after(b), words);
                     again |= changed && b < a;
                 }
             }
@@ -58,11 +59,12 @@ void DominatedEdges::find(const ResidualGraph& residual, const PairRelaxation& r
             again = false;
             for (int a = residual.size(); a-- > 0;) {
                 if (clock.out_of_time(work(a))) return;
-                for (int p = residual.out_start[at(a)]; p < residual.out_start[at(a) + 1]; ++p) {
-                    const int b = residual.out_arc[at(p)];
+                for (int p = residual.out_start[to_index(a)]; p < residual.out_start[to_index(a) + 1]; ++p) {
+                    const int b = residual.out_arc[to_index(p)];
                     if (!may_follow(kind, a, b)) continue;
-                    again |= intersect_with_union(after.data() + at(a) * words, after.data() + at(b) * words,
-                                                  edges.lost_before(b), words);
+                    again |=
+                        intersect_with_union(after.data() + to_index(a) * words,
+                                             after.data() + to_index(b) * words, edges.lost_before(b), words);
                 }
             }
         }

@@ -20,7 +20,7 @@ constexpr std::size_t kValuesPerClock = 16384;
 /// nothing.
 constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
 constexpr std::size_t kStepsPerFront = 4;
-constexpr std::size_t kMostFirstFronts = 1'000'000;
+constexpr std::size_t kMaxFirstFronts = 1'000'000;
 
 }  // namespace
 
@@ -105,8 +105,9 @@ double FrontierGraph::start_cost(int f) const {
     const Front& start = front(f);
     const int kind = start.moving_kind;
     const int other = relaxation_->other(kind);
-    return relaxation_->start(kind)[at(start.moving)] + relaxation_->reduced()[at(start.moving)] +
-           relaxation_->start(other)[at(start.waiting)] + relaxation_->reduced()[at(start.waiting)];
+    return relaxation_->start(kind)[to_index(start.moving)] + relaxation_->reduced()[to_index(start.moving)] +
+           relaxation_->start(other)[to_index(start.waiting)] +
+           relaxation_->reduced()[to_index(start.waiting)];
 }
 
 bool FrontierGraph::grow_table() {
@@ -148,7 +149,7 @@ void FrontierGraph::begin(double limit) {
     const bool symmetric = relaxation_->symmetric();
     const int second = relaxation_->other(0);
     const auto cost = [&](int kind, int a) {
-        return relaxation_->start(kind)[at(a)] + relaxation_->reduced()[at(a)];
+        return relaxation_->start(kind)[to_index(a)] + relaxation_->reduced()[to_index(a)];
     };
     stack_.clear();  // arcs that a leg of the second kind may start with
     for (int b = 0; b < r.size(); ++b) {
@@ -156,21 +157,22 @@ void FrontierGraph::begin(double limit) {
     }
     for (int a = 0; a < r.size(); ++a) {
         if (cost(0, a) == kUnreachable) continue;
-        if (now_.fronts.size() > kMostFirstFronts || out_of_time()) break;
+        if (now_.fronts.size() > kMaxFirstFronts || out_of_time()) break;
         for (const int b : stack_) {
             const double start = cost(0, a) + cost(second, b);
-            if (!(start + leg_onward_[0][at(a)] + leg_onward_[at(second)][at(b)] < limit)) continue;
-            if ((symmetric && b <= a) || r.head[at(a)] == r.head[at(b)] ||
+            if (!(start + leg_onward_[0][to_index(a)] + leg_onward_[to_index(second)][to_index(b)] < limit))
+                continue;
+            if ((symmetric && b <= a) || r.head[to_index(a)] == r.head[to_index(b)] ||
                 !dominated_of_arcs_->may_pair(0, a, second, b, false)) {
                 continue;
             }
             const int f =
                 number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
-            now_.forward[at(f)] = start;
+            now_.forward[to_index(f)] = start;
             starts_.push_back(f);
             if (edges_ != nullptr) {
-                intersect_with_union(dominated_.row(at(f)), edges_->lost_after(a), edges_->lost_after(b),
-                                     edges_->words());
+                intersect_with_union(dominated_.row(to_index(f)), edges_->lost_after(a),
+                                     edges_->lost_after(b), edges_->words());
             }
             open(f);
         }
@@ -191,42 +193,43 @@ void FrontierGraph::add_steps(int f, double limit) {
     const int kind = here.moving_kind;
     const int other = relaxation_->other(kind);
     const std::span<const double> reduced = relaxation_->reduced();
-    const std::span<const double> onward = leg_onward_[at(kind)];
-    const double forward = relaxation_->forward(kind)[at(here.moving)];
-    const double waiting = relaxation_->forward(other)[at(here.waiting)] +
-                           (here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)]);
-    const int waiting_cone = r.head[at(here.waiting)];
-    const int ways = r.out_start[at(here.moving) + 1] - r.out_start[at(here.moving)];
-    if (!make_room(now_.steps, at(ways) + 1)) return;
-    now_.begin[at(f)] = now_.steps.size();
-    for (int p = r.out_start[at(here.moving)]; p < r.out_start[at(here.moving) + 1]; ++p) {
-        const int next = r.out_arc[at(p)];
-        const double moving = forward + r.out_cost[at(p)] + reduced[at(next)] + onward[at(next)];
-        if (!(moving + waiting < limit) || r.head[at(next)] == waiting_cone ||
+    const std::span<const double> onward = leg_onward_[to_index(kind)];
+    const double forward = relaxation_->forward(kind)[to_index(here.moving)];
+    const double waiting = relaxation_->forward(other)[to_index(here.waiting)] +
+                           (here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)]);
+    const int waiting_cone = r.head[to_index(here.waiting)];
+    const int ways = r.out_start[to_index(here.moving) + 1] - r.out_start[to_index(here.moving)];
+    if (!make_room(now_.steps, to_index(ways) + 1)) return;
+    now_.begin[to_index(f)] = now_.steps.size();
+    for (int p = r.out_start[to_index(here.moving)]; p < r.out_start[to_index(here.moving) + 1]; ++p) {
+        const int next = r.out_arc[to_index(p)];
+        const double moving =
+            forward + r.out_cost[to_index(p)] + reduced[to_index(next)] + onward[to_index(next)];
+        if (!(moving + waiting < limit) || r.head[to_index(next)] == waiting_cone ||
             !dominated_of_arcs_->may_follow(kind, here.moving, next) ||
             !dominated_of_arcs_->may_pair(kind, next, other, here.waiting, here.ended)) {
             continue;
         }
-        now_.steps.push_back({-1, next, r.out_cost[at(p)]});
+        now_.steps.push_back({-1, next, r.out_cost[to_index(p)]});
     }
     if (!here.ended && relaxation_->may_end(r, kind, here.moving)) now_.steps.push_back({-1, -1, 0.0});
-    now_.end[at(f)] = now_.steps.size();
+    now_.end[to_index(f)] = now_.steps.size();
 }
 
 bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-                          std::size_t most_fronts, const EdgeSets* edges) {
+                          std::size_t max_fronts, const EdgeSets* edges) {
     residual_ = &residual;
     edges_ = edges;
     dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
     if (edges_ != nullptr) nothing_.assign(edges_->words(), 0);
     dominated_of_arcs_ = &dominated;
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
-        relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
+        relaxation_->onward(residual, kind, leg_onward_[to_index(kind)]);
     }
     now_.clear();
-    now_.reserve(std::min(kReservedFronts, most_fronts));
+    now_.reserve(std::min(kReservedFronts, max_fronts));
     next_open_.clear();
-    next_open_.reserve(std::min(kReservedFronts, most_fronts));
+    next_open_.reserve(std::min(kReservedFronts, max_fronts));
     now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
     starts_.clear();
     open_at_.assign(residual.arc.size(), -1);
@@ -236,7 +239,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
     until_clock_ = 0;
     is_stopped_ = false;
     begin(limit);
-    if (is_stopped_ || now_.fronts.size() > kMostFirstFronts) {
+    if (is_stopped_ || now_.fronts.size() > kMaxFirstFronts) {
         stack_.clear();
         return false;
     }
@@ -247,9 +250,9 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
             while (open_arcs_[word] != 0) {
                 moving_ = static_cast<int>(word * 64) + std::countr_zero(open_arcs_[word]);
                 open_arcs_[word] &= open_arcs_[word] - 1;
-                for (int f = std::exchange(open_at_[at(moving_)], -1); f >= 0;) {
-                    const int next = std::exchange(next_open_[at(f)], kNotOpen);
-                    if (out_of_time(kFrontsPerExtension) || !extend(f, limit, most_fronts)) return false;
+                for (int f = std::exchange(open_at_[to_index(moving_)], -1); f >= 0;) {
+                    const int next = std::exchange(next_open_[to_index(f)], kNotOpen);
+                    if (out_of_time(kFrontsPerExtension) || !extend(f, limit, max_fronts)) return false;
                     f = next;
                 }
             }
@@ -260,11 +263,11 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
 }
 
 void FrontierGraph::open(int f) {
-    if (next_open_[at(f)] != kNotOpen) return;
-    const std::size_t arc = at(front(f).moving);
-    next_open_[at(f)] = std::exchange(open_at_[arc], f);
+    if (next_open_[to_index(f)] != kNotOpen) return;
+    const std::size_t arc = to_index(front(f).moving);
+    next_open_[to_index(f)] = std::exchange(open_at_[arc], f);
     open_arcs_[arc / 64] |= std::uint64_t{1} << (arc % 64);
-    again_ |= arc / 64 < at(moving_) / 64;
+    again_ |= arc / 64 < to_index(moving_) / 64;
 }
 
 /// Every walk up to a front loses these edges: one more walk comes to `to`. True where the set shrinks.
@@ -272,35 +275,36 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
     const std::uint64_t* const own = arc < 0 ? nothing_.data() : edges_->lost_after(arc);
-    return intersect_with_union(dominated_.row(at(to)), dominated_.row(at(from)), own, words);
+    return intersect_with_union(dominated_.row(to_index(to)), dominated_.row(to_index(from)), own, words);
 }
 
 /// Lowers the forward costs of the fronts after this one. False where there are too many.
-bool FrontierGraph::extend(int f, double limit, std::size_t most_fronts) {
+bool FrontierGraph::extend(int f, double limit, std::size_t max_fronts) {
     const Front here = front(f);
     const int other = relaxation_->other(here.moving_kind);
     const std::span<const double> reduced = relaxation_->reduced();
-    const std::span<const double> leg_onward = leg_onward_[at(here.moving_kind)];
-    const double forward = now_.forward[at(f)];
-    const double waiting = here.ended ? 0.0 : leg_onward_[at(other)][at(here.waiting)];
-    if (!(forward + leg_onward[at(here.moving)] + waiting < limit)) return true;
-    if (now_.end[at(f)] == 0) add_steps(f, limit);
-    for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+    const std::span<const double> leg_onward = leg_onward_[to_index(here.moving_kind)];
+    const double forward = now_.forward[to_index(f)];
+    const double waiting = here.ended ? 0.0 : leg_onward_[to_index(other)][to_index(here.waiting)];
+    if (!(forward + leg_onward[to_index(here.moving)] + waiting < limit)) return true;
+    if (now_.end[to_index(f)] == 0) add_steps(f, limit);
+    for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
         const auto [known, arc, turn] = now_.steps[p];
-        if (edges_ != nullptr && arc >= 0 && EdgeSets::contains(dominated_.row(at(f)), edges_->number(arc))) {
+        if (edges_ != nullptr && arc >= 0 &&
+            EdgeSets::contains(dominated_.row(to_index(f)), edges_->number(arc))) {
             continue;
         }
-        const double label = forward + (turn + (arc < 0 ? 0.0 : reduced[at(arc)]));
-        const double on = arc < 0 ? 0.0 : leg_onward[at(arc)];
+        const double label = forward + (turn + (arc < 0 ? 0.0 : reduced[to_index(arc)]));
+        const double on = arc < 0 ? 0.0 : leg_onward[to_index(arc)];
         if (!(label + on + waiting < limit)) continue;
         int to = known;
         if (to < 0) {
             now_.steps[p].to = to = number(after(here, arc, static_cast<std::uint8_t>(other)));
-            if (now_.fronts.size() > most_fronts) return false;
+            if (now_.fronts.size() > max_fronts) return false;
         }
         const bool narrowed = narrow_dominated(f, to, arc);
-        const bool cheaper = label < now_.forward[at(to)] - kGain;
-        if (cheaper) now_.forward[at(to)] = label;
+        const bool cheaper = label < now_.forward[to_index(to)] - kGain;
+        if (cheaper) now_.forward[to_index(to)] = label;
         if (cheaper || narrowed) open(to);
     }
     return true;
@@ -314,7 +318,7 @@ void FrontierGraph::order() {
     for (const Front& f : now_.fronts) {
         if (out_of_time()) return forget_fronts();
         const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
-                          relaxation_->ends_fit(r.head[at(f.moving)], r.head[at(f.waiting)]);
+                          relaxation_->ends_fit(r.head[to_index(f.moving)], r.head[to_index(f.waiting)]);
         now_.last.push_back(last ? 1 : 0);
     }
     if (!fill(now_.onward, now_.fronts.size(), kUnreachable) ||
@@ -331,9 +335,9 @@ bool FrontierGraph::order_fronts() {
         return false;
     }
     const auto enter = [&](int f) {
-        if (f < 0 || now_.end[at(f)] == 0 || index_[at(f)] >= 0) return;
-        index_[at(f)] = 0;
-        next_step_[at(f)] = now_.begin[at(f)];
+        if (f < 0 || now_.end[to_index(f)] == 0 || index_[to_index(f)] >= 0) return;
+        index_[to_index(f)] = 0;
+        next_step_[to_index(f)] = now_.begin[to_index(f)];
         stack_.push_back(f);
     };
     for (const int start : starts_) {
@@ -344,11 +348,11 @@ bool FrontierGraph::order_fronts() {
                 return false;
             }
             const int f = stack_.back();
-            if (next_step_[at(f)] == now_.end[at(f)]) {
+            if (next_step_[to_index(f)] == now_.end[to_index(f)]) {
                 order_.push_back(f);
                 stack_.pop_back();
             } else {
-                enter(now_.steps[next_step_[at(f)]++].to);
+                enter(now_.steps[next_step_[to_index(f)]++].to);
             }
         }
     }
@@ -363,24 +367,24 @@ void FrontierGraph::keep(std::span<const int> order) {
     now_.reserve(order.size());
     now_.steps.reserve(old_.steps.size());
     if (!fill(index_, old_.fronts.size(), -1)) return forget_fronts();
-    for (std::size_t k = 0; k < order.size(); ++k) index_[at(order[k])] = static_cast<int>(k);
+    for (std::size_t k = 0; k < order.size(); ++k) index_[to_index(order[k])] = static_cast<int>(k);
     for (const int f : order) {
         if (out_of_time()) return forget_fronts();
-        now_.fronts.push_back(old_.fronts[at(f)]);
-        now_.last.push_back(old_.last[at(f)]);
-        now_.forward.push_back(old_.forward[at(f)]);
-        now_.onward.push_back(old_.onward[at(f)]);
+        now_.fronts.push_back(old_.fronts[to_index(f)]);
+        now_.last.push_back(old_.last[to_index(f)]);
+        now_.forward.push_back(old_.forward[to_index(f)]);
+        now_.onward.push_back(old_.onward[to_index(f)]);
         now_.begin.push_back(now_.steps.size());
-        for (std::size_t p = old_.begin[at(f)]; p < old_.end[at(f)]; ++p) {
+        for (std::size_t p = old_.begin[to_index(f)]; p < old_.end[to_index(f)]; ++p) {
             const Step& step = old_.steps[p];
-            if (keep_step_[p] == 0 || step.to < 0 || index_[at(step.to)] < 0) continue;
-            now_.steps.push_back({index_[at(step.to)], step.arc, step.turn});
+            if (keep_step_[p] == 0 || step.to < 0 || index_[to_index(step.to)] < 0) continue;
+            now_.steps.push_back({index_[to_index(step.to)], step.arc, step.turn});
         }
         now_.end.push_back(now_.steps.size());
     }
     std::size_t kept = 0;
     for (const int f : starts_) {
-        if (index_[at(f)] >= 0) starts_[kept++] = index_[at(f)];
+        if (index_[to_index(f)] >= 0) starts_[kept++] = index_[to_index(f)];
     }
     starts_.resize(kept);
 }
@@ -397,37 +401,37 @@ double FrontierGraph::find_onward(double limit) {
         for (int f = size(); f-- > 0;) {
             if (out_of_time()) return -kUnreachable;
             const std::span<const Step> on = steps(f);
-            const auto changed = [&](const Step& step) { return changed_[at(step.to)] >= sweep - 1; };
+            const auto changed = [&](const Step& step) { return changed_[to_index(step.to)] >= sweep - 1; };
             if (sweep > 1 && std::none_of(on.begin(), on.end(), changed)) continue;
             double value = is_last(f) ? 0.0 : kUnreachable;
             for (const Step& step : on) value = std::min(value, cost(step) + onward(step.to));
-            if (!(value < onward(f) - kGain) || !(value + now_.forward[at(f)] < limit)) continue;
-            now_.onward[at(f)] = value;
-            changed_[at(f)] = sweep;
+            if (!(value < onward(f) - kGain) || !(value + now_.forward[to_index(f)] < limit)) continue;
+            now_.onward[to_index(f)] = value;
+            changed_[to_index(f)] = sweep;
             again = true;
         }
     }
     double bound = kUnreachable;
-    for (const int f : starts_) bound = std::min(bound, start_cost(f) + now_.onward[at(f)]);
+    for (const int f : starts_) bound = std::min(bound, start_cost(f) + now_.onward[to_index(f)]);
     return bound;
 }
 
 void FrontierGraph::find_forward() {
     if (!fill(now_.forward, now_.fronts.size(), kUnreachable)) return forget_fronts();
     changed_.assign(now_.fronts.size(), 0);
-    for (const int f : starts_) now_.forward[at(f)] = start_cost(f);
+    for (const int f : starts_) now_.forward[to_index(f)] = start_cost(f);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = 0; f < size(); ++f) {
             if (out_of_time()) return;
-            const double value = now_.forward[at(f)];
-            if (value == kUnreachable || (sweep > 1 && changed_[at(f)] < sweep - 1)) continue;
+            const double value = now_.forward[to_index(f)];
+            if (value == kUnreachable || (sweep > 1 && changed_[to_index(f)] < sweep - 1)) continue;
             for (const Step& step : steps(f)) {
                 const double label = value + cost(step);
-                if (!(label < now_.forward[at(step.to)] - kGain)) continue;
-                now_.forward[at(step.to)] = label;
-                changed_[at(step.to)] = sweep;
+                if (!(label < now_.forward[to_index(step.to)] - kGain)) continue;
+                now_.forward[to_index(step.to)] = label;
+                changed_[to_index(step.to)] = sweep;
                 again |= step.to <= f;
             }
         }
@@ -439,10 +443,10 @@ void FrontierGraph::drop(double limit) {
     if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_fronts();
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return forget_fronts();
-        const double forward = now_.forward[at(f)];
+        const double forward = now_.forward[to_index(f)];
         if (!(forward + onward(f) < limit)) continue;
         order_.push_back(f);
-        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
             const Step& step = now_.steps[p];
             if (forward + cost(step) + onward(step.to) < limit) keep_step_[p] = 1;
         }
@@ -452,7 +456,7 @@ void FrontierGraph::drop(double limit) {
 
 void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
     const std::size_t words = edges.words();
-    const auto row = [&](int f) { return dominated_.row(at(f)); };
+    const auto row = [&](int f) { return dominated_.row(to_index(f)); };
     const auto is_dominated = [&](int f, int arc) {
         return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
     };
@@ -472,19 +476,19 @@ void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
         again = false;
         for (int f = 0; f < size(); ++f) {
             if (out_of_time()) return;
-            if (sweep > 1 && changed_[at(f)] < sweep - 1) continue;
+            if (sweep > 1 && changed_[to_index(f)] < sweep - 1) continue;
             for (const Step& step : steps(f)) {
                 if (is_dominated(f, step.arc)) continue;
                 const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
                 if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
-                changed_[at(step.to)] = sweep;
+                changed_[to_index(step.to)] = sweep;
                 again |= step.to <= f;
             }
         }
     }
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return;
-        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
             if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
         }
     }
@@ -499,9 +503,9 @@ void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
             if (out_of_time()) return;
             bool changed = false;
             if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
-            for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+            for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
                 const Step& step = now_.steps[p];
-                if (keep_step_[p] == 0 || changed_[at(step.to)] < sweep - 1 ||
+                if (keep_step_[p] == 0 || changed_[to_index(step.to)] < sweep - 1 ||
                     is_dominated(step.to, step.arc)) {
                     continue;
                 }
@@ -509,7 +513,7 @@ void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
                 changed |= intersect_with_union(row(f), row(step.to), own, words);
             }
             if (!changed) continue;
-            changed_[at(f)] = sweep;
+            changed_[to_index(f)] = sweep;
             again = true;
         }
     }
@@ -517,7 +521,7 @@ void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return;
         order_.push_back(f);
-        for (std::size_t p = now_.begin[at(f)]; p < now_.end[at(f)]; ++p) {
+        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
             if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
         }
     }

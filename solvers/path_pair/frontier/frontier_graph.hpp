@@ -2,10 +2,10 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/frontier/dominated_edges.hpp"
-#include "solvers/path_pair/graph/at.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <array>
 #include <cstddef>
@@ -48,10 +48,10 @@ class FrontierGraph {
 
     /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
     /// forward(f). With `edges`, steps by edges that every walk up to their front has lost are left out on
-    /// the way. False where there are more than `most_fronts`, or stopped. Precondition: the relaxation was
+    /// the way. False where there are more than `max_fronts`, or stopped. Precondition: the relaxation was
     /// evaluated on the residual graph. `limit`: with offset, here and below.
     bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-               std::size_t most_fronts, const EdgeSets* edges = nullptr);
+               std::size_t max_fronts, const EdgeSets* edges = nullptr);
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
     double find_onward(double limit);
@@ -65,17 +65,17 @@ class FrontierGraph {
 
     [[nodiscard]] int size() const { return static_cast<int>(now_.fronts.size()); }
     [[nodiscard]] const ResidualGraph& residual() const { return *residual_; }
-    [[nodiscard]] const Front& front(int f) const { return now_.fronts[at(f)]; }
+    [[nodiscard]] const Front& front(int f) const { return now_.fronts[to_index(f)]; }
     [[nodiscard]] std::span<const int> starts() const { return starts_; }
-    [[nodiscard]] bool is_last(int f) const { return now_.last[at(f)] != 0; }
+    [[nodiscard]] bool is_last(int f) const { return now_.last[to_index(f)] != 0; }
     [[nodiscard]] std::span<const Step> steps(int f) const {
-        return {now_.steps.data() + now_.begin[at(f)], now_.steps.data() + now_.end[at(f)]};
+        return {now_.steps.data() + now_.begin[to_index(f)], now_.steps.data() + now_.end[to_index(f)]};
     }
-    [[nodiscard]] double onward(int f) const { return now_.onward[at(f)]; }
+    [[nodiscard]] double onward(int f) const { return now_.onward[to_index(f)]; }
     /// Reduced cost of the two arcs of a first front.
     [[nodiscard]] double start_cost(int f) const;
     [[nodiscard]] double cost(const Step& step) const {
-        return step.turn + (step.arc < 0 ? 0.0 : relaxation_->reduced()[at(step.arc)]);
+        return step.turn + (step.arc < 0 ? 0.0 : relaxation_->reduced()[to_index(step.arc)]);
     }
 
   private:
@@ -108,7 +108,7 @@ class FrontierGraph {
     void begin(double limit);
     void open(int f);
     bool narrow_dominated(int from, int to, int arc);
-    bool extend(int f, double limit, std::size_t most_fronts);
+    bool extend(int f, double limit, std::size_t max_fronts);
     void add_steps(int f, double limit);
     /// `other`: the kind of the leg that waits.
     [[nodiscard]] static Front after(const Front& front, int arc, std::uint8_t other);

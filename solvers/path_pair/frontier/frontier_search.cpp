@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/frontier_search.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -43,7 +43,7 @@ void FrontierSearch::take(int arc, Label& label, std::uint64_t* lost) const {
 }
 
 void FrontierSearch::wait(Label label) {
-    const std::size_t front = at(label.front);
+    const std::size_t front = to_index(label.front);
     label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
     open_[front / 64] |= std::uint64_t{1} << (front % 64);
     *labels_.add() = label;
@@ -73,8 +73,8 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
     words_ = edges.words();
     labels_.reset(1);
     lost_.reset(words_);
-    waiting_.assign(at(fronts.size()), -1);
-    open_.assign((at(fronts.size()) + 63) / 64, 0);
+    waiting_.assign(to_index(fronts.size()), -1);
+    open_.assign((to_index(fronts.size()) + 63) / 64, 0);
     wanted_.resize(words_);
     stopped_ = &stopped;
     work_ = kWorkPerClock;
@@ -91,7 +91,7 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
                 open_[word] &= open_[word] - 1;
                 settle(f);
                 if (is_stopped_) return Outcome::stopped;
-                if (labels_.size() > limits.most_labels) return Outcome::stopped;
+                if (labels_.size() > limits.max_labels) return Outcome::stopped;
             }
         }
     }
@@ -101,7 +101,7 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
 /// Expands the labels that wait at a front.
 void FrontierSearch::settle(int f) {
     here_.clear();
-    for (int l = std::exchange(waiting_[at(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
+    for (int l = std::exchange(waiting_[to_index(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
     std::sort(here_.begin(), here_.end(), [&](int a, int b) { return label_at(a).cost < label_at(b).cost; });
     kept_along_heading_.clear();
     kept_lost_.clear();
@@ -182,13 +182,13 @@ void FrontierSearch::offer(int label) {
     std::ranges::reverse(chain_);
     const FrontierGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
     std::array<int, 2> last{start.moving, start.waiting};
-    for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[at(last[leg])]);
+    for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[to_index(last[leg])]);
     for (std::size_t k = 1; k < chain_.size(); ++k) {
         const int arc = label_at(chain_[k]).arc;
         if (arc < 0) continue;
         const std::size_t leg = last[0] == fronts_->front(label_at(chain_[k - 1]).front).moving ? 0 : 1;
         last[leg] = arc;
-        legs_[leg].push_back(residual.arc[at(arc)]);
+        legs_[leg].push_back(residual.arc[to_index(arc)]);
     }
     incumbent_->offer(legs_[0], legs_[1]);
 }

@@ -28,7 +28,7 @@ class FrontierSearch {
     enum class Outcome {
         exhausted,  ///< nothing below the cutoff is left
         narrow,     ///< some fronts had more than `width` labels
-        stopped     ///< by `most_labels` or the clock
+        stopped     ///< by `max_labels` or the clock
     };
     static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
 
@@ -37,7 +37,7 @@ class FrontierSearch {
     struct Limits {
         double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
         std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
-        std::size_t most_labels;
+        std::size_t max_labels;
     };
     /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
     /// the tables are theirs.

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/frontier/onward_tables.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kBlock = 16;
 constexpr std::size_t kWorkPerClock = 200'000;  ///< bytes of rows between two looks at the clock
-constexpr double kLeastQuantum = 1e-9;
+constexpr double kMinQuantum = 1e-9;
 constexpr double kRounding = 0.01;  ///< of a quantum: more than sums of costs are off by
 
 /// mine = min(mine, max(theirs + more, excluded)). Tells whether any fell.
@@ -73,7 +73,7 @@ void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, doub
     is_stopped_ = false;
     double bound = kUnreachable;
     for (const int f : fronts.starts()) bound = std::min(bound, fronts.start_cost(f) + fronts.onward(f));
-    quantum_ = std::max((limit - bound) / (kTooMany - 1), kLeastQuantum);
+    quantum_ = std::max((limit - bound) / (kTooMany - 1), kMinQuantum);
     edge_count_ = edges.words() * 64;
     find_regrets();
     have_detours_ = with_detours && !is_stopped_;
@@ -85,28 +85,29 @@ void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, doub
 
 void OnwardTables::find_regrets() {
     const std::size_t count = edge_count_;
-    if (!fill(regret_, at(fronts_->size()) * count)) return;
+    if (!fill(regret_, to_index(fronts_->size()) * count)) return;
     nothing_.assign(count, 0);
-    changed_.assign(at(fronts_->size()), 0);
+    changed_.assign(to_index(fronts_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = fronts_->size(); f-- > 0;) {
-            Quanta* const mine = regret_.data() + at(f) * count;
+            Quanta* const mine = regret_.data() + to_index(f) * count;
             bool change = false;
             for (const FrontierGraph::Step& step : fronts_->steps(f)) {
-                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
+                if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;
                 if (out_of_time(count)) return;
-                change |= lower(mine, regret_.data() + at(step.to) * count, nothing_.data(), delta, count);
+                change |=
+                    lower(mine, regret_.data() + to_index(step.to) * count, nothing_.data(), delta, count);
                 if (step.arc < 0) continue;
                 Quanta& own = mine[edges_->number(step.arc)];
                 change |= delta < own;
                 own = std::min(own, delta);
             }
             if (!change) continue;
-            changed_[at(f)] = sweep;
+            changed_[to_index(f)] = sweep;
             again = true;
         }
     }
@@ -118,8 +119,8 @@ void OnwardTables::number_arcs() {
     column_.assign(fronts_->residual().arc.size(), kNone);
     arcs_.clear();
     const auto add = [&](int arc) {
-        if (column_[at(arc)] != kNone) return;
-        column_[at(arc)] = arcs_.size();
+        if (column_[to_index(arc)] != kNone) return;
+        column_[to_index(arc)] = arcs_.size();
         arcs_.push_back(arc);
     };
     for (int f = 0; f < fronts_->size(); ++f) {
@@ -141,8 +142,8 @@ void OnwardTables::find_excluded() {
         const std::uint64_t* const lost = edges_->lost_after(arcs_[column]);
         for (std::size_t w = 0; w < edges_->words(); ++w) {
             for (std::uint64_t bits = lost[w]; bits != 0; bits &= bits - 1) {
-                for (const int row : columns_of_edge_[w * 64 + at(std::countr_zero(bits))]) {
-                    if (row >= 0) excluded_[at(row) * arc_count_ + column] = kTooMany;
+                for (const int row : columns_of_edge_[w * 64 + to_index(std::countr_zero(bits))]) {
+                    if (row >= 0) excluded_[to_index(row) * arc_count_ + column] = kTooMany;
                 }
             }
         }
@@ -151,29 +152,29 @@ void OnwardTables::find_excluded() {
 
 void OnwardTables::find_detours() {
     const std::size_t count = arc_count_;
-    if (!fill(detour_, at(fronts_->size()) * count)) return;
+    if (!fill(detour_, to_index(fronts_->size()) * count)) return;
     nothing_.assign(count, 0);
-    changed_.assign(at(fronts_->size()), 0);
+    changed_.assign(to_index(fronts_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
         for (int f = fronts_->size(); f-- > 0;) {
-            Quanta* const mine = detour_.data() + at(f) * count;
+            Quanta* const mine = detour_.data() + to_index(f) * count;
             bool change = false;
             if (sweep == 1 && fronts_->is_last(f)) {
                 change = lower(mine, nothing_.data(), nothing_.data(), to_quanta(-fronts_->onward(f)), count);
             }
             for (const FrontierGraph::Step& step : fronts_->steps(f)) {
-                if (sweep > 1 && changed_[at(step.to)] < sweep - 1) continue;
+                if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;
                 if (out_of_time(count)) return;
                 const Quanta* const excluded =
-                    step.arc < 0 ? nothing_.data() : excluded_.data() + column_[at(step.arc)] * count;
-                change |= lower(mine, detour_.data() + at(step.to) * count, excluded, delta, count);
+                    step.arc < 0 ? nothing_.data() : excluded_.data() + column_[to_index(step.arc)] * count;
+                change |= lower(mine, detour_.data() + to_index(step.to) * count, excluded, delta, count);
             }
             if (!change) continue;
-            changed_[at(f)] = sweep;
+            changed_[to_index(f)] = sweep;
             again = true;
         }
     }

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/graph/edge_sets.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <bit>
 #include <span>
@@ -8,11 +8,11 @@
 namespace conelane::path_pair {
 
 void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, SearchClock& clock) {
-    number_of_edge_.assign(at(graph.edge_count()), -1);
+    number_of_edge_.assign(to_index(graph.edge_count()), -1);
     number_.clear();
     edges_.clear();
     for (int a = 0; a < residual.size(); ++a) {
-        int& number = number_of_edge_[at(residual.edge(a))];
+        int& number = number_of_edge_[to_index(residual.edge(a))];
         if (number < 0) {
             number = static_cast<int>(edges_.size());
             edges_.push_back(residual.edge(a));
@@ -23,10 +23,10 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
     const auto insert = [&](std::vector<std::uint64_t>& sets, std::size_t row, std::size_t number) {
         sets[row * words_ + number / 64] |= std::uint64_t{1} << (number % 64);
     };
-    at_cone_.assign(at(graph.cone_count()) * words_, 0);
+    at_cone_.assign(to_index(graph.cone_count()) * words_, 0);
     for (std::size_t number = 0; number < edges_.size(); ++number) {
-        insert(at_cone_, at(graph.tail(2 * edges_[number])), number);
-        insert(at_cone_, at(graph.head(2 * edges_[number])), number);
+        insert(at_cone_, to_index(graph.tail(2 * edges_[number])), number);
+        insert(at_cone_, to_index(graph.head(2 * edges_[number])), number);
     }
     excluded_.assign(edges_.size() * words_, 0);
     for (std::size_t number = 0; number < edges_.size(); ++number) {
@@ -34,8 +34,8 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
         const std::span<const std::uint64_t> row = graph.incompatible_row(edges_[number]);
         for (std::size_t w = 0; w < row.size(); ++w) {
             for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-                const int other = number_of_edge_[w * 64 + at(std::countr_zero(bits))];
-                if (other >= 0) insert(excluded_, number, at(other));
+                const int other = number_of_edge_[w * 64 + to_index(std::countr_zero(bits))];
+                if (other >= 0) insert(excluded_, number, to_index(other));
             }
         }
     }
@@ -44,11 +44,11 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
     for (int a = 0; a < residual.size(); ++a) {
         if (clock.out_of_time(2 * words_)) return;
         const std::uint64_t* const excluded = excluded_.data() + number(a) * words_;
-        const std::uint64_t* const at_tail = at_cone_.data() + at(residual.tail[at(a)]) * words_;
-        const std::uint64_t* const at_head = at_cone_.data() + at(residual.head[at(a)]) * words_;
+        const std::uint64_t* const at_tail = at_cone_.data() + to_index(residual.tail[to_index(a)]) * words_;
+        const std::uint64_t* const at_head = at_cone_.data() + to_index(residual.head[to_index(a)]) * words_;
         for (std::size_t w = 0; w < words_; ++w) {
-            after_[at(a) * words_ + w] = excluded[w] | at_tail[w];
-            before_[at(a) * words_ + w] = excluded[w] | at_head[w];
+            after_[to_index(a) * words_ + w] = excluded[w] | at_tail[w];
+            before_[to_index(a) * words_ + w] = excluded[w] | at_head[w];
         }
     }
 }

@@ -7,7 +7,7 @@ namespace conelane::path_pair {
 namespace {
 
 // Legs may turn back in the order of arcs, so arcs are gone through more than once.
-constexpr int kMostSweeps = 4;
+constexpr int kMaxSweeps = 4;
 
 }  // namespace
 
@@ -30,17 +30,17 @@ void FrontierBeam::run(const ResidualGraph& residual, const EdgeSets& edges, dou
     tolerance_ = tolerance;
     words_ = edges.words();
     for (int kind = 0; kind < relaxation_->system().kind_count; ++kind) {
-        relaxation_->onward(residual, kind, leg_onward_[at(kind)]);
+        relaxation_->onward(residual, kind, leg_onward_[to_index(kind)]);
     }
     labels_.reset(1);
     lost_.reset(words_);
     waiting_.assign(residual.arc.size(), -1);
     begin(width);
     again_ = true;
-    for (int sweep = 0; again_ && sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; again_ && sweep < kMaxSweeps; ++sweep) {
         again_ = false;
         for (settled_ = 0; settled_ < residual.size(); ++settled_) {
-            if (waiting_[at(settled_)] < 0) continue;
+            if (waiting_[to_index(settled_)] < 0) continue;
             settle(settled_, width);
             if (clock_->struck()) return;
         }
@@ -52,12 +52,12 @@ void FrontierBeam::begin(std::size_t width) {
     const ResidualGraph& r = *residual_;
     const int second = kind(1);
     const auto through = [&](int of_kind, int a) {
-        return relaxation_->start(of_kind)[at(a)] + relaxation_->reduced()[at(a)] +
-               leg_onward_[at(of_kind)][at(a)];
+        return relaxation_->start(of_kind)[to_index(a)] + relaxation_->reduced()[to_index(a)] +
+               leg_onward_[to_index(of_kind)][to_index(a)];
     };
     for (int a = 0; a < r.size(); ++a) {
         if (!(through(0, a) < kUnreachable)) continue;
-        if (clock_->out_of_time(at(r.size()))) return;
+        if (clock_->out_of_time(to_index(r.size()))) return;
         here_.clear();
         for (int b = relaxation_->symmetric() ? a + 1 : 0; b < r.size(); ++b) {
             if (!(through(0, a) + through(second, b) < limit())) continue;
@@ -85,8 +85,8 @@ void FrontierBeam::begin(std::size_t width) {
                         0.0};
             label.cost = graph_->cost(r.edge(b));
             label.along_heading = graph_->along_heading(r.edge(b)) ? 1 : 0;
-            label.reduced = relaxation_->start(0)[at(a)] + relaxation_->start(second)[at(b)] +
-                            relaxation_->reduced()[at(b)];
+            label.reduced = relaxation_->start(0)[to_index(a)] + relaxation_->start(second)[to_index(b)] +
+                            relaxation_->reduced()[to_index(b)];
             label.estimate = through(0, a) + through(second, b);
             wait(label, edges_->lost_after(b), a);
         }
@@ -101,21 +101,21 @@ void FrontierBeam::wait(Label label, const std::uint64_t* lost_before, int arc) 
     if (arc >= 0) {
         const int edge = residual_->edge(arc);
         label.cost += graph_->cost(edge);
-        label.reduced += relaxation_->reduced()[at(arc)];
+        label.reduced += relaxation_->reduced()[to_index(arc)];
         if (graph_->along_heading(edge)) {
             label.along_heading = static_cast<std::int8_t>(std::min(2, label.along_heading + 1));
         }
         const std::uint64_t* const more = edges_->lost_after(arc);
         for (std::size_t w = 0; w < words_; ++w) row[w] |= more[w];
     }
-    label.next = std::exchange(waiting_[at(label.moving)], static_cast<int>(labels_.size()));
+    label.next = std::exchange(waiting_[to_index(label.moving)], static_cast<int>(labels_.size()));
     again_ |= label.moving <= settled_;
     *labels_.add() = label;
 }
 
 void FrontierBeam::settle(int arc, std::size_t width) {
     here_.clear();
-    for (int l = std::exchange(waiting_[at(arc)], -1); l >= 0; l = label_at(l).next) {
+    for (int l = std::exchange(waiting_[to_index(arc)], -1); l >= 0; l = label_at(l).next) {
         if (label_at(l).estimate < limit()) here_.push_back(l);
     }
     clock_->out_of_time(50 * here_.size());
@@ -135,7 +135,7 @@ void FrontierBeam::settle(int arc, std::size_t width) {
         });
         if (same_front) continue;
         if (clock_->struck()) return;
-        here_[at(static_cast<int>(expanded++))] = here_[k];
+        here_[to_index(static_cast<int>(expanded++))] = here_[k];
         expand(here_[k]);
     }
 }
@@ -149,7 +149,7 @@ void FrontierBeam::expand(int l) {
     if (relaxation_->may_end(r, moving_kind, label.moving)) {
         if (label.ended) {
             if (label.cost < incumbent_->cutoff() - tolerance_ && label.along_heading >= 2 &&
-                relaxation_->ends_fit(r.head[at(label.moving)], r.head[at(label.waiting)])) {
+                relaxation_->ends_fit(r.head[to_index(label.moving)], r.head[to_index(label.waiting)])) {
                 offer(l);
             }
         } else {
@@ -159,7 +159,7 @@ void FrontierBeam::expand(int l) {
             on.waiting = label.moving;
             on.moving_leg = other_leg;
             on.ended = true;
-            on.estimate = label.reduced + leg_onward_[at(other_kind)][at(on.moving)];
+            on.estimate = label.reduced + leg_onward_[to_index(other_kind)][to_index(on.moving)];
             if (on.estimate < limit()) {
                 lost_here_.assign(lost(l), lost(l) + words_);
                 wait(on, lost_here_.data(), -1);
@@ -167,19 +167,20 @@ void FrontierBeam::expand(int l) {
         }
     }
     lost_here_.assign(lost(l), lost(l) + words_);
-    const double rest = label.ended ? 0.0 : leg_onward_[at(other_kind)][at(label.waiting)];
-    for (int p = r.out_start[at(label.moving)]; p < r.out_start[at(label.moving) + 1]; ++p) {
-        const int arc = r.out_arc[at(p)];
-        const double estimate = label.reduced + r.out_cost[at(p)] + relaxation_->reduced()[at(arc)] +
-                                leg_onward_[at(moving_kind)][at(arc)] + rest;
-        if (!(estimate < limit()) || r.head[at(arc)] == r.head[at(label.waiting)] ||
+    const double rest = label.ended ? 0.0 : leg_onward_[to_index(other_kind)][to_index(label.waiting)];
+    for (int p = r.out_start[to_index(label.moving)]; p < r.out_start[to_index(label.moving) + 1]; ++p) {
+        const int arc = r.out_arc[to_index(p)];
+        const double estimate = label.reduced + r.out_cost[to_index(p)] +
+                                relaxation_->reduced()[to_index(arc)] +
+                                leg_onward_[to_index(moving_kind)][to_index(arc)] + rest;
+        if (!(estimate < limit()) || r.head[to_index(arc)] == r.head[to_index(label.waiting)] ||
             EdgeSets::contains(lost_here_.data(), edges_->number(arc))) {
             continue;
         }
         Label on = label;
         on.before = l;
-        on.cost += r.out_cost[at(p)];
-        on.reduced += r.out_cost[at(p)];
+        on.cost += r.out_cost[to_index(p)];
+        on.reduced += r.out_cost[to_index(p)];
         on.estimate = estimate;
         if (label.ended || arc < label.waiting) {
             on.moving = arc;
@@ -199,7 +200,7 @@ void FrontierBeam::offer(int label) {
         const int last[2] = {here.moving_leg == 0 ? here.moving : here.waiting,
                              here.moving_leg == 0 ? here.waiting : here.moving};
         for (std::size_t leg = 0; leg < 2; ++leg) {
-            const int arc = residual_->arc[at(last[leg])];
+            const int arc = residual_->arc[to_index(last[leg])];
             if (legs_[leg].empty() || legs_[leg].back() != arc) legs_[leg].push_back(arc);
         }
     }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
-#include "solvers/path_pair/graph/at.hpp"
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
@@ -44,8 +44,8 @@ class FrontierBeam {
 
     [[nodiscard]] int kind(int leg) const { return relaxation_->symmetric() ? 0 : leg; }
     [[nodiscard]] double limit() const;
-    [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.row(at(label)); }
-    [[nodiscard]] const Label& label_at(int number) const { return *labels_.row(at(number)); }
+    [[nodiscard]] const std::uint64_t* lost(int label) const { return lost_.row(to_index(label)); }
+    [[nodiscard]] const Label& label_at(int number) const { return *labels_.row(to_index(number)); }
     void begin(std::size_t width);
     void wait(Label label, const std::uint64_t* lost_before, int arc);
     void settle(int arc, std::size_t width);

@@ -11,20 +11,21 @@ void IncumbentWindow::assign(const ArcGraph& graph, const LegSystem& system, con
     whole_system_ = &system;
     whole_ = &whole;
     usable_.assign(usable.begin(), usable.end());
-    next_start_.assign(at(graph.cone_count()) + 2, 0);
+    next_start_.assign(to_index(graph.cone_count()) + 2, 0);
     for (const int arc : whole.arc) {
-        if (usable_[at(arc)] != 0) ++next_start_[at(graph.tail(arc)) + 2];
+        if (usable_[to_index(arc)] != 0) ++next_start_[to_index(graph.tail(arc)) + 2];
     }
     std::partial_sum(next_start_.begin(), next_start_.end(), next_start_.begin());
-    next_.resize(at(next_start_.back()));
+    next_.resize(to_index(next_start_.back()));
     for (const int arc : whole.arc) {
-        if (usable_[at(arc)] != 0) next_[at(next_start_[at(graph.tail(arc)) + 1]++)] = graph.head(arc);
+        if (usable_[to_index(arc)] != 0)
+            next_[to_index(next_start_[to_index(graph.tail(arc)) + 1]++)] = graph.head(arc);
     }
 }
 
-void IncumbentWindow::restart(std::size_t most_arcs) {
-    most_arcs_ = most_arcs;
-    settled_.assign(at(graph_->cone_count()), 0);
+void IncumbentWindow::restart(std::size_t max_arcs) {
+    max_arcs_ = max_arcs;
+    settled_.assign(to_index(graph_->cone_count()), 0);
 }
 
 int IncumbentWindow::next_centre(const std::array<std::vector<int>, 2>& legs) const {
@@ -33,7 +34,7 @@ int IncumbentWindow::next_centre(const std::array<std::vector<int>, 2>& legs) co
         for (const std::vector<int>& leg : legs) {
             if (back > leg.size()) continue;
             const int cone = graph_->head(leg[leg.size() - back]);
-            if (settled_[at(cone)] == 0) return cone;
+            if (settled_[to_index(cone)] == 0) return cone;
         }
     }
     return -1;
@@ -41,19 +42,19 @@ int IncumbentWindow::next_centre(const std::array<std::vector<int>, 2>& legs) co
 
 /// Collects the cones around the centre, until there are enough arcs among them.
 void IncumbentWindow::spread(int centre) {
-    place_.assign(at(graph_->cone_count()), Place::outside);
-    place_[at(centre)] = Place::reached;
+    place_.assign(to_index(graph_->cone_count()), Place::outside);
+    place_[to_index(centre)] = Place::reached;
     cones_.assign(1, centre);
     std::size_t arcs = 0;
     std::size_t done = 0;
-    for (; done < cones_.size() && arcs < most_arcs_; ++done) {
+    for (; done < cones_.size() && arcs < max_arcs_; ++done) {
         const int cone = cones_[done];
-        place_[at(cone)] = Place::inside;
-        for (int k = next_start_[at(cone)]; k < next_start_[at(cone) + 1]; ++k) {
-            const int other = next_[at(k)];
-            if (place_[at(other)] == Place::inside) arcs += 2;  // and the way back, mostly
-            if (place_[at(other)] != Place::outside) continue;
-            place_[at(other)] = Place::reached;
+        place_[to_index(cone)] = Place::inside;
+        for (int k = next_start_[to_index(cone)]; k < next_start_[to_index(cone) + 1]; ++k) {
+            const int other = next_[to_index(k)];
+            if (place_[to_index(other)] == Place::inside) arcs += 2;  // and the way back, mostly
+            if (place_[to_index(other)] != Place::outside) continue;
+            place_[to_index(other)] = Place::reached;
             cones_.push_back(other);
         }
     }
@@ -65,20 +66,20 @@ bool IncumbentWindow::next(const std::array<std::vector<int>, 2>& legs, std::vec
     const int centre = next_centre(legs);
     if (centre < 0) return false;
     spread(centre);
-    of_legs_.assign(at(graph_->arc_count()), 0);
-    blocked_.assign((at(graph_->edge_count()) + 63) / 64, 0);
+    of_legs_.assign(to_index(graph_->arc_count()), 0);
+    blocked_.assign((to_index(graph_->edge_count()) + 63) / 64, 0);
     fixed_cones_.clear();
     system_.kind_count = 2;
     system_.ends_are_partners = true;
     for (std::size_t k = 0; k < 2; ++k) fix_outside(legs[k], system_.kinds[k]);
-    for (const int cone : fixed_cones_) place_[at(cone)] = Place::outside;
+    for (const int cone : fixed_cones_) place_[to_index(cone)] = Place::outside;
     arcs.clear();
     for (int a = 0; a < whole_->size(); ++a) {
-        const int arc = whole_->arc[at(a)];
-        const std::size_t edge = at(arc / 2);
+        const int arc = whole_->arc[to_index(a)];
+        const std::size_t edge = to_index(arc / 2);
         const bool open =
-            usable_[at(arc)] != 0 && is_inside(arc) && (blocked_[edge / 64] >> (edge % 64) & 1) == 0;
-        if (open || of_legs_[at(arc)] != 0) arcs.push_back(a);
+            usable_[to_index(arc)] != 0 && is_inside(arc) && (blocked_[edge / 64] >> (edge % 64) & 1) == 0;
+        if (open || of_legs_[to_index(arc)] != 0) arcs.push_back(a);
     }
     return true;
 }
@@ -89,13 +90,13 @@ void IncumbentWindow::fix_outside(std::span<const int> leg, LegSystem::Kind& kin
     kind = whole_system_->kinds[0];
     const auto fix_end = [&](std::vector<char>& ends, int cone) {
         std::ranges::fill(ends, char{0});
-        ends[at(cone)] = 1;
+        ends[to_index(cone)] = 1;
         fixed_cones_.push_back(cone);
     };
     if (!is_inside(leg.front())) fix_end(kind.start, graph_->tail(leg.front()));
     if (!is_inside(leg.back())) fix_end(kind.end, graph_->head(leg.back()));
     for (std::size_t i = 0; i < leg.size(); ++i) {
-        of_legs_[at(leg[i])] = 1;
+        of_legs_[to_index(leg[i])] = 1;
         if (is_inside(leg[i])) continue;
         const std::span<const std::uint64_t> row = graph_->incompatible_row(leg[i] / 2);
         for (std::size_t w = 0; w < blocked_.size(); ++w) blocked_[w] |= row[w];
@@ -106,7 +107,7 @@ void IncumbentWindow::fix_outside(std::span<const int> leg, LegSystem::Kind& kin
 void IncumbentWindow::report(bool improved) {
     const std::size_t near =
         improved || holds_all_ ? cones_.size() : std::max<std::size_t>(1, cones_.size() / 2);
-    for (std::size_t k = 0; k < near; ++k) settled_[at(cones_[k])] = improved ? 0 : 1;
+    for (std::size_t k = 0; k < near; ++k) settled_[to_index(cones_[k])] = improved ? 0 : 1;
 }
 
 }  // namespace conelane::path_pair

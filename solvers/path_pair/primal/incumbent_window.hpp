@@ -2,8 +2,8 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/at.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ class IncumbentWindow {
     void assign(const ArcGraph& graph, const LegSystem& system, const ResidualGraph& whole,
                 std::span<const char> usable);
     /// Windows of about so many arcs, all cones as centres.
-    void restart(std::size_t most_arcs);
+    void restart(std::size_t max_arcs);
 
     /// The next window: `arcs` are those of the whole graph, in ascending order. False where no cone of the
     /// legs is left as a centre. Legs: arcs of the arc graph, from start to end.
@@ -40,8 +40,8 @@ class IncumbentWindow {
     void spread(int centre);
     void fix_outside(std::span<const int> leg, LegSystem::Kind& kind);
     [[nodiscard]] bool is_inside(int arc) const {
-        return place_[at(graph_->tail(arc))] == Place::inside &&
-               place_[at(graph_->head(arc))] == Place::inside;
+        return place_[to_index(graph_->tail(arc))] == Place::inside &&
+               place_[to_index(graph_->head(arc))] == Place::inside;
     }
 
     const ArcGraph* graph_ = nullptr;
@@ -50,7 +50,7 @@ class IncumbentWindow {
     std::vector<char> usable_;
     std::vector<int> next_start_;  ///< by cone
     std::vector<int> next_;        ///< cones that usable arcs lead to from a cone
-    std::size_t most_arcs_ = 0;
+    std::size_t max_arcs_ = 0;
     bool holds_all_ = false;     ///< that can be reached from the centre
     std::vector<char> settled_;  ///< by cone: no window around it improves the legs
     std::vector<Place> place_;   ///< by cone

@@ -2,7 +2,7 @@
 
 #include "solvers/path_pair/bound/pair_relaxation.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
@@ -21,7 +21,7 @@ class PairBeam {
   public:
     struct Limits {
         std::size_t width;  ///< beginnings that go on
-        int most_at_cone;   ///< of these, legs that end at the same cone
+        int max_at_cone;    ///< of these, legs that end at the same cone
     };
     /// Offers the incumbent the best pair that is met. Precondition: the legs of the system are alike.
     void run(const ArcGraph& graph, const LegSystem& system, const Limits& limits, Incumbent& incumbent,
@@ -42,7 +42,9 @@ class PairBeam {
         double cost;
     };
 
-    [[nodiscard]] bool starts(int arc) const { return system_->kinds[0].start[at(graph_->tail(arc))] != 0; }
+    [[nodiscard]] bool starts(int arc) const {
+        return system_->kinds[0].start[to_index(graph_->tail(arc))] != 0;
+    }
     [[nodiscard]] std::uint64_t* lost(std::size_t number) { return lost_.data() + number * words_; }
     void add_first_steps(SearchClock& clock);
     void add_steps(int label, const std::uint64_t* lost);

@@ -1,6 +1,6 @@
 #include "solvers/path_pair/primal/pair_completion.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ void PairCompletion::bind(const ArcGraph& graph, PairRelaxation& relaxation, Inc
     bounds_.bind(clock);
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
-    second_multiplier_.assign(at(graph.cone_count()), 0.0);
+    second_multiplier_.assign(to_index(graph.cone_count()), 0.0);
     second_before_.clear();
 }
 
@@ -29,30 +29,31 @@ double PairCompletion::cutoff(double tolerance) const {
 void PairCompletion::to_arcs(const ResidualGraph& residual, std::span<const int> leg,
                              std::vector<int>& arcs) const {
     arcs.clear();
-    for (const int a : leg) arcs.push_back(residual.arc[at(a)]);
+    for (const int a : leg) arcs.push_back(residual.arc[to_index(a)]);
 }
 
 void PairCompletion::leave_out(const ResidualGraph& residual, int second_kind, std::span<const int> first) {
     const PairRelaxation& r = *relaxation_;
-    taken_.assign(at(graph_->cone_count()), 0);
-    blocked_.assign((at(graph_->edge_count()) + 63) / 64, 0);
-    taken_[at(residual.tail[at(first.front())])] = 1;
+    taken_.assign(to_index(graph_->cone_count()), 0);
+    blocked_.assign((to_index(graph_->edge_count()) + 63) / 64, 0);
+    taken_[to_index(residual.tail[to_index(first.front())])] = 1;
     for (const int a : first) {
-        taken_[at(residual.head[at(a)])] = 1;
+        taken_[to_index(residual.head[to_index(a)])] = 1;
         const std::span<const std::uint64_t> row = graph_->incompatible_row(residual.edge(a));
         for (std::size_t w = 0; w < blocked_.size(); ++w) blocked_[w] |= row[w];
     }
-    const int first_end = residual.head[at(first.back())];
+    const int first_end = residual.head[to_index(first.back())];
     usable_.resize(residual.arc.size());
     second_end_.resize(residual.arc.size());
     for (int a = 0; a < residual.size(); ++a) {
         const int edge = residual.edge(a);
-        const int head = residual.head[at(a)];
-        const bool usable = taken_[at(head)] == 0 && taken_[at(residual.tail[at(a)])] == 0 &&
-                            (blocked_[at(edge) / 64] >> (at(edge) % 64) & 1) == 0 &&
-                            r.forward(second_kind)[at(a)] < kUnreachable;
-        usable_[at(a)] = usable ? 1 : 0;
-        second_end_[at(a)] =
+        const int head = residual.head[to_index(a)];
+        const bool usable = taken_[to_index(head)] == 0 &&
+                            taken_[to_index(residual.tail[to_index(a)])] == 0 &&
+                            (blocked_[to_index(edge) / 64] >> (to_index(edge) % 64) & 1) == 0 &&
+                            r.forward(second_kind)[to_index(a)] < kUnreachable;
+        usable_[to_index(a)] = usable ? 1 : 0;
+        second_end_[to_index(a)] =
             usable && r.may_end(residual, second_kind, a) && r.ends_fit(first_end, head) ? 0.0 : kUnreachable;
     }
 }
@@ -62,15 +63,15 @@ double PairCompletion::reduce_second_costs(const ResidualGraph& residual, int se
     second_reduced_.resize(residual.arc.size());
     second_start_.resize(residual.arc.size());
     for (int a = 0; a < residual.size(); ++a) {
-        if (usable_[at(a)] == 0) {
-            second_reduced_[at(a)] = second_start_[at(a)] = kUnreachable;
+        if (usable_[to_index(a)] == 0) {
+            second_reduced_[to_index(a)] = second_start_[to_index(a)] = kUnreachable;
             continue;
         }
-        second_reduced_[at(a)] =
-            graph_->cost(residual.edge(a)) + second_multiplier_[at(residual.head[at(a)])];
-        second_start_[at(a)] = r.start(second_kind)[at(a)] < kUnreachable
-                                   ? second_multiplier_[at(residual.tail[at(a)])]
-                                   : kUnreachable;
+        second_reduced_[to_index(a)] =
+            graph_->cost(residual.edge(a)) + second_multiplier_[to_index(residual.head[to_index(a)])];
+        second_start_[to_index(a)] = r.start(second_kind)[to_index(a)] < kUnreachable
+                                         ? second_multiplier_[to_index(residual.tail[to_index(a)])]
+                                         : kUnreachable;
     }
     double offset = 0.0;
     for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
@@ -105,22 +106,22 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
         ++round;
         int end = -1;
         for (int a = 0; a < residual.size(); ++a) {
-            if (second_end_[at(a)] < kUnreachable &&
-                (end < 0 || second_forward_[at(a)] < second_forward_[at(end)])) {
+            if (second_end_[to_index(a)] < kUnreachable &&
+                (end < 0 || second_forward_[to_index(a)] < second_forward_[to_index(end)])) {
                 end = a;
             }
         }
-        if (end < 0 || second_forward_[at(end)] - offset >= limit()) return true;
-        const double value = second_forward_[at(end)] - offset;
+        if (end < 0 || second_forward_[to_index(end)] - offset >= limit()) return true;
+        const double value = second_forward_[to_index(end)] - offset;
         second_walk_.clear();
-        for (int a = end; a >= 0; a = second_before_[at(a)]) second_walk_.push_back(a);
+        for (int a = end; a >= 0; a = second_before_[to_index(a)]) second_walk_.push_back(a);
         std::ranges::reverse(second_walk_);
         offer(second_walk_);
         if (value >= limit()) return true;
         // A step towards one visit of every cone that has a multiplier.
         visits_.assign(taken_.size(), 0);
-        ++visits_[at(residual.tail[at(second_walk_.front())])];
-        for (const int a : second_walk_) ++visits_[at(residual.head[at(a)])];
+        ++visits_[to_index(residual.tail[to_index(second_walk_.front())])];
+        for (const int a : second_walk_) ++visits_[to_index(residual.head[to_index(a)])];
         double squared = 0.0;
         for (std::size_t cone = 0; cone < taken_.size(); ++cone) {
             if (taken_[cone] != 0 || (second_multiplier_[cone] <= 0.0 && visits_[cone] < 2)) continue;
@@ -135,7 +136,7 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
     }
     // Cycles that no leg reaches may still have a negative cost.
     for (int a = 0; a < residual.size(); ++a) {
-        if (second_forward_[at(a)] == kUnreachable) usable_[at(a)] = 0;
+        if (second_forward_[to_index(a)] == kUnreachable) usable_[to_index(a)] = 0;
     }
     bounds_.backward(residual, second_reduced_, second_end_, usable_, second_backward_);
     if (clock_->out_of_time(residual.out_arc.size())) return false;
@@ -148,10 +149,10 @@ bool PairCompletion::second_legs(const ResidualGraph& residual, int kind, std::s
 }
 
 bool PairCompletion::is_leg(const ResidualGraph& residual, std::span<const int> walk) {
-    taken_.assign(at(graph_->cone_count()), 0);
-    taken_[at(residual.tail[at(walk.front())])] = 1;
+    taken_.assign(to_index(graph_->cone_count()), 0);
+    taken_[to_index(residual.tail[to_index(walk.front())])] = 1;
     for (std::size_t k = 0; k < walk.size(); ++k) {
-        char& taken = taken_[at(residual.head[at(walk[k])])];
+        char& taken = taken_[to_index(residual.head[to_index(walk[k])])];
         if (taken != 0) return false;
         taken = 1;
         for (std::size_t l = 0; l + 1 < k; ++l) {

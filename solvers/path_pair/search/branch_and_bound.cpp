@@ -1,6 +1,6 @@
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,26 +13,26 @@ namespace conelane::path_pair {
 namespace {
 
 constexpr double kMemory = 0.9;  ///< of the averaged edge use, per step
-constexpr int kMostCliques = 600;
+constexpr int kMaxCliques = 600;
 constexpr int kCliquesPerRound = 12;
 constexpr int kStepsPerRound = 4;
-constexpr double kLeastEndDoubt = 0.1;
-constexpr double kLeastGain = 0.005;  ///< of the gap, for a step to count as progress
-constexpr int kPatience = 4;          ///< steps without progress
-constexpr double kLeastScale = 0.1;
+constexpr double kMinEndDoubt = 0.1;
+constexpr double kMinGain = 0.005;  ///< of the gap, for a step to count as progress
+constexpr int kPatience = 4;        ///< steps without progress
+constexpr double kMinScale = 0.1;
 constexpr int kRootPatience = 8;
 constexpr double kRootLeastScale = 0.2;
 constexpr double kWorthwhile = 0.6;        ///< of the gap at which the fronts were too many, to try again
 constexpr std::int64_t kFewFronts = 1000;  ///< of the first tries
 constexpr std::int64_t kFirstFrontsOfSmallGraph = 2000;
-constexpr int kSmallGraph = 200;                      ///< arcs
-constexpr std::int64_t kWorkPerFront = 30;            ///< label updates of the ascent that allow one front
-constexpr std::size_t kMostFronts = 300000;           ///< of the last try, before a node branches
-constexpr std::size_t kMostFrontBytes = 200'000'000;  ///< of their tables, together
-constexpr std::size_t kMostWindowFronts = 3000;
+constexpr int kSmallGraph = 200;                     ///< arcs
+constexpr std::int64_t kWorkPerFront = 30;           ///< label updates of the ascent that allow one front
+constexpr std::size_t kMaxFronts = 300000;           ///< of the last try, before a node branches
+constexpr std::size_t kMaxFrontBytes = 200'000'000;  ///< of their tables, together
+constexpr std::size_t kMaxWindowFronts = 3000;
 constexpr std::size_t kWorkPerMadeFront = 500;  ///< of the clock
-constexpr std::size_t kMostLabels = 1000000;
-constexpr std::size_t kMostLabelWords = 40'000'000;  ///< of their sets of edges, together
+constexpr std::size_t kMaxLabels = 1000000;
+constexpr std::size_t kMaxLabelWords = 40'000'000;  ///< of their sets of edges, together
 constexpr int kWideFronts = 4000;   ///< from here on first a narrow search, for the incumbent, and detours
 constexpr std::size_t kNarrow = 2;  ///< labels a front
 constexpr std::size_t kFirstBeamWidth = 2;  ///< before the first try
@@ -42,13 +42,13 @@ constexpr int kBeamSteps[kBeams] = {20, 60};  ///< of the root's ascent, or late
 constexpr std::size_t kBeamWidth = 8;
 constexpr double kTargets[] = {0.3, 0.6, 1.0};  ///< shares of the gap
 constexpr double kLowerTargets[] = {0.3, 0.1};  ///< shares of a target's gap that was too wide
-constexpr double kLeastTargetGap = 1.0;
+constexpr double kMinTargetGap = 1.0;
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
-constexpr int kFirstImprovement = 2;    ///< step of the root's ascent
-constexpr int kLateAscent = 1000;       ///< arcs from which on it is before the first step
-constexpr double kMostOvershoot = 2.0;  ///< of the ascent's steps
+constexpr int kFirstImprovement = 2;   ///< step of the root's ascent
+constexpr int kLateAscent = 1000;      ///< arcs from which on it is before the first step
+constexpr double kMaxOvershoot = 2.0;  ///< of the ascent's steps
 constexpr int kRestSteps = 2;
-constexpr std::size_t kMostOpenNodes = 2000;
+constexpr std::size_t kMaxOpenNodes = 2000;
 constexpr std::int64_t kTries = 60;         ///< arcs tried around a walk for a better incumbent
 constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
 
@@ -61,7 +61,7 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
                                             std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
     root_.bound = graph_.share_bound();
-    root_.most_steps = options_.root_steps;
+    root_.max_steps = options_.root_steps;
     ++nodes_;
     double open_bound = kUnreachable;
     if (explore(root_) == Verdict::stopped) open_bound = root_.bound;
@@ -70,7 +70,7 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
         improve_incumbent(root_.graph, next->bound);
         if (next->bound < cutoff()) {
             ++nodes_;
-            if (explore(*next) == Verdict::stopped) open_bound = std::min(next->bound, least_open_bound());
+            if (explore(*next) == Verdict::stopped) open_bound = std::min(next->bound, min_open_bound());
         }
         spare_nodes_.push_back(std::move(next));
     }
@@ -79,7 +79,7 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
 
 double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
     begin(system, tolerance, std::move(stopped));
-    root_.most_steps = options_.root_steps;
+    root_.max_steps = options_.root_steps;
     ascend(root_, true);
     return root_.bound;
 }
@@ -89,7 +89,7 @@ std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& sys
     unit_ = unit;
     stages_.clear();
     begin(system, 0.0, std::move(stopped));
-    root_.most_steps = options_.root_steps;
+    root_.max_steps = options_.root_steps;
     ascend(root_, true);
     unit_ = 0.0;
     if (root_.bound > -kUnreachable) stages_.push_back(root_multipliers());
@@ -107,9 +107,9 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     fronts_.bind(relaxation_, stopped_);
     frontier_search_.bind(graph_, relaxation_, incumbent_);
     beam_.bind(graph_, relaxation_, incumbent_, clock_);
-    edge_use_.assign(at(graph_.edge_count()), 0.0);
-    end_use_.assign(at(graph_.cone_count()), 0.0);
-    index_.assign(at(graph_.cone_count()), 0);
+    edge_use_.assign(to_index(graph_.edge_count()), 0.0);
+    end_use_.assign(to_index(graph_.cone_count()), 0.0);
+    index_.assign(to_index(graph_.cone_count()), 0);
     starting_ = system.kinds[0].start;
     for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
         if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting_[cone] = 1;
@@ -117,7 +117,7 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     root_.graph.assign(graph_, starting_, clock_);
     whole_system_ = &system;
     begin_improvement();
-    root_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
+    root_.multipliers.cone.assign(to_index(graph_.cone_count()), 0.0);
     root_.multipliers.clique.clear();
     root_.multipliers.heading = 0.0;
     root_.bound = -kUnreachable;
@@ -147,7 +147,7 @@ void BranchAndBound::add_children(const Node& parent) {
         child.decisions = parent.decisions;
         child.decisions.push_back({branching, in});
         child.bound = parent.bound;
-        child.most_steps = on_end && !in ? kRestSteps : options_.node_steps;
+        child.max_steps = on_end && !in ? kRestSteps : options_.node_steps;
     }
 }
 
@@ -163,7 +163,7 @@ BranchAndBound::Node& BranchAndBound::add_open_node() {
 
 std::unique_ptr<BranchAndBound::Node> BranchAndBound::take_next() {
     auto next = open_.end() - 1;
-    if (open_.size() < kMostOpenNodes) {  // else depth-first, which bounds the memory
+    if (open_.size() < kMaxOpenNodes) {  // else depth-first, which bounds the memory
         for (auto node = open_.end(); node-- != open_.begin();) {
             if ((*node)->bound < (*next)->bound) next = node;
         }
@@ -184,7 +184,7 @@ void BranchAndBound::take_decisions(const Node& node) {
     }
 }
 
-double BranchAndBound::least_open_bound() const {
+double BranchAndBound::min_open_bound() const {
     double least = kUnreachable;
     for (const std::unique_ptr<Node>& node : open_) least = std::min(least, node->bound);
     return least;
@@ -212,8 +212,8 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
         count_usage(here.graph);
         if (options_.complete_walks && state.step == state.next_completion) complete_walks(here.graph, state);
         if (state.value >= cutoff()) return Verdict::closed;
-        state.last = state.step + 1 >= here.most_steps ||
-                     state.scale < (state.is_root ? kRootLeastScale : kLeastScale);
+        state.last =
+            state.step + 1 >= here.max_steps || state.scale < (state.is_root ? kRootLeastScale : kMinScale);
         if (state.last) {
             take_best_multipliers(here);
             if (relaxation_.evaluate(here.graph, multipliers_) == -kUnreachable) return Verdict::stopped;
@@ -249,7 +249,7 @@ double BranchAndBound::evaluate(const ResidualGraph& graph) {
 
 void BranchAndBound::take_best_multipliers(const Node& here) {
     multipliers_ = here.multipliers;
-    multipliers_.clique.resize(at(cliques_.size()), 0.0);
+    multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
 }
 
 void BranchAndBound::begin_ascent(const Node& here) {
@@ -263,7 +263,7 @@ void BranchAndBound::begin_ascent(const Node& here) {
 
 void BranchAndBound::note_value(Node& here, AscentState& state) {
     state.work += here.graph.size() + static_cast<int>(here.graph.out_arc.size());
-    if (state.value > state.best + kLeastGain * std::abs(incumbent_.cutoff() - state.best)) {
+    if (state.value > state.best + kMinGain * std::abs(incumbent_.cutoff() - state.best)) {
         state.since_best = 0;
     } else {
         ++state.since_best;
@@ -278,7 +278,7 @@ void BranchAndBound::complete_walks(const ResidualGraph& graph, AscentState& sta
     const double before = incumbent_.cutoff();
     const std::array<std::vector<int>, 2>& walks = relaxation_.walks(graph);
     for (int leg = 0; leg < 2; ++leg) {
-        completion_.complete(graph, relaxation_.symmetric() ? 0 : leg, walks[at(leg)], tolerance_,
+        completion_.complete(graph, relaxation_.symmetric() ? 0 : leg, walks[to_index(leg)], tolerance_,
                              incumbent_.found() ? kTries : kFirstTries);
     }
     const int wait = !incumbent_.found() ? 1 : incumbent_.cutoff() < before ? 2 : 4 + state.step / 2;
@@ -290,12 +290,11 @@ BranchAndBound::Verdict BranchAndBound::try_frontiers(const ResidualGraph& graph
     const bool promising = due && cutoff() - state.value < kWorthwhile * state.failed_gap;
     if (!state.last && !promising) return Verdict::open;
     const bool is_small = state.step == 0 && graph.size() < kSmallGraph;
-    const auto most_fronts = static_cast<std::size_t>(
+    const auto max_fronts = static_cast<std::size_t>(
         std::max(is_small ? kFirstFrontsOfSmallGraph : kFewFronts, state.work / kWorkPerFront));
     const Verdict verdict =
-        state.last
-            ? search_frontiers_by_target(graph, state)
-            : search_frontiers(graph, {most_fronts, kMostLabels, state.step == 0 ? kFirstBeamWidth : 0});
+        state.last ? search_frontiers_by_target(graph, state)
+                   : search_frontiers(graph, {max_fronts, kMaxLabels, state.step == 0 ? kFirstBeamWidth : 0});
     if (verdict == Verdict::open) {
         if (state.is_root && !state.last && state.beams < kBeams && state.step >= kBeamSteps[state.beams]) {
             ++state.beams;
@@ -324,7 +323,7 @@ void BranchAndBound::move_multipliers(const Node& here, AscentState& state) {
 double BranchAndBound::step_gap(const AscentState& state) const {
     const double gap = incumbent_.cutoff() - state.value;
     if (!state.is_root || incumbent_.cutoff() < improvement_.known_cost) return gap;
-    return std::clamp(improvement_.outside_cost - state.value, gap, kMostOvershoot * gap);
+    return std::clamp(improvement_.outside_cost - state.value, gap, kMaxOvershoot * gap);
 }
 
 /// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
@@ -335,12 +334,12 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers_by_target(const Residua
     const double incumbent = incumbent_.cutoff();
     for (const double share : kTargets) {
         const double target = state.best + share * (incumbent - state.best);
-        if (share < 1.0 && incumbent - target < kLeastTargetGap) continue;
+        if (share < 1.0 && incumbent - target < kMinTargetGap) continue;
         Verdict verdict = search_below(graph, target, state);
         for (const double part : kLowerTargets) {
             const double step = part * (target - state.best);
             if (verdict != Verdict::open || in_window_ || incumbent_.cutoff() < target ||
-                step < kLeastTargetGap)
+                step < kMinTargetGap)
                 break;
             if (search_below(graph, state.best + step, state) == Verdict::closed) break;
         }
@@ -355,8 +354,7 @@ BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph,
                                                      AscentState& state) {
     const double incumbent = incumbent_.cutoff();
     incumbent_.set_cutoff(target);
-    const Verdict verdict =
-        search_frontiers(graph, {in_window_ ? kMostWindowFronts : kMostFronts, kMostLabels});
+    const Verdict verdict = search_frontiers(graph, {in_window_ ? kMaxWindowFronts : kMaxFronts, kMaxLabels});
     if (incumbent_.cutoff() < target) return verdict;
     incumbent_.set_cutoff(incumbent);
     if (verdict == Verdict::closed) state.best = std::max(state.best, target - tolerance_);
@@ -373,7 +371,7 @@ BranchAndBound::Verdict BranchAndBound::build_frontiers(const ResidualGraph& gra
     if (clock_.struck()) return Verdict::stopped;
     const bool built = fronts_.build(graph, dominated_edges_, limit(), limits.fronts,
                                      options_.drop_dominated_edges ? &edge_sets_ : nullptr);
-    clock_.out_of_time(kWorkPerMadeFront * at(fronts_.size()));
+    clock_.out_of_time(kWorkPerMadeFront * to_index(fronts_.size()));
     if (!built) {
         return stopped_() ? Verdict::stopped : Verdict::open;
     }
@@ -401,12 +399,12 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& gr
     frontiers_are_built_ = false;
     const Verdict built = build_frontiers(graph, limits);
     if (!frontiers_are_built_) return built;
-    if (limits.fronts != kAny && at(fronts_.size()) > kMostFrontBytes / OnwardTables::row_bytes(graph)) {
+    if (limits.fronts != kAny && to_index(fronts_.size()) > kMaxFrontBytes / OnwardTables::row_bytes(graph)) {
         return Verdict::open;
     }
-    std::size_t most_labels = limits.labels;
-    if (most_labels != kAny) {
-        most_labels = std::min(most_labels, kMostLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
+    std::size_t max_labels = limits.labels;
+    if (max_labels != kAny) {
+        max_labels = std::min(max_labels, kMaxLabelWords / std::max<std::size_t>(1, edge_sets_.words()));
     }
     find_tables();
     for (const std::size_t width : {kNarrow, FrontierSearch::kAnyWidth}) {
@@ -414,7 +412,7 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& gr
         if (width == kNarrow && fronts_.size() < kWideFronts) continue;
         const double before = incumbent_.cutoff();
         const FrontierSearch::Outcome outcome = frontier_search_.run(
-            fronts_, edge_sets_, onward_tables_, {tolerance_, width, most_labels}, stopped_);
+            fronts_, edge_sets_, onward_tables_, {tolerance_, width, max_labels}, stopped_);
         if (outcome == FrontierSearch::Outcome::exhausted) return Verdict::closed;
         if (outcome == FrontierSearch::Outcome::stopped) break;
         if (incumbent_.cutoff() < before) {
@@ -426,36 +424,36 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& gr
 }
 
 void BranchAndBound::count_usage(const ResidualGraph& graph) {
-    usage_.cone.assign(at(graph_.cone_count()), 0);
-    usage_.clique.assign(at(cliques_.size()), 0);
+    usage_.cone.assign(to_index(graph_.cone_count()), 0);
+    usage_.clique.assign(to_index(cliques_.size()), 0);
     usage_.along_heading = 0;
     for (double& use : edge_use_) use *= kMemory;
     for (double& use : end_use_) use *= kMemory;
     for (const int end : relaxation_.ends()) {
-        if (end >= 0) end_use_[at(end)] += 1.0 - kMemory;
+        if (end >= 0) end_use_[to_index(end)] += 1.0 - kMemory;
     }
-    index_.assign(at(graph_.edge_count()), 0);
+    index_.assign(to_index(graph_.edge_count()), 0);
     for (const std::vector<int>& walk : relaxation_.walks(graph)) {
         if (walk.empty()) continue;
-        ++usage_.cone[at(graph.tail[at(walk.front())])];
+        ++usage_.cone[to_index(graph.tail[to_index(walk.front())])];
         for (const int a : walk) {
-            ++usage_.cone[at(graph.head[at(a)])];
-            edge_use_[at(graph.edge(a))] += 1.0 - kMemory;
-            ++index_[at(graph.edge(a))];
+            ++usage_.cone[to_index(graph.head[to_index(a)])];
+            edge_use_[to_index(graph.edge(a))] += 1.0 - kMemory;
+            ++index_[to_index(graph.edge(a))];
             usage_.along_heading += graph_.along_heading(graph.edge(a)) ? 1 : 0;
         }
     }
     for (int q = 0; q < cliques_.size(); ++q) {
-        for (const int edge : cliques_.edges(q)) usage_.clique[at(q)] += index_[at(edge)];
+        for (const int edge : cliques_.edges(q)) usage_.clique[to_index(q)] += index_[to_index(edge)];
     }
 }
 
 void BranchAndBound::separate(const ResidualGraph& graph, Multipliers& multipliers) {
-    if (cliques_.size() >= kMostCliques) return;
-    edge_alive_.assign(at(graph_.edge_count()), 0);
-    for (int a = 0; a < graph.size(); ++a) edge_alive_[at(graph.edge(a))] = 1;
+    if (cliques_.size() >= kMaxCliques) return;
+    edge_alive_.assign(to_index(graph_.edge_count()), 0);
+    for (int a = 0; a < graph.size(); ++a) edge_alive_[to_index(graph.edge(a))] = 1;
     separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_, clock_);
-    multipliers.clique.resize(at(cliques_.size()), 0.0);
+    multipliers.clique.resize(to_index(cliques_.size()), 0.0);
 }
 
 /// Drops what cannot be in a better pair. False, and nothing dropped, where renumbering is not worth it.
@@ -470,15 +468,16 @@ bool BranchAndBound::fix(Node& here) {
         for (int kind = 0; kind < relaxation_.system().kind_count; ++kind) {
             const std::span<const double> forward = relaxation_.forward(kind);
             const std::span<const double> backward = relaxation_.backward(kind);
-            if (!(forward[at(a)] + backward[at(a)] < limit)) continue;
+            if (!(forward[to_index(a)] + backward[to_index(a)] < limit)) continue;
             alive = true;
-            for (int position = graph.out_start[at(a)]; position < graph.out_start[at(a) + 1]; ++position) {
-                const std::size_t next = at(graph.out_arc[at(position)]);
-                if (keep_successor_[at(position)] != 0) continue;
-                const double through = forward[at(a)] + graph.out_cost[at(position)] +
+            for (int position = graph.out_start[to_index(a)]; position < graph.out_start[to_index(a) + 1];
+                 ++position) {
+                const std::size_t next = to_index(graph.out_arc[to_index(position)]);
+                if (keep_successor_[to_index(position)] != 0) continue;
+                const double through = forward[to_index(a)] + graph.out_cost[to_index(position)] +
                                        relaxation_.reduced()[next] + backward[next];
                 if (!(through < limit)) continue;
-                keep_successor_[at(position)] = 1;
+                keep_successor_[to_index(position)] = 1;
                 ++kept;
             }
         }
@@ -497,7 +496,7 @@ void BranchAndBound::branch(const ResidualGraph& source, const Branching& branch
     keep_successor_.assign(source.out_arc.size(), 1);
     if (branching.on == Branching::On::end) {
         for (int a = 0; a < source.size(); ++a) {
-            if (!in || source.tail[at(a)] != branching.what) order_.push_back(a);
+            if (!in || source.tail[to_index(a)] != branching.what) order_.push_back(a);
         }
         target.filter(source, order_, keep_successor_, index_);
         return;
@@ -510,10 +509,10 @@ void BranchAndBound::branch(const ResidualGraph& source, const Branching& branch
     }
     if (in) {
         for (int a = 0; a < source.size(); ++a) {
-            const int cone = source.head[at(a)];
+            const int cone = source.head[to_index(a)];
             if ((cone != ends[0] && cone != ends[1]) || source.edge(a) == edge) continue;
-            for (int p = source.out_start[at(a)]; p < source.out_start[at(a) + 1]; ++p) {
-                if (source.edge(source.out_arc[at(p)]) != edge) keep_successor_[at(p)] = 0;
+            for (int p = source.out_start[to_index(a)]; p < source.out_start[to_index(a) + 1]; ++p) {
+                if (source.edge(source.out_arc[to_index(p)]) != edge) keep_successor_[to_index(p)] = 0;
             }
         }
     }
@@ -527,8 +526,8 @@ BranchAndBound::Branching BranchAndBound::choose(const ResidualGraph& graph) con
     if (relaxation_.symmetric()) {
         for (const int cone : relaxation_.ends()) {
             if (cone < 0 || decisions_.end(cone) != Decisions::End::open) continue;
-            const double use = end_use_[at(cone)];
-            if (use >= 1.0 - kLeastEndDoubt || use <= best_score) continue;
+            const double use = end_use_[to_index(cone)];
+            if (use >= 1.0 - kMinEndDoubt || use <= best_score) continue;
             best = {Branching::On::end, cone, use};
             best_score = use;
         }
@@ -537,7 +536,7 @@ BranchAndBound::Branching BranchAndBound::choose(const ResidualGraph& graph) con
     best_score = -1.0;
     for (int a = 0; a < graph.size(); ++a) {
         const int edge = graph.edge(a);
-        const double use = edge_use_[at(edge)];
+        const double use = edge_use_[to_index(edge)];
         if (decisions_.edge_required(edge) || doubt(use) <= best_score) continue;
         best = {Branching::On::edge, edge, use};
         best_score = doubt(use);

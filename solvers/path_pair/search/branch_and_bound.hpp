@@ -74,7 +74,7 @@ class BranchAndBound {
         Multipliers multipliers;  ///< those of the best bound
         std::vector<Decision> decisions;
         double bound = -kUnreachable;
-        int most_steps = 0;
+        int max_steps = 0;
         std::size_t number = 0;  ///< nodes that were made before it
     };
     enum class Verdict { closed, open, stopped };
@@ -116,7 +116,7 @@ class BranchAndBound {
     /// The open node that comes next, off the list: one of the lowest bound, of these the last that was made.
     std::unique_ptr<Node> take_next();
     void take_decisions(const Node& node);
-    [[nodiscard]] double least_open_bound() const;
+    [[nodiscard]] double min_open_bound() const;
 
     /// The ascent at a node, step by step.
     struct AscentState {
@@ -210,7 +210,6 @@ class BranchAndBound {
     std::vector<int> index_;
     std::vector<char> keep_successor_;
     std::vector<char> edge_alive_;
-    std::vector<int> walk_edges_;
     double unit_ = 0.0;      ///< of the multipliers; 0 where they are any numbers
     Multipliers evaluated_;  ///< in whole units, those last evaluated
     std::vector<Multipliers> stages_;

@@ -1,6 +1,6 @@
 // Incumbents from small parts of the graph, part of BranchAndBound.
 
-#include "solvers/path_pair/graph/at.hpp"
+#include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 
 #include <algorithm>
@@ -26,14 +26,14 @@ constexpr std::size_t kWindowBeamWidth = 8;
 
 // In steps of the search's clock, about a nanosecond each.
 constexpr double kLittleWork = 10e6;
-constexpr double kLeastWork = 0.3e6;        ///< not worth beginning with less
+constexpr double kMinWork = 0.3e6;          ///< not worth beginning with less
 constexpr double kShareOfLittleWork = 0.1;  ///< of the work on bounds, so long
 constexpr double kWorkPerHugeArc =
     50e3;  ///< at once, for each arc above the next number: the bound comes late
 constexpr int kHugeGraph = 1000;
 // Where the bound is far away no proof will come soon, and the incumbent may be poor.
 constexpr double kShareOfMoreWork = 1.0;
-constexpr double kLeastShare = 0.1;
+constexpr double kMinShare = 0.1;
 constexpr double kNarrowGap = 0.1;  ///< of the incumbent's cost
 constexpr double kWideGap = 0.5;
 
@@ -57,12 +57,12 @@ bool BranchAndBound::may_improve(double gap) const {
     const std::int64_t own = improvement_.work + (in_window_ ? total - improvement_.entered : 0);
     const auto other = static_cast<double>(total - own);
     const double wide =
-        std::clamp((gap - kNarrowGap) / (kWideGap - kNarrowGap), kLeastShare / kShareOfMoreWork, 1.0);
+        std::clamp((gap - kNarrowGap) / (kWideGap - kNarrowGap), kMinShare / kShareOfMoreWork, 1.0);
     const double allowed = kWorkPerHugeArc * std::max(0, graph_.arc_count() - kHugeGraph) +
                            kShareOfLittleWork * std::min(other, kLittleWork) +
                            kShareOfMoreWork * wide * std::max(0.0, other - kLittleWork);
     return improvement_.phase < static_cast<int>(std::size(kPhases)) &&
-           static_cast<double>(own) + kLeastWork < allowed;
+           static_cast<double>(own) + kMinWork < allowed;
 }
 
 void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound) {
@@ -97,8 +97,8 @@ void BranchAndBound::enter_windows(const ResidualGraph& alive) {
     Improvement& state = improvement_;
     if (!state.has_whole) state.has_whole = whole_.assign(graph_, starting_, clock_);
     std::vector<char>& usable = edge_alive_;
-    usable.assign(at(graph_.arc_count()), 0);
-    for (const int arc : alive.arc) usable[at(arc)] = 1;
+    usable.assign(to_index(graph_.arc_count()), 0);
+    for (const int arc : alive.arc) usable[to_index(arc)] = 1;
     window_.assign(graph_, *whole_system_, whole_, usable);
     if (std::exchange(state.is_new, false)) window_.restart(state.window_arcs);
     state.multipliers = multipliers_;
@@ -121,7 +121,7 @@ void BranchAndBound::leave_windows() {
     std::swap(relaxation_, window_relaxation_);
     state.work += clock_.total_work() - state.entered;
     multipliers_ = state.multipliers;
-    multipliers_.clique.resize(at(cliques_.size()), 0.0);
+    multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
     edge_use_ = state.edge_use;
     end_use_ = state.end_use;
     ascent_ = state.ascent;
@@ -154,11 +154,11 @@ bool BranchAndBound::search_window() {
     keep_successor_.assign(whole_.out_arc.size(), 1);
     clock_.out_of_time(whole_.arc.size() + whole_.out_arc.size() / 8);
     window_node_.graph.filter(whole_, order_, keep_successor_, index_);
-    window_node_.multipliers.cone.assign(at(graph_.cone_count()), 0.0);
-    window_node_.multipliers.clique.assign(at(cliques_.size()), 0.0);
+    window_node_.multipliers.cone.assign(to_index(graph_.cone_count()), 0.0);
+    window_node_.multipliers.clique.assign(to_index(cliques_.size()), 0.0);
     window_node_.multipliers.heading = 0.0;
     window_node_.bound = -kUnreachable;
-    window_node_.most_steps = kWindowSteps;
+    window_node_.max_steps = kWindowSteps;
     std::ranges::fill(edge_use_, 0.0);
     std::ranges::fill(end_use_, 0.0);
     const double before = incumbent_.cutoff();

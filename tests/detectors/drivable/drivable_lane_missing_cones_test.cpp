@@ -64,7 +64,7 @@ TEST(DrivableLane, InfersABoundaryOfWhichNoConeIsKnown) {
         Course course = straight(range(1.0, 25.0, 4.0), range(1.0, 25.0, 4.0));
         (on_left ? course.lane.right : course.lane.left).clear();
         for (const double width_m : {3.0, 3.5, 4.5}) {
-            const DrivableLane lane = course.driven({.usual_width_m = width_m});
+            const DrivableLane lane = course.driven({.default_width_m = width_m});
             EXPECT_EQ(lane.left_inferred, !on_left);
             EXPECT_EQ(lane.right_inferred, on_left);
             EXPECT_NEAR(lane.length_m, 24.0, 0.6);
@@ -139,8 +139,8 @@ TEST(DrivableLane, MarksGapsThatAConeIsMissingIn) {
     EXPECT_TRUE(lane.bridged[0].on_left);
     EXPECT_NEAR(lane.bridged[0].from_s_m, 2.0, 0.6);
     EXPECT_NEAR(lane.bridged[0].to_s_m, 10.0, 0.6);
-    EXPECT_TRUE(course.driven({.longest_gap_m = 8.5}).bridged.empty());
-    EXPECT_EQ(course.driven({.longest_gap_m = 3.9}).bridged.size(), 9U);
+    EXPECT_TRUE(course.driven({.max_gap_m = 8.5}).bridged.empty());
+    EXPECT_EQ(course.driven({.max_gap_m = 3.9}).bridged.size(), 9U);
     course.scene.pose.position = {9.0, 0.0};
     lane = course.driven();
     ASSERT_EQ(lane.bridged.size(), 1U);

@@ -60,8 +60,8 @@ SearchCertificate straight_proof() {
 }
 
 SearchVerdict verify(const SearchCertificate& certificate, const Scene& scene,
-                     const RldParameters& parameters = {}, std::int64_t most_steps = kManySteps) {
-    return verify_search(scene, parameters, certificate, most_steps);
+                     const RldParameters& parameters = {}, std::int64_t max_steps = kManySteps) {
+    return verify_search(scene, parameters, certificate, max_steps);
 }
 
 TEST(SearchCertificate, OfAStraightLaneCanBeFollowedByHand) {
@@ -323,7 +323,7 @@ std::vector<RldParameters> models() {
     return {RldParameters{}, paper, extras, both};
 }
 
-Scene coloured(Scene scene, std::uint64_t seed) {
+Scene colored(Scene scene, std::uint64_t seed) {
     boost::random::mt19937_64 random(seed);
     for (Cone& cone : scene.cones) {
         const int draw = boost::random::uniform_int_distribution<int>(0, 3)(random);
@@ -344,7 +344,7 @@ TEST(SearchCertificate, OfPathPairIsVerifiedAndNothingElseIs) {
             SCOPED_TRACE(testing::Message()
                          << "seed " << seed << ", paper: " << (parameters.pairing == Pairing::paper)
                          << ", extras: " << parameters.forbid_crossing);
-            const Scene scene = coloured(tests::random_scene(seed, seed % 3 == 0 ? 7 : 18), seed);
+            const Scene scene = colored(tests::random_scene(seed, seed % 3 == 0 ? 7 : 18), seed);
             const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
             const SearchVerdict verdict = verify(certificate, scene, parameters);
             ASSERT_EQ(verdict.kind, Kind::verified) << verdict.reason;

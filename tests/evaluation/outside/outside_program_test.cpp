@@ -137,7 +137,7 @@ TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
                 return all;
             };
             const auto points = [&] {
-                const std::array scales{1e-9, 1.0, 30.0, kFarthest_m};
+                const std::array scales{1e-9, 1.0, 30.0, kMaxCoordinate_m};
                 const double scale_m = scales[below(scales.size())];
                 boost::random::uniform_real_distribution<double> along(-scale_m, scale_m);
                 std::vector<Point> all(below(40));

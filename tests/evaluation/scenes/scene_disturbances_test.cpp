@@ -1,4 +1,4 @@
-// What a scene shows that is not so: false positives, noise, wrong colours, confidences.
+// What a scene shows that is not so: false positives, noise, wrong colors, confidences.
 
 #include "evaluation/scenes/scene_generation.hpp"
 #include "tests/support/toy_track_scenes.hpp"
@@ -100,7 +100,7 @@ TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
     EXPECT_NEAR(static_cast<double>(seen) / 17000.0, 0.8, 0.01);
 }
 
-TEST(SceneGeneration, ColoursShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem) {
+TEST(SceneGeneration, ColorsShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem) {
     Track track = straight();
     track.cones[track.left[2]].color = ConeColor::orange;
     track.cones[track.left[3]].color = ConeColor::yellow;  // the recording was wrong
@@ -123,7 +123,7 @@ TEST(SceneGeneration, ColoursShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem
     }
 }
 
-TEST(SceneGeneration, ColourErrorsPaintConesOfABoundaryLikeTheOtherOne) {
+TEST(SceneGeneration, ColorErrorsPaintConesOfABoundaryLikeTheOtherOne) {
     const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
     SceneOptions wanted = options({0.3}, {15.0});
     wanted.with_color = true;

@@ -23,11 +23,11 @@ constexpr std::uint64_t kSeeds = 5;
 /// What holds for the tracks of a layout; the fixed ones keep to the rules of Formula Student.
 struct Limits {
     double shortest_gap_m = 1.0;  ///< between cones of one boundary
-    double longest_gap_m = 5.0;
+    double max_gap_m = 5.0;
     double narrowest_m = 2.7;  ///< of the lane, across chords
     double widest_m = 5.3;  ///< at the ends of an open track and across chords a little more than the width
-    double least_swell_m = 0.8;
-    double least_wall_m = 3.5;  ///< between two legs of one boundary
+    double min_swell_m = 0.8;
+    double min_wall_m = 3.5;  ///< between two legs of one boundary
 };
 
 Limits limits_of(const std::string& track) {
@@ -148,7 +148,7 @@ TEST(GeneratedTracks, HaveSimpleBoundariesApartFromEachOtherAndFromThemselves) {
                     double apart_m = start_j_m - start_i_m;
                     if (track.closed) apart_m = std::min(apart_m, length_m - apart_m);
                     if (apart_m > 18) {
-                        ASSERT_GT(segment_distance(all[i], all[j]).distance_m, limits.least_wall_m)
+                        ASSERT_GT(segment_distance(all[i], all[j]).distance_m, limits.min_wall_m)
                             << i << " " << j;
                     }
                     start_j_m += (all[j].to - all[j].from).norm();
@@ -164,15 +164,15 @@ TEST(GeneratedTracks, SpaceConesUnevenlyOneToFiveMetresApart) {
         const Limits limits = limits_of(track.name);
         for (const auto* const boundary : {&both.left, &both.right}) {
             double shortest_m = 10;
-            double longest_m = 0;
+            double max_length_m = 0;
             for (const Segment& segment : segments(*boundary, track.closed)) {
                 const double gap_m = (segment.to - segment.from).norm();
                 EXPECT_GE(gap_m, limits.shortest_gap_m);
-                EXPECT_LE(gap_m, limits.longest_gap_m);
+                EXPECT_LE(gap_m, limits.max_gap_m);
                 shortest_m = std::min(shortest_m, gap_m);
-                longest_m = std::max(longest_m, gap_m);
+                max_length_m = std::max(max_length_m, gap_m);
             }
-            EXPECT_GT(longest_m, 1.2 * shortest_m);
+            EXPECT_GT(max_length_m, 1.2 * shortest_m);
         }
     });
 }
@@ -214,7 +214,7 @@ TEST(GeneratedTracks, HaveLanesThreeToFiveMetresWideWithTheLeftBoundaryOnTheLeft
         const Limits limits = limits_of(track.name);
         EXPECT_GE(narrowest_m, limits.narrowest_m);
         EXPECT_LE(widest_m, limits.widest_m);
-        EXPECT_GE(widest_m - narrowest_m, limits.least_swell_m);
+        EXPECT_GE(widest_m - narrowest_m, limits.min_swell_m);
         for (const double left_m : left_offsets_m(both.right, both.left, track.closed))
             EXPECT_LT(left_m, -limits.narrowest_m);
     });

@@ -141,9 +141,9 @@ TEST_F(RunLog, ScenesHoldWhatTheMapOfTheirFrameHoldsUnderOneId) {
     for (const AnnotatedScene& scene : scenes) {
         for (const Cone& cone : scene.scene.cones) EXPECT_EQ(cone.color, ConeColor::unknown);
     }
-    SceneOptions coloured = plain();
-    coloured.with_color = true;
-    const auto seen = generate_scenes(run, coloured);
+    SceneOptions colored = plain();
+    colored.with_color = true;
+    const auto seen = generate_scenes(run, colored);
     EXPECT_EQ(std::ranges::count(seen[1].scene.cones, ConeColor::blue, &Cone::color), 3);
 }
 
@@ -163,7 +163,7 @@ TEST_F(RunLog, TheGroundTruthGoesPastOneConeThatTheMapLacksButNotPastTwo) {
     EXPECT_THAT(xs(scenes[1], scenes[1].ground_truth->right), ElementsAre(2, 6, 10)) << "evened";
 }
 
-TEST_F(RunLog, WithoutColoursTheDrivenPathIsKeptAndEveryFrameIsAScene) {
+TEST_F(RunLog, WithoutColorsTheDrivenPathIsKeptAndEveryFrameIsAScene) {
     LogMap map = straight(10.0);
     map.unknown = map.blue;
     map.unknown.insert(map.unknown.end(), map.yellow.begin(), map.yellow.end());
@@ -263,8 +263,8 @@ TEST_F(RunLog, FaultsNameFileAndKey) {
     EXPECT_THAT(error_of([&] { (void)read_run_log(path("nowhere.json")); }), HasSubstr("nowhere.json"));
 }
 
-/// The recorded runs: two laps of a coloured course, a car that leaves its lane, and a skidpad.
-TEST(RecordedRuns, GiveBoundariesWhereTheyHaveColoursAndOneLane) {
+/// The recorded runs: two laps of a colored course, a car that leaves its lane, and a skidpad.
+TEST(RecordedRuns, GiveBoundariesWhereTheyHaveColorsAndOneLane) {
     const std::filesystem::path folder = recorded_data() / "ft_fsd";
     if (!std::filesystem::is_directory(folder)) {
         GTEST_SKIP() << "no ft_fsd in CONELANE_DATA or in ../shared/data";

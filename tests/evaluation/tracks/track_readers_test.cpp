@@ -159,7 +159,7 @@ std::string pacsim(const std::string& closed, const std::string& right) {
 constexpr const char* kPacsimRight =
     "  - {position: [0, -2, 0], class: yellow}\n  - {position: [5, -2, 0], class: yellow}\n";
 
-TEST_F(TrackFiles, PacsimOpenTrackWithUnknownConesAndColours) {
+TEST_F(TrackFiles, PacsimOpenTrackWithUnknownConesAndColors) {
     const Track track = read_pacsim_track(write("yard.yaml", pacsim("false", kPacsimRight)));
     EXPECT_EQ(track.name, "pacsim_yard");
     EXPECT_FALSE(track.closed);

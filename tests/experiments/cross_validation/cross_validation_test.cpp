@@ -104,7 +104,9 @@ TEST_F(CrossValidation, AComparisonMarksTheCoursesThatAMethodHasLearnedFrom) {
     ASSERT_FALSE(training_courses("clc").contains("circle"));
     EXPECT_TRUE(training_courses("delaunay-beam").contains("fsd_1"));
     EXPECT_TRUE(training_courses("astar-lane").contains("fsd_2"));
+    EXPECT_TRUE(training_courses("rld-shape-context").contains("fsd_6"));
     EXPECT_TRUE(training_courses("rld-pair").empty());
+    EXPECT_TRUE(training_courses("clc-longest").empty());
     const std::string common = "compare --methods rld-pair,clc --every 60 --fp 0 --out ";
     const Outcome seen = run(common + "seen --tracks generated:curvy@1 generated:circle");
     ASSERT_EQ(seen.exit_code, 0) << seen.errors;

@@ -141,7 +141,7 @@ TEST_F(Instances, EverySolverFindsTheStoredOptima) {
     for (const InstanceScene& set : instance_scenes(options)) {
         for (const tests::Contestant& contestant : tests::contestants()) {
             const RldSolverEntry& entry = *contestant.entry;
-            if (!entry.exact || entry.most_cones.value_or(12) < 12) continue;
+            if (!entry.exact || entry.max_cones.value_or(12) < 12) continue;
             SCOPED_TRACE(set.name + " " + std::string(entry.name));
             // The printed program takes seconds without CBC's full machinery.
             if (contestant.formulation == Formulation::paper && entry.name != "cbc-main") continue;

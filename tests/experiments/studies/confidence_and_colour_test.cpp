@@ -1,4 +1,4 @@
-// RLD with simulated confidences and colours: measured on held-out tracks, each by its fold's parameters.
+// RLD with simulated confidences and colors: measured on held-out tracks, each by its fold's parameters.
 
 #include "experiments/studies/confidence_and_colour.hpp"
 
@@ -37,7 +37,7 @@ ConfidenceColorOptions two_folds() {
     return options;
 }
 
-TEST(ConfidenceAndColour, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
+TEST(ConfidenceAndColor, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted) {
     const std::vector<ConfidenceColorRow> rows = confidence_color_rows(two_folds());
     ASSERT_EQ(rows.size(), 4U);
     const ConfidenceColorRow& geometry = rows[0];
@@ -48,15 +48,15 @@ TEST(ConfidenceAndColour, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted
     EXPECT_GT(rows[1].accurate, geometry.accurate + 0.05);  // confidences
     EXPECT_GT(rows[1].success, geometry.success);
     EXPECT_THAT(rows[1].weights, Each(AnyOf(1.0, 2.0)));
-    EXPECT_GT(rows[2].accurate, geometry.accurate);  // right colours
+    EXPECT_GT(rows[2].accurate, geometry.accurate);  // right colors
     EXPECT_THAT(rows[2].weights, ElementsAre(1.0, 1.0));
-    EXPECT_EQ(rows[3].knowledge.color_error, 1.0);  // every colour wrong: each fold keeps to geometry
+    EXPECT_EQ(rows[3].knowledge.color_error, 1.0);  // every color wrong: each fold keeps to geometry
     EXPECT_THAT(rows[3].weights, ElementsAre(0.0, 0.0));
     EXPECT_EQ(rows[3].accurate, geometry.accurate);
 }
 
 /// A fold whose parameters find no lane loses the tracks that it holds out, and no others.
-TEST(ConfidenceAndColour, AFoldAnswersForItsHeldOutTracksAlone) {
+TEST(ConfidenceAndColor, AFoldAnswersForItsHeldOutTracksAlone) {
     ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
     const double both = confidence_color_rows(options).front().accurate;
@@ -68,7 +68,7 @@ TEST(ConfidenceAndColour, AFoldAnswersForItsHeldOutTracksAlone) {
     EXPECT_EQ(confidence_color_rows(options).front().accurate, 0.0);
 }
 
-TEST(ConfidenceAndColour, CountOnlyTheTracksAskedFor) {
+TEST(ConfidenceAndColor, CountOnlyTheTracksAskedFor) {
     ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
     options.folds[1].parameters.d_h = 0.0;  // finds no lane on the circle
@@ -84,7 +84,7 @@ TEST(ConfidenceAndColour, CountOnlyTheTracksAskedFor) {
     EXPECT_THROW(static_cast<void>(confidence_color_rows(options)), InvalidInput);
 }
 
-TEST(ConfidenceAndColour, AreTheSameForAnyNumberOfThreads) {
+TEST(ConfidenceAndColor, AreTheSameForAnyNumberOfThreads) {
     ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();
     const std::string one = confidence_color_table(confidence_color_rows(options));
@@ -93,7 +93,7 @@ TEST(ConfidenceAndColour, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(confidence_color_table(confidence_color_rows(options)), one);
 }
 
-TEST(ConfidenceAndColour, ATrackThatIsHeldOutMustBeThere) {
+TEST(ConfidenceAndColor, ATrackThatIsHeldOutMustBeThere) {
     ConfidenceColorOptions options = two_folds();
     options.folds[0].tracks = {"kidney"};
     try {
@@ -129,7 +129,7 @@ TEST_F(TuningRecord, GivesScenesConeSetAndFolds) {
     EXPECT_EQ(read.scenes.seed, 11U);
     EXPECT_EQ(read.evaluation.nearest, 12U);
     EXPECT_EQ(read.evaluation.context, 24U);
-    EXPECT_EQ(read.evaluation.most_nodes, 900);
+    EXPECT_EQ(read.evaluation.max_nodes, 900);
     ASSERT_EQ(read.folds.size(), 1U);
     EXPECT_THAT(read.folds[0].tracks, ElementsAre("circle"));
     EXPECT_EQ(read.folds[0].parameters.d_e, 3.3);

@@ -400,7 +400,7 @@ TEST(TrainingRun, GivesTheSameBytesFromTheSameSeedOnAnyNumberOfThreads) {
     options.scenes.false_positive_rates = {0.0, 0.2};
     options.scenes.ranges_m = {20.0};
     options.scenes.every_m = 20.0;
-    options.candidates.most_per_scene = 10;
+    options.candidates.max_per_scene = 10;
     options.candidates.show_progress = false;
     options.training = quick();
     const auto file = [&] {

@@ -61,7 +61,7 @@ TEST(MethodTuning, FilesHoldWhatWasFound) {
     const AstarLaneParameters read = parse_astar_lane_parameters(to_json_text(method, values), "p.json");
     EXPECT_EQ(read.least_radius_m, values[0]);
     EXPECT_EQ(read.heuristic, values.back());
-    EXPECT_EQ(read.most_steps, AstarLaneParameters{}.most_steps);
+    EXPECT_EQ(read.max_steps, AstarLaneParameters{}.max_steps);
 }
 
 TEST(MethodTuning, FilesThatAreWrongAreNamed) {

@@ -191,7 +191,7 @@ TEST(Evaluation, CountsSlowScenesAsWorthless) {
     options.nearest = 12;
     options.time_limit_ms = 1e5;
     EXPECT_GT(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.9);
-    options.most_nodes = -1;
+    options.max_nodes = -1;
     EXPECT_EQ(mean_over_scenes(Evaluation(straight_track(0.0), options)(RldParameters{})), 0.0);
 }
 

@@ -85,7 +85,7 @@ TEST(AstarLane, EndsWhereTheConesEnd) {
 
 TEST(AstarLane, SaysThatItsLimitEndedTheSearch) {
     AstarLaneParameters parameters;
-    parameters.most_steps = 3;
+    parameters.max_steps = 3;
     Scene scene = bend(15.0, 6);
     const LaneAnswer answer = detect(scene, parameters);
     EXPECT_EQ(answer.status, LaneStatus::stopped);
@@ -112,7 +112,7 @@ TEST(AstarLane, RefusesParametersOutOfTheirRange) {
     }
     EXPECT_EQ(key, "least_radius_m");
     parameters = {};
-    parameters.most_steps = 0;
+    parameters.max_steps = 0;
     EXPECT_THROW((void)make_astar_lane_detector(parameters), InvalidInput);
 }
 

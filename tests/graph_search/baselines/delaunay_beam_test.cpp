@@ -52,8 +52,8 @@ TEST(DelaunayBeam, AConeInsideTheLaneIsOnABoundary) {
     EXPECT_TRUE(has(lane.left) || has(lane.right));
 }
 
-// Two lanes side by side share the middle row; the colours say which is the car's.
-TEST(DelaunayBeam, ColoursTellSidesApart) {
+// Two lanes side by side share the middle row; the colors say which is the car's.
+TEST(DelaunayBeam, ColorsTellSidesApart) {
     Scene scene;
     scene.pose.position = {0.0, 1.8};
     for (int i = 0; i < 5; ++i) {

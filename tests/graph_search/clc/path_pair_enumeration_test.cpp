@@ -111,9 +111,9 @@ TEST(PathPairEnumeration, AddsWhatIsNotThereYet) {
     graph.build(points, 5.5);
     PathPairs pairs;
     PathPairEnumeration enumeration;
-    const auto run = [&](StartPair start, std::uint32_t most_discrepancies) {
+    const auto run = [&](StartPair start, std::uint32_t max_discrepancies) {
         EnumerationRules rules;
-        rules.most_discrepancies = most_discrepancies;
+        rules.max_discrepancies = max_discrepancies;
         SearchBudget budget;
         budget.iteration_limit = kNoLimit;
         EXPECT_TRUE(enumeration.run(graph, start, kHeading, rules, budget, pairs));
@@ -265,10 +265,10 @@ TEST(PathPairEnumeration, LeavesOutWhatHasMoreDiscrepancies) {
         SCOPED_TRACE(seed);
         const std::vector<Point> points = random_map(seed, 6 + seed % 4);
         EnumerationRules few = all;
-        few.most_discrepancies = seed % 4;
+        few.max_discrepancies = seed % 4;
         std::multiset<PathPairVertices> expected;
         for (const PathPairVertices& lane : open_pairs(enumerate(points, all))) {
-            const bool keeps = discrepancies(points, all.d_max_m, lane) <= few.most_discrepancies;
+            const bool keeps = discrepancies(points, all.d_max_m, lane) <= few.max_discrepancies;
             if (keeps) expected.insert(lane);
             ++(keeps ? kept : left_out);
         }

@@ -68,9 +68,9 @@ TEST(StartPairs, OfACrowdAreThoseOfTheNearestVertices) {
     StartPairs pairs;
     pairs.find(scene_of(points), {}, {});
     EXPECT_FALSE(pairs.complete());
-    EXPECT_EQ(pairs.ranked().size(), StartPairs::kMostVertices * StartPairs::kMostVertices);
+    EXPECT_EQ(pairs.ranked().size(), StartPairs::kMaxVertices * StartPairs::kMaxVertices);
     EXPECT_EQ(pairs.ranked().front().pair, (StartPair{798, 799})) << "the nearest two";
-    points.resize(2 * StartPairs::kMostVertices);
+    points.resize(2 * StartPairs::kMaxVertices);
     pairs.find(scene_of(points), {}, {});
     EXPECT_TRUE(pairs.complete());
 }

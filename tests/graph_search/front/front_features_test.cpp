@@ -238,7 +238,7 @@ float inside(const FrontMap& map, const Point& a, const Point& b, const Point& c
         const Point& p = map.position(cone);
         const double sides[]{cross(b - a, p - a), cross(c - b, p - b), cross(a - c, p - c)};
         const auto [least, most] = std::ranges::minmax(sides);
-        if (p == a || p == b || p == c || (p - a).norm() > kLongestSegment_m) continue;
+        if (p == a || p == b || p == c || (p - a).norm() > kMaxSegment_m) continue;
         if (least > 0.0 || most < 0.0) count += 1.0F;
     }
     return std::min(count, 3.0F);

@@ -134,7 +134,7 @@ TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
 /// Of a cone: the least share of it and of all before it; and of the lanes that have its segment the best
 /// one, and how far that is ahead of the best one without.
 TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
-    std::size_t least_before = 0;
+    std::size_t min_before = 0;
     std::size_t not_of_the_best = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Judged judged(tests::random_scene(seed, 24), random_front_weights(seed));
@@ -147,7 +147,7 @@ TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
             for (const std::uint32_t place : judged.judge.path(i)) {
                 const FrontJudge::Step& step = judged.judge.steps()[place];
                 const float share = cone_feature(step, "share");
-                least_before += least < share ? 1 : 0;
+                min_before += least < share ? 1 : 0;
                 least = std::min(least, share);
                 EXPECT_FLOAT_EQ(cone_feature(step, "least_share"), least);
                 const auto best = std::ranges::find(probability, cone_feature(step, "probability"),
@@ -167,7 +167,7 @@ TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
             }
         }
     }
-    EXPECT_GT(least_before, 20U);
+    EXPECT_GT(min_before, 20U);
     EXPECT_GT(not_of_the_best, 20U);
 }
 

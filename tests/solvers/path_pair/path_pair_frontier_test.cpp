@@ -60,8 +60,8 @@ struct Fronts {
         incumbent.reset(graph, 1e6);
     }
 
-    bool build(double limit = kUnreachable, std::size_t most_fronts = kAny) {
-        return fronts.build(residual, dominated, limit, most_fronts);
+    bool build(double limit = kUnreachable, std::size_t max_fronts = kAny) {
+        return fronts.build(residual, dominated, limit, max_fronts);
     }
 
     /// Every walk on from a front to a last one that costs less than `limit`, by plain recursion.
@@ -77,9 +77,9 @@ struct Fronts {
         }
     }
 
-    FrontierSearch::Outcome run(std::size_t width, std::size_t most_labels, bool with_detours = true) {
+    FrontierSearch::Outcome run(std::size_t width, std::size_t max_labels, bool with_detours = true) {
         tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
-        return search.run(fronts, edges, tables, {1e-9, width, most_labels}, stopped);
+        return search.run(fronts, edges, tables, {1e-9, width, max_labels}, stopped);
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
