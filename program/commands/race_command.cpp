@@ -1,5 +1,6 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
@@ -8,6 +9,7 @@
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
@@ -17,6 +19,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -27,6 +30,7 @@
 namespace conelane::experiments {
 namespace {
 
+constexpr int kTrackdriveLaps = 10;
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 struct Options {
@@ -42,6 +46,7 @@ struct Options {
     std::string fault = "none";
     std::string replay = "unfinished";
     RaceOptions race;
+    std::optional<int> laps;
     double latency_ms = 50.0;
     double start_deg = 0.0;
     double drift_deg = 0.0;
@@ -150,32 +155,46 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"drift_deg", options.drift_deg}};
 }
 
-void write_all(const Options& options, const std::vector<RaceMethod>& methods,
+/// The files of a result, opened before the work: that they can be written is known before it, and none is
+/// in place before all are whole.
+class Outputs {
+  public:
+    explicit Outputs(const std::filesystem::path& folder)
+        : races_(folder / "race.json"),
+          table_(folder / "table.txt"),
+          replay_(folder / "replay.jsonl"),
+          times_(folder / "times.txt") {}
+
+    void write(const Options& options, const std::vector<RaceMethod>& methods,
                const std::vector<Entry>& entries, const std::vector<Heat>& heats) {
-    nlohmann::ordered_json json = parameters_of(options, methods);
-    json["races"] = nlohmann::ordered_json::array();
-    std::string replays;
-    for (std::size_t i = 0; i < heats.size(); ++i) {
-        json["races"].push_back(heat_json(heats[i]));
-        if (!heats[i].result.replay.empty()) {
-            replays += replay_json(heats[i], *entries[i].course).dump() + "\n";
+        nlohmann::ordered_json json = parameters_of(options, methods);
+        json["races"] = nlohmann::ordered_json::array();
+        for (std::size_t i = 0; i < heats.size(); ++i) {
+            json["races"].push_back(heat_json(heats[i]));
+            if (heats[i].result.replay.empty()) continue;
+            replay_.stream() << replay_json(heats[i], *entries[i].course).dump() << "\n";
         }
+        const std::string table = race_table(heats, options.race.laps);
+        const std::string times = answer_time_table(heats);
+        races_.stream() << json.dump(1) << "\n";
+        table_.stream() << table;
+        times_.stream() << times;
+        AtomicFile* const files[] = {&races_, &table_, &replay_, &times_};
+        commit_together(files);
+        fmt::print("{}\n{}", table, times);
     }
-    const std::string table = race_table(heats, options.race.laps);
-    const std::string times = answer_time_table(heats);
-    const std::filesystem::path out = options.out;
-    std::filesystem::create_directories(out);
-    AtomicFile json_file(out / "race.json");
-    AtomicFile table_file(out / "table.txt");
-    AtomicFile replay_file(out / "replay.jsonl");
-    AtomicFile times_file(out / "times.txt");
-    json_file.stream() << json.dump(1) << "\n";
-    table_file.stream() << table;
-    replay_file.stream() << replays;
-    times_file.stream() << times;
-    AtomicFile* const files[] = {&json_file, &table_file, &replay_file, &times_file};
-    commit_together(files);
-    fmt::print("{}\n{}", table, times);
+
+  private:
+    AtomicFile races_;
+    AtomicFile table_;
+    AtomicFile replay_;
+    AtomicFile times_;
+};
+
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    if (failure) throw InputError(folder, 0, "", "cannot be made: " + failure.message());
 }
 
 void run_races(Options& options) {
@@ -192,9 +211,14 @@ void run_races(Options& options) {
     options.race.drift_rad = options.drift_deg * kDegree_rad;
     const std::optional<Mission> mission = mission_of(options.mission);
     options.race.with_stop = mission.has_value();
-    if (mission == Mission::autocross || has_known_course(mission)) {
-        if (options.race.laps != 1) {
-            throw InvalidInput("--laps", "of " + options.mission + " is 1");
+    const bool is_trackdrive = mission == Mission::trackdrive;
+    options.race.laps = options.laps.value_or(is_trackdrive ? kTrackdriveLaps : 1);
+    if (mission && !is_trackdrive && options.race.laps != 1) {
+        throw InvalidInput("--laps", "must be 1: that is what " + options.mission + " has");
+    }
+    for (const std::uint64_t seed : options.seeds) {
+        if (std::ranges::count(options.seeds, seed) > 1) {
+            throw InvalidInput("--seed", fmt::format("{} is there twice", seed));
         }
     }
     const std::vector<RaceMethod> methods =
@@ -214,8 +238,10 @@ void run_races(Options& options) {
             }
         }
     }
+    make_folder(options.out);
+    Outputs outputs(options.out);
     run_all(options, entries, heats);
-    write_all(options, methods, entries, heats);
+    outputs.write(options, methods, entries, heats);
 }
 
 }  // namespace
@@ -238,9 +264,8 @@ void add_race_command(CLI::App& program) {
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
-    command.add_option("--laps", options->race.laps, "of a race")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
+    command.add_option("--laps", options->laps, "of a race; 1 without it, 10 of a trackdrive")
+        ->check(CLI::Range(1, 1000));
     command.add_option("--speed", options->race.speed_mps, "[m/s]")
         ->check(CLI::Range(0.5, 40.0))
         ->capture_default_str();
