@@ -54,6 +54,11 @@ struct Options {
     std::string out;
 };
 
+/// CLI::Range takes nan.
+CLI::Validator number_in(double low, double high) {
+    return CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case);
+}
+
 std::optional<Mission> mission_of(const std::string& name) {
     for (const Mission mission :
          {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
@@ -267,11 +272,11 @@ void add_race_command(CLI::App& program) {
     command.add_option("--laps", options->laps, "of a race; 1 without it, 10 of a trackdrive")
         ->check(CLI::Range(1, 1000));
     command.add_option("--speed", options->race.speed_mps, "[m/s]")
-        ->check(CLI::Range(0.5, 40.0))
+        ->check(number_in(0.5, 40.0))
         ->capture_default_str();
     command.add_option("--seed", options->seeds, "a race for each")->delimiter(',');
     command.add_option("--latency-ms", options->latency_ms, "from a frame to its path, simulated")
-        ->check(CLI::Range(0.0, 1000.0))
+        ->check(number_in(0.0, 1000.0))
         ->capture_default_str();
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
     command.add_option("--ids", options->ids, "tracked: points keep their id; none: no point has one")
@@ -285,16 +290,16 @@ void add_race_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--start-error", options->race.start_error_m, "the car starts so near to the start [m]")
-        ->check(CLI::Range(0.0, 3.0))
+        ->check(number_in(0.0, 3.0))
         ->capture_default_str();
     command.add_option("--start-error-deg", options->start_deg, "and so near to its direction")
-        ->check(CLI::Range(0.0, 45.0))
+        ->check(number_in(0.0, 45.0))
         ->capture_default_str();
     command.add_option("--drift", options->race.drift_m, "of the map in a lap [m]")
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(number_in(0.0, 10.0))
         ->capture_default_str();
     command.add_option("--drift-deg", options->drift_deg, "of the map in a lap")
-        ->check(CLI::Range(0.0, 45.0))
+        ->check(number_in(0.0, 45.0))
         ->capture_default_str();
     command
         .add_option("--replay", options->replay,

@@ -18,7 +18,7 @@ class RaceCommand : public ProgramFixture {};
 TEST_F(RaceCommand, AnyNumberOfThreadsGivesTheSameFiles) {
     for (const char* const threads : {"1", "2"}) {
         const Outcome outcome =
-            run("race --tracks generated:kidney,oval --methods front,truth --fp 0,0.3 --seed 1,2 --out t" +
+            run("race --tracks generated:kidney,circle --methods front,truth --fp 0,0.3 --seed 1,2 --out t" +
                 std::string(threads) + " --replay all --threads " + threads);
         ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     }

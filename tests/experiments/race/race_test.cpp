@@ -468,7 +468,7 @@ TEST_P(Missions, APlannerThatTellsOtherPhasesHasLost) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Missions, testing::Values(Mission::acceleration, Mission::skidpad),
-                         [](const auto& info) { return std::string(to_string(info.param)); });
+                         [](const auto& tested) { return std::string(to_string(tested.param)); });
 
 TEST(Courses, OfTheRulesHaveTheMeasuresOfTheRules) {
     const RaceCourse skidpad = skidpad_course();
@@ -482,7 +482,7 @@ TEST(Courses, OfTheRulesHaveTheMeasuresOfTheRules) {
     }
     // No cone stands in the lane.
     for (const RaceCourse& course : {skidpad, acceleration_course()}) {
-        const double end_m = *course.finish_m + course.rest_m - 1.0;
+        const double end_m = *course.finish_m + course.rest_m - 2.0;
         for (std::size_t i = 0; i < static_cast<std::size_t>(end_m / course.step_m); ++i) {
             for (const Cone& cone : course.cones) {
                 EXPECT_GT((cone.position - course.line[i].position).norm(), 1.4);
