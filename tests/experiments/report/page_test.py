@@ -114,7 +114,7 @@ class ReportPage(unittest.TestCase):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start", "anytime-shares", "anytime-gap",
-                     "growth-size", "growth-density",
+                     "growth-size", "growth-density", "race-finished", "race-table", "race-replay",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
                      "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
                      "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
