@@ -43,9 +43,10 @@ def read(results):
     if not isinstance(races, list) or not races:
         raise InputError(f"{path}: races: is no list of races")
     rows = {}
-    for race in races:
+    for number, race in enumerate(races):
         for key, kinds in _KEYS:
-            require(path, 0, race, key, kinds)
+            if not isinstance(race, dict) or type(race.get(key)) not in kinds:
+                raise InputError(f"{path}: races[{number}].{key}: is missing or of another kind")
         rows.setdefault((race["method"], race["false_positive_rate"]), []).append(race)
     return run, rows
 

@@ -125,7 +125,7 @@ class ReportPage(unittest.TestCase):
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 27 + BENCHMARKED)
+        self.assertEqual(len(articles), 28 + BENCHMARKED)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -341,6 +341,16 @@ class ReportPage(unittest.TestCase):
                     stream.write(text)
                 self.assertIn(complaint, self.refused(copy, page))
                 os.unlink(os.path.join(copy, name))
+            for name, text, complaint in (("race.json", "{", "race.json: "), ("race.json", "{}", "race.json: races"),
+                                          ("race.json", '{"races": [{}]}', "races[0].track"),
+                                          ("replay.jsonl", '{"frames": 1}\n', "replay.jsonl:1: frames")):
+                with open(os.path.join(copy, "race", name), encoding="utf-8") as stream:
+                    whole = stream.read()
+                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
+                    stream.write(text)
+                self.assertIn(complaint, self.refused(copy, page))
+                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
+                    stream.write(whole)
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
@@ -497,6 +507,7 @@ class ReportPage(unittest.TestCase):
             shutil.copytree(RESULTS, copy)
             os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
             shutil.rmtree(os.path.join(copy, "sweep"))
+            shutil.rmtree(os.path.join(copy, "race"))
             for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
                          "anytime.jsonl", "growth.jsonl", "confidence-and-colour.jsonl", "benchmarks.json"):
                 if name != "benchmarks.json" or BENCHMARKED:
@@ -510,7 +521,7 @@ class ReportPage(unittest.TestCase):
                               "there is no backends.jsonl.", "there is no formulations.jsonl.",
                               "there is no anytime.jsonl.", "there is no growth.jsonl.",
                               "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
-                              "there is no benchmarks.json."):
+                              "there is no benchmarks.json.", "there is no race/race.json."):
                 self.assertIn(complaint, text)
             self.assertIn("<code>conelane sweep --out RESULTS/sweep</code>", text)
             self.assertEqual(Page(text).wrong, [])
