@@ -93,6 +93,7 @@ Entrant planner_entrant(const std::string& detector, const RaceCourse& course, c
             drive.path = points_of(plan.lane);
             drive.stop = plan.stop;
             drive.is_flagged = plan.state != PlanState::following;
+            drive.age_s = plan.age_s;
             drive.safe_m = plan.safe_m;
             drive.state = to_string(plan.state);
             drive.phase = plan.phase;

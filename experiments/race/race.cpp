@@ -249,7 +249,7 @@ class Run {
             if (step % kStepsPerFrame == 0) sense(step);
             while (std::optional<Frame> frame = delivery_.next(step)) answer(*frame, step);
             take_path(step);
-            move(step);
+            move();
         }
         result_.time_s = step * kStep_s;
         finish_result();
@@ -395,7 +395,9 @@ class Run {
         }
         const double time_s = step * kStep_s;
         // A path of the frame before the last is the freshest while the last one is being answered.
-        if (driven_ && driven_->frame_s < last_frame_s_ - kFrame_s - 1e-9) result_.old_path_s += kStep_s;
+        const bool is_old =
+            driven_ && driven_->frame_s - driven_->drive.age_s < last_frame_s_ - kFrame_s - 1e-9;
+        if (is_old) result_.old_path_s += kStep_s;
         if (driven_ && !driven_->drive.stop && time_s - driven_->frame_s > kOldestPath_s + 1e-9) {
             driven_.reset();
         }
@@ -409,7 +411,7 @@ class Run {
         }
     }
 
-    void move(int step) {
+    void move() {
         change_speed();
         const double wanted_rad = driven_ ? pursue(believed(), driven_->drive.path, lookahead_m(speed_mps_),
                                                    driven_->from_m)
@@ -428,20 +430,22 @@ class Run {
             return;
         }
         const double past_m = foot_.at_m() - finish_m_;
+        halted_steps_ = speed_mps_ > 0.0 ? 0 : halted_steps_ + 1;
+        const bool has_halted = halted_steps_ * kStep_s >= kLongestHalt_s;
         if (!options_.with_stop) {
             if (past_m >= 0.0) end(RaceEnd::finished);
+            if (has_halted) end(RaceEnd::halted);
             return;
         }
         if (past_m > course_.rest_m) {
             end(RaceEnd::not_stopped);
             return;
         }
-        halted_steps_ = speed_mps_ > 0.0 ? 0 : halted_steps_ + 1;
         if (speed_mps_ <= 0.0 && result_.stop_said_m && past_m >= 0.0) {
             result_.rest_m = past_m;
             const bool tells_phases = is_planner_ && !course_.phases.empty();
             end(tells_phases && result_.phases != course_.phases ? RaceEnd::wrong_phases : RaceEnd::finished);
-        } else if (halted_steps_ * kStep_s >= kLongestHalt_s && step > 0) {
+        } else if (has_halted) {
             end(RaceEnd::halted);
         }
     }

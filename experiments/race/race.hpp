@@ -51,6 +51,7 @@ struct Drive {
     bool stop = false;
     /// The path is said to be an earlier one, or that there is none.
     bool is_flagged = false;
+    double age_s = 0.0;                                       ///< of the frame that the path stems from
     double safe_m = std::numeric_limits<double>::infinity();  ///< of the path
     std::string_view state;                                   ///< of a planner, else empty
     std::string_view phase;

@@ -313,6 +313,55 @@ TEST(Race, LatePathsAreOldPaths) {
     EXPECT_EQ(race(kidney(), options, truth_entrant(kidney(), 1)).old_path_s, 0.0);
 }
 
+TEST(Race, PathsThatAPlannerCallsOldAreOldPaths) {
+    const RaceResult result =
+        race(kidney(), options_of("paper"), [truth = truth_entrant(kidney(), 1)](const Frame& frame) {
+            Drive drive = truth(frame);
+            if (frame.time_s > 3.0 && frame.time_s < 4.0) drive.age_s = frame.time_s - 3.0;
+            return drive;
+        });
+    // From the frame at 3.2 s, two after the last one told, to the arrival of that at 4 s.
+    EXPECT_NEAR(result.old_path_s, 0.85, 0.011);
+}
+
+TEST(Race, AWrongPathCountsUnlessItIsSaidToBeOld) {
+    for (const bool is_flagged : {false, true}) {
+        const RaceResult result = race(kidney(), options_of("paper"), [&](const Frame& frame) {
+            Drive drive;
+            drive.path = {frame.pose.position, frame.pose.position + 9.0 * Point(-frame.pose.heading().y(),
+                                                                                 frame.pose.heading().x())};
+            drive.is_flagged = is_flagged;
+            return drive;
+        });
+        EXPECT_EQ(result.wrong_unflagged > 0, !is_flagged);
+    }
+}
+
+TEST(Race, ACarThatIsToldThatTheWayIsLostBrakes) {
+    RaceOptions options = options_of("paper");
+    options.with_stop = true;
+    const RaceResult result =
+        race(kidney(), options, [truth = truth_entrant(kidney(), 1)](const Frame& frame) {
+            Drive drive = truth(frame);
+            drive.brake = frame.time_s > 3.0;
+            return drive;
+        });
+    EXPECT_EQ(to_string(result.end), "halted");
+    EXPECT_FALSE(result.departure_m);
+}
+
+TEST(Race, ARefusedFrameChangesNothing) {
+    const RaceResult result = race(kidney(), options_of("paper"),
+                                   [truth = truth_entrant(kidney(), 1), i = 0](const Frame& frame) mutable {
+                                       Drive drive = truth(frame);
+                                       drive.is_refused = ++i % 3 == 0;
+                                       return drive;
+                                   });
+    EXPECT_EQ(to_string(result.end), "finished");
+    EXPECT_NEAR(result.frames_refused, result.frames / 3, 1);
+    EXPECT_EQ(result.frames_without_path, 0);
+}
+
 /// What the frames of a race are like.
 struct Seen {
     std::vector<double> times_s;
