@@ -109,6 +109,7 @@ def _sections(results, published, data):
         ("verdict", "Headline", "Which method to run", headline.html(results, data)),
         ("comparison", "Comparison", "Comparison",
          filters.html(results) + shown(experiments.COMPARISON) + headline.by_rate(results)),
+        ("race", "Race", "An event, driven by the answers", shown(experiments.RACE)),
         ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
         ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
@@ -152,5 +153,6 @@ def render(results, published, tracks=()):
 {body}</main>
 <script>{_asset("tables.js")}</script>
 <script>{_asset("viewer.js")}</script>
+<script>{_asset("race.js")}</script>
 </body></html>
 """

@@ -23,7 +23,7 @@ set(tests_depends_on model solvers graph_search detectors evaluation experiments
 set(layers_of_solvers/path_pair search_clock path_pair_options graph bound primal frontier search path_pair_solver)
 set(layers_of_evaluation seeded_random files tracks scenes scoring outside checking)
 set(layers_of_experiments progress comparison options cross_check training tuning cross_validation instances
-                          studies report benchmarks examples)
+                          studies race report benchmarks examples)
 set(layers_of_program commands main)
 set(layered solvers/path_pair evaluation experiments program)
 set(private_libraries

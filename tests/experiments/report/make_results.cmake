@@ -21,6 +21,7 @@ conelane(tune --tracks generated:straight generated:circle --nearest 8 --fp 0.3 
          --out ${RESULTS}/tuned.json)
 conelane(study confidence-and-colour --record ${RESULTS}/tuned.record.json
          --out ${RESULTS}/confidence-and-colour.jsonl)
+conelane(race --tracks generated:kidney --methods front,none --fp 0,0.3 --out ${RESULTS}/race)
 if(BENCHMARKS)
     execute_process(COMMAND ${BENCHMARKS} "--benchmark_filter=^(problem|build|update)/(tight|paper)/6$"
                             --benchmark_min_time=0.01 --benchmark_out_format=json

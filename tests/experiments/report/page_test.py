@@ -114,7 +114,7 @@ class ReportPage(unittest.TestCase):
         for name in ("headline", "by-rate", "methods", "failure-causes", "steering", "usable-by-rate-paper", "usable-by-rate-car", "by-track",
                      "by-size", "growth", "usable-by-size", "accurate-by-size", "success-by-rate", "latency",
                      "latency-by-rate", "optimality", "optimality-gaps", "backends", "backends-profile-6", "warm-start", "anytime-shares", "anytime-gap",
-                     "growth-size", "growth-density",
+                     "growth-size", "growth-density", "race-finished", "race-table", "race-replay",
                      "formulations", "relaxations", "rld-fig-5", "rld-fig-6", "rld-solved", "rld-fig-7-straight",
                      "rld-fig-7-circle", "confidence-and-colour", "clc-table-1", "clc-table-2", "clc-fig-9", "clc-fig-11", "clc-fig-12",
                      "clc-fig-15", "clc-fig-16a", "clc-fig-16b", "ratios", "profile-12"):
@@ -125,7 +125,7 @@ class ReportPage(unittest.TestCase):
 
     def test_every_experiment_says_what_it_shows(self):
         articles = re.findall(r'<article class="experiment.*?</article>', self.text, flags=re.S)
-        self.assertEqual(len(articles), 27 + BENCHMARKED)
+        self.assertEqual(len(articles), 28 + BENCHMARKED)
         for article in articles:
             self.assertRegex(article, r'<h3>[^<]+</h3><p class="claim">[^<]')
             self.assertEqual(re.findall(r"<dt>(Protocol|Source|Command)</dt>", article),
@@ -341,6 +341,16 @@ class ReportPage(unittest.TestCase):
                     stream.write(text)
                 self.assertIn(complaint, self.refused(copy, page))
                 os.unlink(os.path.join(copy, name))
+            for name, text, complaint in (("race.json", "{", "race.json: "), ("race.json", "{}", "race.json: races"),
+                                          ("race.json", '{"races": [{}]}', "races[0].track"),
+                                          ("replay.jsonl", '{"frames": 1}\n', "replay.jsonl:1: frames")):
+                with open(os.path.join(copy, "race", name), encoding="utf-8") as stream:
+                    whole = stream.read()
+                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
+                    stream.write(text)
+                self.assertIn(complaint, self.refused(copy, page))
+                with open(os.path.join(copy, "race", name), "w", encoding="utf-8") as stream:
+                    stream.write(whole)
             os.unlink(os.path.join(copy, "run.json"))
             self.assertIn("run.json", self.refused(copy, page))
 
@@ -497,6 +507,7 @@ class ReportPage(unittest.TestCase):
             shutil.copytree(RESULTS, copy)
             os.unlink(os.path.join(copy, "scenes.scenes.jsonl"))
             shutil.rmtree(os.path.join(copy, "sweep"))
+            shutil.rmtree(os.path.join(copy, "race"))
             for name in ("optimality.jsonl", "backends.jsonl", "formulations.jsonl", "relaxations.jsonl",
                          "anytime.jsonl", "growth.jsonl", "confidence-and-colour.jsonl", "benchmarks.json"):
                 if name != "benchmarks.json" or BENCHMARKED:
@@ -510,7 +521,7 @@ class ReportPage(unittest.TestCase):
                               "there is no backends.jsonl.", "there is no formulations.jsonl.",
                               "there is no anytime.jsonl.", "there is no growth.jsonl.",
                               "there is no relaxations.jsonl.", "there is no confidence-and-colour.jsonl.",
-                              "there is no benchmarks.json."):
+                              "there is no benchmarks.json.", "there is no race/race.json."):
                 self.assertIn(complaint, text)
             self.assertIn("<code>conelane sweep --out RESULTS/sweep</code>", text)
             self.assertEqual(Page(text).wrong, [])

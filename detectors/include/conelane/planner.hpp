@@ -1,0 +1,91 @@
+#pragma once
+
+#include "conelane/detectors.hpp"
+#include "conelane/drivable_lane.hpp"
+#include "conelane/lane_detector.hpp"
+#include "conelane/scene.hpp"
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The path to drive in each frame of an event, from the start line to the stop.
+///
+///     auto planner = conelane::make_planner({.mission = conelane::Mission::trackdrive, .laps = 10});
+///     conelane::Plan plan = planner->update(frame, {.time_limit_ms = 20.0});
+///     if (plan.state == conelane::PlanState::lost) brake();
+///     else steer_along(plan.lane, plan.stop);
+namespace conelane {
+
+/// The dynamic events of Formula Student.
+enum class Mission { trackdrive, autocross, acceleration, skidpad };
+[[nodiscard]] std::string_view to_string(Mission mission);
+
+enum class PlanState {
+    searching,  ///< no lane has been found yet
+    following,  ///< the lane is of this frame
+    bridging,   ///< no lane in this frame: what is left of an earlier one, see Plan::age_s
+    lost,       ///< nothing of an earlier lane is left; there is no path
+    finished,   ///< the last line is crossed; the path is what is left to come to rest on
+};
+[[nodiscard]] std::string_view to_string(PlanState state);
+
+/// Id of a cone that has none: the planner recognises it by its place.
+inline constexpr ConeId kNoId = std::numeric_limits<ConeId>::min();
+
+/// What the car sees or its map holds at one moment.
+struct Frame {
+    double time_s = 0.0;
+    Pose pose;
+    std::vector<Cone> cones;  ///< ids distinct where they are not kNoId
+};
+
+/// What to drive.
+struct Plan {
+    PlanState state = PlanState::searching;
+    /// Begins at the car. Empty where state is searching or lost, and where the car is at rest at the end.
+    DrivableLane lane;
+    double safe_m = 0.0;  ///< along `lane`: how far it is trusted, or what is left of the last trusted stretch
+    double age_s = 0.0;   ///< of the frame that the lane stems from; 0 where following
+    int lap = 0;          ///< start lines crossed since the start, not counting the first one at the start
+    bool stop = false;    ///< come to rest inside what is left of `lane`
+    std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
+    LaneAnswer answer;       ///< of the detector in this frame
+};
+
+struct PlannerOptions {
+    Mission mission = Mission::trackdrive;
+    std::string detector = "front-warm";
+    DetectorOptions detector_options = {};
+    std::optional<int> laps = {};  ///< trackdrive: 10 where absent; autocross: 1. At least 1
+    DrivableOptions drivable = {};
+    double max_age_s = 1.0;  ///< an older lane is no path; at least 0
+};
+
+/// A planner of one run. It serves one thread; planners are independent of each other.
+class Planner {
+  public:
+    Planner() = default;
+    Planner(const Planner&) = delete;
+    Planner& operator=(const Planner&) = delete;
+    virtual ~Planner();
+
+    /// Throws InvalidInput where the frame is not valid; the planner is then as it was before.
+    [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
+
+    /// The whole course, closed, once a lap is known; absent before, and in missions whose course is not a
+    /// circuit.
+    [[nodiscard]] virtual std::optional<DrivableLane> course() const = 0;
+
+    /// Forgets the run.
+    virtual void reset() = 0;
+};
+
+/// Throws InvalidInput naming the option that is out of range, and as make_detector does.
+[[nodiscard]] std::unique_ptr<Planner> make_planner(const PlannerOptions& options = {});
+
+}  // namespace conelane

@@ -1,0 +1,71 @@
+// `conelane race` as a user or a script calls it.
+
+#include "tests/support/program_fixture.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+class RaceCommand : public ProgramFixture {};
+
+TEST_F(RaceCommand, AnyNumberOfThreadsGivesTheSameFiles) {
+    for (const char* const threads : {"1", "2"}) {
+        const Outcome outcome =
+            run("race --tracks generated:kidney,circle --methods front,truth --fp 0,0.3 --seed 1,2 --out t" +
+                std::string(threads) + " --replay all --threads " + threads);
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    }
+    for (const char* const file : {"race.json", "table.txt", "replay.jsonl"}) {
+        EXPECT_EQ(text_of(path("t1") / file), text_of(path("t2") / file)) << file;
+        EXPECT_FALSE(text_of(path("t1") / file).empty()) << file;
+    }
+    const nlohmann::json json = nlohmann::json::parse(text_of(path("t1") / "race.json"));
+    EXPECT_EQ(json.at("races").size(), 16U);
+    for (const char* const key : {"commit", "compiler", "machine", "condition", "fp", "seeds", "speed_mps"}) {
+        EXPECT_TRUE(json.contains(key)) << key;
+    }
+}
+
+TEST_F(RaceCommand, MissionsNeedNoTracks) {
+    for (const char* const mission : {"acceleration", "skidpad"}) {
+        const Outcome outcome = run("race --mission " + std::string(mission) + " --methods truth --out out");
+        ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+        const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
+        EXPECT_EQ(json.at("races").at(0).at("end"), "finished");
+    }
+}
+
+TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
+    const std::string kidney = "race --tracks generated:kidney --methods truth --out out ";
+    expect_refused("race --methods truth --out out", {"--tracks"});
+    expect_refused("race --tracks generated:nowhere --methods truth --out out", {"nowhere"});
+    expect_refused("race --tracks generated:kidney --methods nobody --out out", {"nobody"});
+    expect_refused(kidney + "--condition rain", {"condition", "rain"});
+    expect_refused(kidney + "--fp 1", {"fp"});
+    expect_refused(kidney + "--fp 0.3,0.3", {"fp", "twice"});
+    expect_refused(kidney + "--seed 1,1", {"--seed", "twice"});
+    expect_refused(kidney + "--mission autocross --laps 2", {"--laps", "autocross"});
+    expect_refused(kidney + "--fault rain", {"--fault"});
+    expect_refused(kidney + "--speed 0", {"--speed"});
+    expect_refused(kidney + "--start-error nan", {"--start-error"});
+    file_with("", "taken");
+    expect_refused("race --tracks generated:kidney --methods truth --out taken", {"taken"});
+}
+
+TEST_F(RaceCommand, WhereOneFileCannotBeWrittenNoneIs) {
+    std::filesystem::create_directories(path("out") / "table.txt");
+    const Outcome outcome = run("race --tracks generated:kidney --methods truth --out out");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.errors, HasSubstr("table.txt"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("out")), {}), 1);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
