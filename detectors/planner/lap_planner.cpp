@@ -1,0 +1,11 @@
+#include "detectors/planner/lap_planner.hpp"
+
+#include "conelane/invalid_input.hpp"
+
+namespace conelane {
+
+std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options) {
+    throw InvalidInput("mission", "'" + std::string(to_string(options.mission)) + "' is not built yet");
+}
+
+}  // namespace conelane

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "conelane/planner.hpp"
+
+#include <memory>
+
+namespace conelane {
+
+/// Trackdrive and autocross: laps of a course that is not known before.
+[[nodiscard]] std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options);
+
+}  // namespace conelane
