@@ -1,11 +1,187 @@
 #include "detectors/planner/lap_planner.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/cone_memory.hpp"
+#include "detectors/planner/course_memory.hpp"
+#include "detectors/planner/lane_choice.hpp"
+#include "detectors/planner/lane_stretch.hpp"
+#include "detectors/planner/lap_counter.hpp"
+#include "detectors/planner/path_memory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace conelane {
+namespace {
+
+void validate(const PlannerOptions& options) {
+    if (options.laps && *options.laps < 1) throw InvalidInput("laps", "is not at least 1");
+    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
+    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
+}
+
+void validate(const Frame& frame, const DetectionLimits& limits) {
+    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
+    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+    // Cones without id are told apart by numbers that no cone with an id has.
+    Scene scene{"frame", frame.pose, frame.cones};
+    std::vector<ConeId> used;
+    for (const Cone& cone : frame.cones) {
+        if (cone.id != kNoId) used.push_back(cone.id);
+    }
+    std::ranges::sort(used);
+    ConeId next = kNoId;
+    for (Cone& cone : scene.cones) {
+        if (cone.id != kNoId) continue;
+        while (std::ranges::binary_search(used, next)) ++next;
+        cone.id = next++;
+    }
+    validate(scene);
+}
+
+class LapPlanner final : public Planner {
+  public:
+    explicit LapPlanner(const PlannerOptions& options)
+        : options_(options),
+          laps_(options.laps.value_or(options.mission == Mission::autocross ? 1 : 10)),
+          detector_(make_detector(options.detector, options.detector_options)),
+          path_(choice_settings_, options.drivable.step_m, options.max_age_s),
+          choice_(choice_settings_),
+          counter_(course_settings_),
+          course_(course_settings_, options.drivable.step_m) {}
+
+    Plan update(const Frame& frame, const DetectionLimits& limits) override;
+    std::optional<DrivableLane> course() const override { return course_.course(); }
+    void reset() override;
+
+  private:
+    void move_along(const RigidShift& shift);
+    [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
+                                                         const DrivableLane& left) const;
+    [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
+    void finish(Plan& plan) const;
+
+    PlannerOptions options_;
+    LaneChoiceSettings choice_settings_;
+    CourseSettings course_settings_;
+    int laps_;
+    std::unique_ptr<LaneDetector> detector_;
+    ConeMemory cones_;
+    PathMemory path_;
+    LaneChoice choice_;
+    LapCounter counter_;
+    CourseMemory course_;
+    std::optional<double> time_s_;
+    Plan last_;
+    bool started_ = false;  ///< a lane was driven
+};
+
+void LapPlanner::reset() {
+    detector_->reset();
+    cones_.clear();
+    path_.forget();
+    choice_.clear();
+    counter_.clear();
+    course_.clear();
+    time_s_.reset();
+    last_ = {};
+    started_ = false;
+}
+
+void LapPlanner::move_along(const RigidShift& shift) {
+    path_.move_along(shift);
+    choice_.move_along(shift);
+    counter_.move_along(shift);
+    course_.move_along(shift);
+}
+
+Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
+    validate(frame, limits);
+    if (time_s_ && frame.time_s <= *time_s_) {
+        // The same frame has the same answer; an older one says nothing new.
+        Plan plan = last_;
+        if (frame.time_s < *time_s_ && plan.state == PlanState::following) {
+            plan.state = PlanState::bridging;
+        }
+        return plan;
+    }
+    time_s_ = frame.time_s;
+    if (const auto shift = cones_.observe(frame)) move_along(*shift);
+    const Scene scene = cones_.scene(frame.pose);
+    Plan plan;
+    plan.answer = detector_->detect(scene, limits);
+    const DrivableLane left = path_.left(frame.pose, frame.time_s);
+    std::optional<DrivableLane> fresh = fresh_lane(plan.answer, scene, left);
+    plan.answer = named_as_given(std::move(plan.answer));
+    if (fresh && choice_.take(*fresh, left)) {
+        path_.remember(*fresh, frame.time_s);
+        plan.lane = std::move(*fresh);
+        plan.state = PlanState::following;
+        plan.safe_m = plan.lane.trusted_m.value_or(0.0);
+        started_ = true;
+    } else if (!left.points.empty()) {
+        plan.lane = left;
+        plan.state = PlanState::bridging;
+        plan.age_s = frame.time_s - path_.time_s();
+        plan.safe_m = plan.lane.trusted_m.value_or(0.0);
+    } else {
+        plan.state = started_ ? PlanState::lost : PlanState::searching;
+    }
+    course_.record(plan.lane);
+    counter_.observe(frame.pose, plan.lane, cones_);
+    plan.lap = std::min(counter_.laps(), laps_);
+    if (counter_.laps() >= laps_) finish(plan);
+    last_ = plan;
+    return plan;
+}
+
+std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, const Scene& scene,
+                                                   const DrivableLane& left) const {
+    DrivableLane lane = drivable(answer, scene, options_.drivable);
+    const double step_m = options_.drivable.step_m;
+    if (lane.closed) {
+        const auto trusted_m = lane.trusted_m;
+        lane = stretch(lane, 0.0, lane.length_m, step_m);
+        lane.trusted_m = trusted_m;
+    }
+    return begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
+}
+
+LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {
+    const auto rename = [&](Lane& lane) {
+        for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
+            for (ConeId& id : *side) id = cones_.given_id(id);
+        }
+    };
+    rename(answer.lane);
+    if (answer.uncut) rename(answer.uncut->lane);
+    if (answer.enumeration) {
+        for (LaneCandidate& candidate : answer.enumeration->candidates) rename(candidate.lane);
+    }
+    for (MergedCone& merged : answer.merged) {
+        merged.cone = cones_.given_id(merged.cone);
+        merged.into = cones_.given_id(merged.into);
+    }
+    return answer;
+}
+
+void LapPlanner::finish(Plan& plan) const {
+    plan.state = PlanState::finished;
+    plan.stop = true;
+    const double left_m = course_settings_.stop_m - counter_.since_line_m();
+    plan.lane = stretch(plan.lane, 0.0, left_m, options_.drivable.step_m);
+    plan.safe_m = std::min(plan.safe_m, plan.lane.length_m);
+}
+
+}  // namespace
 
 std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options) {
-    throw InvalidInput("mission", "'" + std::string(to_string(options.mission)) + "' is not built yet");
+    validate(options);
+    return std::make_unique<LapPlanner>(options);
 }
 
 }  // namespace conelane

@@ -8,21 +8,30 @@ namespace conelane {
 
 std::string_view to_string(Mission mission) {
     switch (mission) {
-        case Mission::trackdrive: return "trackdrive";
-        case Mission::autocross: return "autocross";
-        case Mission::acceleration: return "acceleration";
-        case Mission::skidpad: return "skidpad";
+        case Mission::trackdrive:
+            return "trackdrive";
+        case Mission::autocross:
+            return "autocross";
+        case Mission::acceleration:
+            return "acceleration";
+        case Mission::skidpad:
+            return "skidpad";
     }
     return "";
 }
 
 std::string_view to_string(PlanState state) {
     switch (state) {
-        case PlanState::searching: return "searching";
-        case PlanState::following: return "following";
-        case PlanState::bridging: return "bridging";
-        case PlanState::lost: return "lost";
-        case PlanState::finished: return "finished";
+        case PlanState::searching:
+            return "searching";
+        case PlanState::following:
+            return "following";
+        case PlanState::bridging:
+            return "bridging";
+        case PlanState::lost:
+            return "lost";
+        case PlanState::finished:
+            return "finished";
     }
     return "";
 }
@@ -32,9 +41,11 @@ Planner::~Planner() = default;
 std::unique_ptr<Planner> make_planner(const PlannerOptions& options) {
     switch (options.mission) {
         case Mission::trackdrive:
-        case Mission::autocross: return make_lap_planner(options);
+        case Mission::autocross:
+            return make_lap_planner(options);
         case Mission::acceleration:
-        case Mission::skidpad: return make_known_course_planner(options);
+        case Mission::skidpad:
+            return make_known_course_planner(options);
     }
     throw InvalidInput("mission", "is not a mission");
 }

@@ -1,0 +1,247 @@
+#include "detectors/planner/cone_memory.hpp"
+
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace conelane {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// A seen cone and a remembered one that may be the same.
+struct Match {
+    double distance_m;
+    std::size_t seen;
+    std::size_t remembered;
+};
+
+}  // namespace
+
+ConeMemory::ConeMemory(const ConeMemorySettings& settings, const ShiftSettings& shift_settings)
+    : settings_(settings), shift_settings_(shift_settings) {}
+
+void ConeMemory::clear() {
+    cones_.clear();
+    frame_ = 0;
+    next_id_ = kNoId + 1;
+    range_m_ = 0.0;
+}
+
+std::optional<RigidShift> ConeMemory::observe(const Frame& frame) {
+    ++frame_;
+    range_m_ = 0.0;
+    for (const Cone& cone : frame.cones) {
+        range_m_ = std::max(range_m_, (cone.position - frame.pose.position).norm());
+    }
+    const double near_m = std::max(range_m_, settings_.max_range_m) + settings_.same_id_gate_m;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < cones_.size(); ++i) {
+        if ((cones_[i].position - frame.pose.position).squaredNorm() <= near_m * near_m) near.push_back(i);
+    }
+    const std::optional<RigidShift> shift = shift_of(frame, near);
+    if (shift) {
+        for (RememberedCone& cone : cones_) cone.position = (*shift)(cone.position);
+    }
+    associate(frame, near);
+    miss_unseen(frame, near);
+    forget();
+    return shift;
+}
+
+std::optional<RigidShift> ConeMemory::shift_of(const Frame& frame,
+                                               const std::vector<std::size_t>& near) const {
+    std::vector<std::pair<ConeId, std::size_t>> by_id;
+    for (const std::size_t i : near) {
+        if (cones_[i].given != kNoId) by_id.emplace_back(cones_[i].given, i);
+    }
+    std::ranges::sort(by_id);
+    std::vector<PlacePair> pairs;
+    std::size_t unmoved = 0;
+    std::vector<Point> seen;
+    for (const Cone& cone : frame.cones) {
+        seen.push_back(cone.position);
+        const auto known = std::ranges::lower_bound(by_id, std::pair(cone.id, std::size_t{0}));
+        if (cone.id == kNoId || known == by_id.end() || known->first != cone.id) continue;
+        const Point& place = cones_[known->second].position;
+        const double distance_m = (place - cone.position).norm();
+        if (distance_m <= shift_settings_.reach_m) pairs.push_back({place, cone.position});
+        if (distance_m <= shift_settings_.min_shift_m) ++unmoved;
+    }
+    if (pairs.size() >= shift_settings_.min_cones && 2 * pairs.size() >= frame.cones.size()) {
+        if (2 * unmoved > pairs.size()) return std::nullopt;
+        return common_shift(pairs, shift_settings_);
+    }
+    std::vector<Point> remembered;
+    for (const std::size_t i : near) {
+        if (cones_[i].sightings > 1) remembered.push_back(cones_[i].position);
+    }
+    // Only where cones stand near a remembered one may they have moved away from it.
+    const auto nearest_m = [&](const Point& place) {
+        double nearest = shift_settings_.reach_m;
+        for (const Point& other : remembered) nearest = std::min(nearest, (other - place).norm());
+        return nearest;
+    };
+    std::vector<Point> compared;
+    for (const Point& place : seen) {
+        const double distance_m = nearest_m(place);
+        if (distance_m < shift_settings_.reach_m) compared.push_back(place);
+        if (distance_m <= shift_settings_.inlier_m) ++unmoved;
+    }
+    if (3 * unmoved > 2 * compared.size()) return std::nullopt;
+    return common_shift(remembered, compared, shift_settings_);
+}
+
+void ConeMemory::associate(const Frame& frame, const std::vector<std::size_t>& near) {
+    std::vector<std::size_t> remembered_of(frame.cones.size(), kNone);
+    std::vector<bool> taken(cones_.size(), false);
+    std::vector<std::pair<ConeId, std::size_t>> by_id;
+    for (const std::size_t i : near) {
+        if (cones_[i].given != kNoId) by_id.emplace_back(cones_[i].given, i);
+    }
+    std::ranges::sort(by_id);
+    std::vector<bool> known_id(frame.cones.size(), false);
+    for (std::size_t k = 0; k < frame.cones.size(); ++k) {
+        const Cone& cone = frame.cones[k];
+        if (cone.id == kNoId) continue;
+        const auto known = std::ranges::lower_bound(by_id, std::pair(cone.id, std::size_t{0}));
+        if (known == by_id.end() || known->first != cone.id) continue;
+        RememberedCone& remembered = cones_[known->second];
+        if ((remembered.position - cone.position).norm() > settings_.same_id_gate_m) {
+            remembered.given = kNoId;
+            continue;
+        }
+        remembered_of[k] = known->second;
+        taken[known->second] = true;
+    }
+    std::vector<Match> matches;
+    for (std::size_t k = 0; k < frame.cones.size(); ++k) {
+        if (remembered_of[k] != kNone) continue;
+        const double gate_m = frame.cones[k].id == kNoId ? settings_.place_gate_m : settings_.new_id_gate_m;
+        for (const std::size_t i : near) {
+            if (taken[i]) continue;
+            const double distance_m = (cones_[i].position - frame.cones[k].position).norm();
+            if (distance_m <= gate_m) matches.push_back({distance_m, k, i});
+        }
+    }
+    // The order of the cones in the frame decides nothing but between equal distances.
+    std::ranges::sort(matches, {}, [](const Match& match) {
+        return std::tuple(match.distance_m, match.remembered, match.seen);
+    });
+    for (const Match& match : matches) {
+        if (remembered_of[match.seen] != kNone || taken[match.remembered]) continue;
+        remembered_of[match.seen] = match.remembered;
+        taken[match.remembered] = true;
+    }
+    for (std::size_t k = 0; k < frame.cones.size(); ++k) {
+        const Cone& cone = frame.cones[k];
+        if (remembered_of[k] != kNone) {
+            see(cones_[remembered_of[k]], cone);
+            continue;
+        }
+        RememberedCone fresh;
+        fresh.id = next_id_++;
+        fresh.given = cone.id;
+        fresh.position = cone.position;
+        fresh.confidence = cone.confidence;
+        fresh.last_seen = frame_;
+        ++fresh.colors[static_cast<std::size_t>(cone.color)];
+        cones_.push_back(fresh);
+    }
+}
+
+void ConeMemory::see(RememberedCone& cone, const Cone& seen) const {
+    ++cone.sightings;
+    const double weight = 1.0 / std::min(cone.sightings, settings_.averaged_sightings);
+    cone.position += weight * (seen.position - cone.position);
+    cone.confidence += weight * (seen.confidence - cone.confidence);
+    cone.evidence = std::min(settings_.max_evidence, cone.evidence + 1.0);
+    cone.last_seen = frame_;
+    if (seen.id != kNoId) cone.given = seen.id;
+    ++cone.colors[static_cast<std::size_t>(seen.color)];
+}
+
+/// What range and bearings a sensor has is not known: it is taken to see about as far and as wide as it did
+/// in this frame.
+void ConeMemory::miss_unseen(const Frame& frame, const std::vector<std::size_t>& near) {
+    double widest_rad = 0.0;
+    const auto bearing_rad = [&](const Point& place) {
+        return std::abs(std::atan2(frame.pose.left_m(place), frame.pose.ahead_m(place)));
+    };
+    for (const Cone& cone : frame.cones) widest_rad = std::max(widest_rad, bearing_rad(cone.position));
+    for (const std::size_t i : near) {
+        RememberedCone& cone = cones_[i];
+        if (cone.last_seen == frame_) continue;
+        const double distance_m = (cone.position - frame.pose.position).norm();
+        if (distance_m > settings_.sure_view_share * range_m_ || distance_m < settings_.blind_m) continue;
+        if (bearing_rad(cone.position) > settings_.sure_view_share * widest_rad) continue;
+        cone.evidence -= settings_.missed_evidence;
+    }
+}
+
+void ConeMemory::forget() {
+    std::erase_if(cones_, [&](const RememberedCone& cone) {
+        if (cone.evidence <= 0.0) return true;
+        return cone.sightings == 1 && frame_ - cone.last_seen > settings_.fleeting_frames;
+    });
+    if (cones_.size() <= settings_.max_cones) return;
+    std::vector<std::pair<std::int64_t, ConeId>> oldest;
+    for (const RememberedCone& cone : cones_) oldest.emplace_back(cone.last_seen, cone.id);
+    const auto first_kept = oldest.begin() + static_cast<std::ptrdiff_t>(cones_.size() - settings_.max_cones);
+    std::ranges::nth_element(oldest, first_kept);
+    const auto limit = *first_kept;
+    std::erase_if(cones_,
+                  [&](const RememberedCone& cone) { return std::pair(cone.last_seen, cone.id) < limit; });
+}
+
+Scene ConeMemory::scene(const Pose& pose) const {
+    Scene scene{"frame", pose, {}};
+    const double range_m = std::min(range_m_, settings_.max_range_m);
+    std::vector<const RememberedCone*> chosen;
+    for (const RememberedCone& cone : cones_) {
+        const bool seen_now = cone.last_seen == frame_;
+        if (!seen_now && cone.sightings < 2) continue;
+        const double distance_m = (cone.position - pose.position).norm();
+        const double reach_m = pose.ahead_m(cone.position) >= 0.0 ? range_m : settings_.behind_m;
+        if (distance_m <= reach_m) chosen.push_back(&cone);
+    }
+    // Of cones at one place the one seen most often stands for all.
+    std::ranges::sort(chosen, {},
+                      [](const RememberedCone* cone) { return std::tuple(-cone->sightings, cone->id); });
+    std::vector<const RememberedCone*> kept;
+    for (const RememberedCone* cone : chosen) {
+        const bool doubled = std::ranges::any_of(kept, [&](const RememberedCone* other) {
+            return (other->position - cone->position).squaredNorm() <=
+                   settings_.doubled_m * settings_.doubled_m;
+        });
+        if (!doubled) kept.push_back(cone);
+    }
+    std::ranges::sort(kept, {}, &RememberedCone::id);
+    for (const RememberedCone* cone : kept) {
+        scene.cones.push_back({cone->id, cone->position, color_of(*cone), cone->confidence});
+    }
+    return scene;
+}
+
+ConeId ConeMemory::given_id(ConeId own) const {
+    const auto cone = std::ranges::lower_bound(cones_, own, {}, &RememberedCone::id);
+    if (cone == cones_.end() || cone->id != own || cone->given == kNoId) return own;
+    return cone->given;
+}
+
+ConeColor color_of(const ConeMemory::RememberedCone& cone) {
+    ConeColor best = ConeColor::unknown;
+    int most = 0;
+    for (const ConeColor color : {ConeColor::orange, ConeColor::blue, ConeColor::yellow}) {
+        const int count = cone.colors[static_cast<std::size_t>(color)];
+        if (count > most) {
+            most = count;
+            best = color;
+        }
+    }
+    return best;
+}
+
+}  // namespace conelane

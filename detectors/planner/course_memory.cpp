@@ -1,0 +1,206 @@
+#include "detectors/planner/course_memory.hpp"
+
+#include "detectors/drivable/smoothing_spline.hpp"
+#include "detectors/planner/lane_stretch.hpp"
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace conelane {
+namespace {
+
+/// A longer way between two frames is not known well enough to be recorded.
+constexpr double kMaxGap_m = 6.0;
+constexpr double kSmoothing_m = 1.0;  ///< of the closed course, see DrivableOptions::smoothing_m
+/// What was recorded a lap ago is passed where the car is past it and no farther away than this.
+constexpr double kPassed_m = 8.0;
+constexpr double kSeamFade_m = 15.0;  ///< over which the seam between first and last lap is spread
+
+double turn_rad(double from_rad, double to_rad) {
+    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
+
+Pose pose_of(const DrivablePoint& point) {
+    return {point.position, point.heading_rad};
+}
+
+}  // namespace
+
+void CourseMemory::clear() {
+    points_.clear();
+    closed_ = false;
+}
+
+void CourseMemory::move_along(const RigidShift& shift) {
+    for (DrivablePoint& point : points_) {
+        point.position = shift(point.position);
+        point.heading_rad = std::remainder(point.heading_rad + shift.turn_rad, 2.0 * std::numbers::pi);
+    }
+}
+
+void CourseMemory::record(const DrivableLane& lane) {
+    if (lane.points.empty()) return;
+    const DrivablePoint& here = lane.points.front();
+    if (!points_.empty()) {
+        const DrivablePoint& last = points_.back();
+        const double on_m = pose_of(last).ahead_m(here.position);
+        const double gap_m = (here.position - last.position).norm();
+        if (gap_m > kMaxGap_m) {
+            clear();
+        } else if (on_m < settings_.step_m) {
+            return;
+        } else {
+            const auto parts = static_cast<int>(std::ceil(gap_m / settings_.step_m - 0.5));
+            const DrivablePoint from = last;
+            for (int i = 1; i < parts; ++i) {
+                const double share = static_cast<double>(i) / parts;
+                DrivablePoint point = here;
+                point.position = from.position + share * (here.position - from.position);
+                point.heading_rad = from.heading_rad + share * turn_rad(from.heading_rad, here.heading_rad);
+                point.width_left_m = std::lerp(from.width_left_m, here.width_left_m, share);
+                point.width_right_m = std::lerp(from.width_right_m, here.width_right_m, share);
+                append(point);
+            }
+        }
+    }
+    append(here);
+    if (closed_) {
+        drop_passed(here);
+    } else {
+        close(lane);
+    }
+}
+
+void CourseMemory::append(const DrivablePoint& point) {
+    const double s_m =
+        points_.empty() ? 0.0 : points_.back().s_m + (point.position - points_.back().position).norm();
+    points_.push_back(point);
+    points_.back().s_m = s_m;
+    const double first_kept_m = s_m - settings_.max_length_m;
+    if (points_.front().s_m >= first_kept_m) return;
+    std::erase_if(points_, [&](const DrivablePoint& old) { return old.s_m < first_kept_m; });
+    closed_ = false;
+}
+
+/// The lane ahead of the car runs where the car has been, in the same direction.
+void CourseMemory::close(const DrivableLane& lane) {
+    const DrivablePoint& here = points_.back();
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (here.s_m - points_[i].s_m < settings_.min_length_m) return;
+        const auto near = [&](const DrivablePoint& old, const DrivablePoint& now) {
+            return (old.position - now.position).norm() <= settings_.closing_m &&
+                   std::abs(turn_rad(old.heading_rad, now.heading_rad)) <= settings_.closing_rad;
+        };
+        if (!near(points_[i], here)) continue;
+        bool same = lane.length_m >= settings_.closing_length_m;
+        for (const DrivablePoint& ahead : lane.points) {
+            if (!same || ahead.s_m > settings_.closing_length_m) break;
+            same = std::any_of(points_.begin() + static_cast<std::ptrdiff_t>(i), points_.end(),
+                               [&](const DrivablePoint& old) {
+                                   return old.s_m < points_[i].s_m + 2.0 * settings_.closing_length_m &&
+                                          near(old, ahead);
+                               });
+        }
+        if (!same) continue;
+        points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(i));
+        closed_ = true;
+        drop_passed(here);
+        return;
+    }
+}
+
+void CourseMemory::drop_passed(const DrivablePoint& at) {
+    const Pose pose = pose_of(at);
+    std::size_t passed = 0;
+    // Up to the last point of the stretch beside the car that lies behind it.
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+        if (points_[i].s_m - points_.front().s_m > 2.0 * kPassed_m) break;
+        const Point offset = points_[i].position - at.position;
+        if (offset.norm() <= kPassed_m && pose.ahead_m(points_[i].position) < settings_.step_m / 2.0)
+            passed = i + 1;
+    }
+    points_.erase(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(passed));
+}
+
+std::optional<DrivableLane> CourseMemory::course() const {
+    if (!closed_ || points_.size() < 8) return std::nullopt;
+    // Where the newest points do not meet the oldest ones, these are moved, less and less with the distance.
+    std::vector<DrivablePoint> ring = points_;
+    const DrivablePoint& newest = points_.back();
+    const Pose from = pose_of(newest);
+    const Point seam = from.left_m(ring.front().position) * Point(-from.heading().y(), from.heading().x());
+    const double begin_m = ring.front().s_m;
+    for (DrivablePoint& point : ring) {
+        point.position -= std::max(0.0, 1.0 - (point.s_m - begin_m) / kSeamFade_m) * seam;
+    }
+    double around_m = 0.0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        ring[i].s_m = around_m;
+        around_m += (ring[(i + 1) % ring.size()].position - ring[i].position).norm();
+    }
+    DrivableLane open;
+    open.points = std::move(ring);
+    open.closed = true;
+    open.length_m = around_m;
+    const auto half = static_cast<std::size_t>(std::max(2.0, std::round(around_m / settings_.step_m / 2.0)));
+    const std::size_t count = 2 * half;  // an even number, as the spline asks
+    const double spacing_m = around_m / static_cast<double>(count);
+    std::vector<Point> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        places.push_back(point_at(open, static_cast<double>(i) * spacing_m).position);
+    }
+    const std::vector<double> weights(count, 1.0);
+    SmoothingSpline spline(places, weights, spacing_m, kSmoothing_m, true);
+    for (int round = 0; round < 2; ++round) {
+        spline = SmoothingSpline(places, weights, spacing_m, kSmoothing_m, true, spline.turning_1pm(0.5));
+    }
+    // Sampled finely, then at equal steps that divide the circuit.
+    constexpr int kFiner = 4;
+    DrivableLane fine;
+    fine.closed = true;
+    for (std::size_t i = 0; i < kFiner * count; ++i) {
+        const double at_m = static_cast<double>(i) * spacing_m / kFiner;
+        const SmoothingSpline::Jet jet = spline.at(at_m);
+        const double speed = jet.first.norm();
+        DrivablePoint point = point_at(open, at_m);
+        point.position = jet.position;
+        point.heading_rad = turning_angle({1.0, 0.0}, jet.first);
+        point.curvature_1pm = speed > 0.0 ? cross(jet.first, jet.second) / (speed * speed * speed) : 0.0;
+        fine.points.push_back(point);
+    }
+    for (std::size_t i = 0; i < fine.points.size(); ++i) {
+        fine.points[i].s_m = fine.length_m;
+        fine.length_m +=
+            (fine.points[(i + 1) % fine.points.size()].position - fine.points[i].position).norm();
+    }
+    DrivableLane course;
+    course.closed = true;
+    course.length_m = fine.length_m;
+    const auto steps = static_cast<std::size_t>(std::max(3.0, std::round(fine.length_m / step_m_)));
+    const double even_m = fine.length_m / static_cast<double>(steps);
+    for (std::size_t i = 0; i < steps; ++i) {
+        course.points.push_back(point_at(fine, static_cast<double>(i) * even_m));
+        course.points.back().s_m = static_cast<double>(i) * even_m;
+    }
+    return course;
+}
+
+DrivableLane CourseMemory::ahead(const Pose& pose, double length_m) const {
+    if (!closed_ || points_.size() < 8) return {};
+    DrivableLane lane;
+    const double begin_m = points_.front().s_m;
+    for (const DrivablePoint& point : points_) {
+        if (point.s_m - begin_m > length_m) break;
+        lane.points.push_back(point);
+        lane.points.back().s_m -= begin_m;
+    }
+    lane.length_m = lane.points.back().s_m;
+    const auto foot = foot_on(lane, pose, 0.0, 2.0 * kPassed_m);
+    if (!foot || foot->offset_m > settings_.line_half_width_m) return {};
+    return stretch(lane, foot->s_m, lane.length_m, step_m_);
+}
+
+}  // namespace conelane

@@ -1,0 +1,251 @@
+#include "detectors/planner/lane_stretch.hpp"
+
+#include "model/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace conelane {
+namespace {
+
+constexpr double kRight_rad = std::numbers::pi / 2.0;
+/// A lane that begins so far ahead of the car, or less, begins at it.
+constexpr double kAtCar_m = 0.5;
+constexpr double kBesideCar_m = 2.5;  ///< and no farther aside
+constexpr double kFarthestJoin_m = 12.0;
+constexpr double kJoinOffset_m = 1.2;  ///< of the lane's beginning from the lane that leads to it
+constexpr double kJoinTurn_rad = 0.8;
+constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns from one lane to the other
+constexpr double kExtendOffset_m = 0.5;
+constexpr double kExtendTurn_rad = 0.35;
+constexpr double kFine_m = 0.1;
+
+Point direction(double heading_rad) {
+    return {std::cos(heading_rad), std::sin(heading_rad)};
+}
+
+double turn_rad(double from_rad, double to_rad) {
+    return std::remainder(to_rad - from_rad, 2.0 * std::numbers::pi);
+}
+
+DrivablePoint between(const DrivablePoint& a, const DrivablePoint& b, double share) {
+    DrivablePoint point;
+    point.s_m = std::lerp(a.s_m, b.s_m, share);
+    point.position = a.position + share * (b.position - a.position);
+    point.heading_rad = std::remainder(a.heading_rad + share * turn_rad(a.heading_rad, b.heading_rad),
+                                       2.0 * std::numbers::pi);
+    point.curvature_1pm = std::lerp(a.curvature_1pm, b.curvature_1pm, share);
+    point.width_left_m = std::lerp(a.width_left_m, b.width_left_m, share);
+    point.width_right_m = std::lerp(a.width_right_m, b.width_right_m, share);
+    return point;
+}
+
+/// Points of any spacing as a lane: arc lengths from chords, then equal steps.
+DrivableLane measured(std::vector<DrivablePoint> points, double step_m) {
+    DrivableLane lane;
+    double s_m = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i > 0) s_m += (points[i].position - points[i - 1].position).norm();
+        points[i].s_m = s_m;
+    }
+    if (!(s_m > 0.0)) return lane;
+    lane.points = std::move(points);
+    lane.length_m = s_m;
+    return stretch(lane, 0.0, s_m, step_m);
+}
+
+/// Headings and curvatures of a line whose positions alone are known.
+void derive(std::vector<DrivablePoint>& points, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+        const Point& a = points[i > 0 ? i - 1 : i].position;
+        const Point& b = points[i].position;
+        const Point& c = points[i + 1 < points.size() ? i + 1 : i].position;
+        points[i].heading_rad = turning_angle({1.0, 0.0}, c - a);
+        const double product_m3 = (b - a).norm() * (c - b).norm() * (c - a).norm();
+        points[i].curvature_1pm = product_m3 > 1e-9 ? 2.0 * cross(b - a, c - b) / product_m3 : 0.0;
+    }
+}
+
+/// Cubic from one point and direction to another; both ends are left out.
+void add_bend(std::vector<DrivablePoint>& points, const DrivablePoint& from, const DrivablePoint& to) {
+    const double chord_m = (to.position - from.position).norm();
+    const Point out = chord_m * direction(from.heading_rad);
+    const Point in = chord_m * direction(to.heading_rad);
+    const auto steps = static_cast<std::size_t>(std::ceil(chord_m / kFine_m));
+    for (std::size_t i = 1; i < steps; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(steps);
+        const double u = 1.0 - t;
+        DrivablePoint point = between(from, to, t);
+        point.position = u * u * (1.0 + 2.0 * t) * from.position + t * u * u * out +
+                         t * t * (3.0 - 2.0 * t) * to.position - t * t * u * in;
+        points.push_back(point);
+    }
+}
+
+}  // namespace
+
+std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
+    std::optional<LaneFoot> best;
+    const std::size_t count = lane.points.size();
+    for (std::size_t i = 0; i + (lane.closed ? 0 : 1) < count; ++i) {
+        const DrivablePoint& a = lane.points[i];
+        const DrivablePoint& b = lane.points[(i + 1) % count];
+        const double end_m = i + 1 < count ? b.s_m : lane.length_m;
+        if (end_m < from_s_m || a.s_m > to_s_m) continue;
+        if (std::abs(turn_rad(a.heading_rad, pose.yaw_rad)) > kRight_rad) continue;
+        const FootPoint foot = foot_point(pose.position, {a.position, b.position});
+        if (best && best->offset_m <= foot.distance_m) continue;
+        best = LaneFoot{a.s_m + foot.parameter * (end_m - a.s_m), foot.distance_m};
+    }
+    return best;
+}
+
+DrivablePoint point_at(const DrivableLane& lane, double s_m) {
+    if (lane.closed) s_m -= lane.length_m * std::floor(s_m / lane.length_m);
+    const auto after = std::ranges::upper_bound(lane.points, s_m, {}, &DrivablePoint::s_m);
+    if (after == lane.points.begin()) return lane.points.front();
+    const DrivablePoint& a = *(after - 1);
+    if (after == lane.points.end() && !lane.closed) return a;
+    DrivablePoint b = after == lane.points.end() ? lane.points.front() : *after;
+    if (after == lane.points.end()) b.s_m = lane.length_m;
+    const double gap_m = b.s_m - a.s_m;
+    return gap_m > 0.0 ? between(a, b, std::clamp((s_m - a.s_m) / gap_m, 0.0, 1.0)) : a;
+}
+
+DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, double step_m) {
+    DrivableLane part;
+    if (lane.points.empty()) return part;
+    const double end_m = lane.closed ? from_s_m + lane.length_m : lane.points.back().s_m;
+    const double length_m = std::min(to_s_m, end_m) - from_s_m;
+    if (!(length_m >= step_m)) return part;
+    constexpr double kRounding = 1e-9;
+    const auto steps = static_cast<std::size_t>(std::floor(length_m / step_m + kRounding));
+    part.points.reserve(steps + 1);
+    for (std::size_t i = 0; i <= steps; ++i) {
+        const double s_m = static_cast<double>(i) * step_m;
+        part.points.push_back(point_at(lane, from_s_m + s_m));
+        part.points.back().s_m = s_m;
+    }
+    part.length_m = std::max(length_m, part.points.back().s_m);
+    part.left_inferred = lane.left_inferred;
+    part.right_inferred = lane.right_inferred;
+    if (lane.trusted_m) part.trusted_m = std::clamp(*lane.trusted_m - from_s_m, 0.0, part.length_m);
+    for (BridgedGap gap : lane.bridged) {
+        gap.from_s_m = std::max(0.0, gap.from_s_m - from_s_m);
+        gap.to_s_m = std::min(part.length_m, gap.to_s_m - from_s_m);
+        if (gap.to_s_m > gap.from_s_m) part.bridged.push_back(gap);
+    }
+    return part;
+}
+
+double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m) {
+    double most_m = 0.0;
+    if (other.points.size() < 2) return most_m;
+    std::size_t at = 0;  // both are followed from the car on: another leg may be nearer
+    for (const DrivablePoint& point : lane.points) {
+        if (point.s_m > within_m) break;
+        double nearest_m = std::numeric_limits<double>::infinity();
+        std::size_t nearest = at;
+        double parameter = 0.0;
+        for (std::size_t i = at; i + 1 < other.points.size() && other.points[i].s_m <= point.s_m + within_m;
+             ++i) {
+            const FootPoint foot =
+                foot_point(point.position, {other.points[i].position, other.points[i + 1].position});
+            if (foot.distance_m < nearest_m) {
+                nearest_m = foot.distance_m;
+                nearest = i;
+                parameter = foot.parameter;
+            }
+        }
+        at = nearest;
+        const bool before_start = nearest == 0 && parameter <= 0.0;
+        const bool past_end = nearest + 2 == other.points.size() && parameter >= 1.0;
+        if (past_end && point.s_m >= other.points.back().s_m - 1.0) break;
+        if (before_start && nearest_m < within_m) continue;
+        most_m = std::max(most_m, nearest_m);
+    }
+    return most_m;
+}
+
+std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
+                                         const DrivableLane* before, double step_m) {
+    if (lane.points.size() < 2) return std::nullopt;
+    const DrivablePoint& first = lane.points.front();
+    const Point offset = first.position - pose.position;
+    const double ahead_m = offset.dot(direction(first.heading_rad));
+    if (ahead_m <= kAtCar_m && offset.norm() <= kBesideCar_m) return lane;
+    if (offset.norm() > kFarthestJoin_m || pose.ahead_m(first.position) < -kBesideCar_m) return std::nullopt;
+    std::vector<DrivablePoint> points;
+    if (before != nullptr && before->points.size() > 1) {
+        const Pose beginning{first.position, first.heading_rad};
+        const auto foot = foot_on(*before, beginning, 0.0, kFarthestJoin_m + kBesideCar_m);
+        if (foot && foot->offset_m <= kJoinOffset_m && foot->s_m < before->points.back().s_m + kAtCar_m &&
+            std::abs(turn_rad(point_at(*before, foot->s_m).heading_rad, first.heading_rad)) <=
+                kJoinTurn_rad) {
+            for (const DrivablePoint& point : before->points) {
+                if (point.s_m > foot->s_m - kJoinBend_m) break;
+                points.push_back(point);
+            }
+            if (points.empty()) points.push_back(before->points.front());
+        }
+    }
+    if (points.empty()) {
+        DrivablePoint start = first;
+        start.position = pose.position;
+        start.heading_rad = pose.yaw_rad;
+        start.curvature_1pm = 0.0;
+        points.push_back(start);
+    }
+    const std::size_t joined = points.size();
+    add_bend(points, DrivablePoint(points.back()), first);
+    const std::size_t until = points.size();
+    double joined_m = 0.0;
+    for (std::size_t i = 1; i < until; ++i) joined_m += (points[i].position - points[i - 1].position).norm();
+    joined_m += (first.position - points.back().position).norm();
+    points.insert(points.end(), lane.points.begin(), lane.points.end());
+    derive(points, joined, until);
+    DrivableLane result = measured(std::move(points), step_m);
+    if (result.points.size() < 2) return std::nullopt;
+    result.left_inferred = lane.left_inferred;
+    result.right_inferred = lane.right_inferred;
+    if (lane.trusted_m) result.trusted_m = std::min(result.length_m, *lane.trusted_m + joined_m);
+    for (BridgedGap gap : lane.bridged) {
+        gap.from_s_m += joined_m;
+        gap.to_s_m = std::min(result.length_m, gap.to_s_m + joined_m);
+        if (gap.to_s_m > gap.from_s_m) result.bridged.push_back(gap);
+    }
+    return result;
+}
+
+DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, double step_m) {
+    if (lane.points.size() < 2 || before.points.size() < 2) return lane;
+    const DrivablePoint& last = lane.points.back();
+    const auto foot = foot_on(before, {last.position, last.heading_rad}, 0.0, before.points.back().s_m);
+    if (!foot || foot->offset_m > kExtendOffset_m) return lane;
+    if (std::abs(turn_rad(point_at(before, foot->s_m).heading_rad, last.heading_rad)) > kExtendTurn_rad)
+        return lane;
+    // The offset where one ends fades over some metres of the other.
+    const Point offset = last.position - point_at(before, foot->s_m).position;
+    constexpr double kFade_m = 5.0;
+    std::vector<DrivablePoint> points = lane.points;
+    for (const DrivablePoint& point : before.points) {
+        const double past_m = point.s_m - foot->s_m;
+        if (past_m < step_m / 2.0) continue;
+        points.push_back(point);
+        points.back().position += std::max(0.0, 1.0 - past_m / kFade_m) * offset;
+    }
+    if (points.size() == lane.points.size()) return lane;
+    DrivableLane result = measured(std::move(points), step_m);
+    result.left_inferred = lane.left_inferred;
+    result.right_inferred = lane.right_inferred;
+    result.trusted_m = lane.trusted_m;
+    result.bridged = lane.bridged;
+    return result;
+}
+
+}  // namespace conelane

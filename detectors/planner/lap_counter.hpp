@@ -1,0 +1,44 @@
+#pragma once
+
+#include "conelane/drivable_lane.hpp"
+#include "conelane/scene.hpp"
+#include "detectors/planner/cone_memory.hpp"
+#include "detectors/planner/lap_planner_settings.hpp"
+#include "detectors/planner/rigid_shift.hpp"
+
+#include <optional>
+
+namespace conelane {
+
+/// Counts the start lines that the car crosses.
+///
+/// The line is the gate of orange cones that the first lane passes, else the place of the first pose, across
+/// its heading. It counts when the car passes it in its direction, and again after the car was away.
+class LapCounter {
+  public:
+    explicit LapCounter(const CourseSettings& settings) : settings_(settings) {}
+
+    /// Takes in where the car is now. `lane`: the lane ahead; without points it is not known.
+    void observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory);
+    void move_along(const RigidShift& shift);
+    void clear();
+
+    [[nodiscard]] int laps() const { return laps_; }
+    /// Driven since the last line that counted [m].
+    [[nodiscard]] double since_line_m() const { return since_line_m_; }
+
+  private:
+    void look_for_gate(const DrivableLane& lane, const ConeMemory& memory);
+
+    CourseSettings settings_;
+    std::optional<Pose> first_;
+    Pose line_;
+    bool gate_ = false;
+    std::optional<Pose> last_;
+    bool away_ = false;  ///< far enough from the line since it counted
+    int laps_ = 0;
+    double driven_m_ = 0.0;
+    double since_line_m_ = 0.0;
+};
+
+}  // namespace conelane

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "conelane/drivable_lane.hpp"
+#include "conelane/point.hpp"
+#include "detectors/planner/lap_planner_settings.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// A movement of the map: a turn about a place, then a translation.
+struct RigidShift {
+    Point about{0.0, 0.0};
+    double turn_rad = 0.0;
+    Point by{0.0, 0.0};
+
+    [[nodiscard]] Point operator()(const Point& point) const;
+};
+
+/// The same lane in the moved map.
+void move(DrivableLane& lane, const RigidShift& shift);
+
+/// A place as remembered and as seen now.
+struct PlacePair {
+    Point remembered;
+    Point seen;
+};
+
+/// The shift that most of the pairs share, where it is above what noise explains; absent where the cones
+/// stand where they stood, are too few, or moved apart.
+[[nodiscard]] std::optional<RigidShift> common_shift(std::span<const PlacePair> pairs,
+                                                     const ShiftSettings& settings);
+
+/// The same where nothing says which cone is which: the translation that brings most of the seen cones onto
+/// remembered ones.
+[[nodiscard]] std::optional<RigidShift> common_shift(std::span<const Point> remembered,
+                                                     std::span<const Point> seen,
+                                                     const ShiftSettings& settings);
+
+}  // namespace conelane
