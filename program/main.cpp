@@ -87,6 +87,7 @@ int run(int argument_count, char** arguments) {
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);
     experiments::add_cross_validate_command(program);
+    experiments::add_race_command(program);
     experiments::add_report_command(program);
     experiments::add_plot_command(program);
     experiments::add_sweep_command(program);

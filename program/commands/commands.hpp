@@ -22,6 +22,7 @@ void add_study_command(CLI::App& program);
 void add_score_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_cross_validate_command(CLI::App& program);
+void add_race_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_plot_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);

@@ -1,0 +1,160 @@
+#include "experiments/race/entrants.hpp"
+
+#include "conelane/detectors.hpp"
+#include "conelane/invalid_input.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/point_snapping.hpp"
+#include "experiments/comparison/methods.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace conelane::experiments {
+namespace {
+
+/// A path is due in 100 ms; the limit is so wide that no wall clock decides what is answered.
+constexpr double kNoLimit_ms = 10'000.0;
+
+std::vector<Point> points_of(const DrivableLane& lane) {
+    std::vector<Point> path;
+    for (const DrivablePoint& point : lane.points) path.push_back(point.position);
+    return path;
+}
+
+/// A detector needs distinct ids.
+Scene scene_of(const Frame& frame) {
+    Scene scene{"race", frame.pose, frame.cones};
+    if (std::ranges::any_of(scene.cones, [](const Cone& cone) { return cone.id == kNoId; })) {
+        for (std::size_t i = 0; i < scene.cones.size(); ++i) scene.cones[i].id = static_cast<ConeId>(i);
+    }
+    return scene;
+}
+
+/// The path of one answer.
+Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
+    Drive drive;
+    if (answer.status != LaneStatus::found) return drive;
+    const DrivableLane lane = drivable(answer, scene);
+    drive.path = points_of(lane);
+    if (lane.trusted_m) drive.safe_m = *lane.trusted_m;
+    return drive;
+}
+
+Entrant detector_entrant(const std::string& name) {
+    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_method(name)))](const Frame& frame) {
+        const Scene scene = scene_of(frame);
+        return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
+    };
+}
+
+/// Boundaries that are positions become cones of a scene of their own.
+Drive drive_by_points(const BoundaryPoints& points, bool closed, const Frame& frame) {
+    Scene scene{"race", frame.pose, {}};
+    LaneAnswer answer;
+    answer.status = LaneStatus::found;
+    answer.lane.closed = closed;
+    const auto add = [&](const std::vector<Point>& from, std::vector<ConeId>& ids) {
+        for (const Point& point : from) {
+            ids.push_back(static_cast<ConeId>(scene.cones.size()));
+            scene.cones.push_back({ids.back(), point});
+        }
+    };
+    add(points.left, answer.lane.left);
+    add(points.right, answer.lane.right);
+    return drive_by(answer, scene);
+}
+
+Entrant outside_entrant(const std::shared_ptr<OutsideProgramPool>& programs) {
+    std::shared_ptr<OutsideProgram> program(programs->take().release(), [programs](OutsideProgram* used) {
+        programs->give_back(std::unique_ptr<OutsideProgram>(used));
+    });
+    return [program](const Frame& frame) {
+        const Scene scene = scene_of(frame);
+        LaneRecord record = program->answer(scene);
+        if (record.answer.status != LaneStatus::found) return Drive{};
+        snap_to_cones(record, scene);
+        try {
+            if (record.points) return drive_by_points(*record.points, record.answer.lane.closed, frame);
+            return drive_by(record.answer, scene);
+        } catch (const InvalidInput&) {
+            return Drive{};  // what it says bounds no lane
+        }
+    };
+}
+
+Entrant planner_entrant(const std::string& detector, const RaceCourse& course, const RaceOptions& options) {
+    PlannerOptions wanted{.mission = course.mission, .detector = detector};
+    if (course.mission == Mission::trackdrive) wanted.laps = options.laps;
+    return [planner = std::shared_ptr<Planner>(make_planner(wanted))](const Frame& frame) {
+        Drive drive;
+        try {
+            const Plan plan = planner->update(frame, {.time_limit_ms = kNoLimit_ms});
+            drive.path = points_of(plan.lane);
+            drive.stop = plan.stop;
+            drive.is_flagged = plan.state != PlanState::following;
+            drive.safe_m = plan.safe_m;
+            drive.state = to_string(plan.state);
+            drive.phase = plan.phase;
+            drive.lap = plan.lap;
+            drive.brake = plan.state == PlanState::lost;
+        } catch (const InvalidInput&) {
+            drive.is_refused = true;  // a frame that is older than the last one, say
+        }
+        return drive;
+    };
+}
+
+bool is_of_library(const std::string& name) {
+    return std::ranges::any_of(detectors(),
+                               [&](const DetectorInfo& detector) { return detector.name == name; });
+}
+
+}  // namespace
+
+std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, WithPlanner with_planner) {
+    std::vector<RaceMethod> all;
+    for (const std::string& text : split_methods(texts)) {
+        if (text == "truth" || text == "none") {
+            all.push_back({text, text});
+            continue;
+        }
+        if (const std::optional<OutsideMethod> outside = find_outside_method(text)) {
+            if (!outside->is_program()) {
+                throw InvalidInput("--methods", "'" + text + "' answers no frames of a race");
+            }
+            if (with_planner == WithPlanner::only) {
+                throw InvalidInput("--planner", "a program from outside has none: '" + outside->name + "'");
+            }
+            all.push_back({outside->name, outside->source, false,
+                           std::make_shared<OutsideProgramPool>(outside->name, outside->source)});
+            continue;
+        }
+        static_cast<void>(find_method(text));
+        if (with_planner != WithPlanner::only) all.push_back({text, text});
+        if (with_planner != WithPlanner::no) {
+            if (!is_of_library(text)) {
+                throw InvalidInput("--planner", "'" + text + "' is no detector of the library");
+            }
+            all.push_back({text + "+planner", text, true});
+        }
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (all[i].name == all[j].name) {
+                throw InvalidInput("--methods", "'" + all[i].name + "' is there twice");
+            }
+        }
+    }
+    return all;
+}
+
+Entrant make_entrant(const RaceMethod& method, const RaceCourse& course, const RaceOptions& options) {
+    if (method.programs) return outside_entrant(method.programs);
+    if (method.method == "truth") return truth_entrant(course, options.laps);
+    if (method.method == "none") return [](const Frame& /*frame*/) { return Drive{}; };
+    if (method.has_planner) return planner_entrant(method.method, course, options);
+    return detector_entrant(method.method);
+}
+
+}  // namespace conelane::experiments

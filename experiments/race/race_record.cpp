@@ -1,0 +1,222 @@
+#include "experiments/race/race_record.hpp"
+
+#include "experiments/studies/text_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<double> quantile(std::vector<double> values, double share) {
+    if (values.empty()) return std::nullopt;
+    std::ranges::sort(values);
+    const double rank = share * static_cast<double>(values.size() - 1);
+    const auto low = static_cast<std::size_t>(rank);
+    const std::size_t high = std::min(low + 1, values.size() - 1);
+    return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+/// Keys in the order in which they come first.
+template <typename Key, typename Of>
+std::vector<Key> distinct(std::span<const Heat> heats, const Of& of) {
+    std::vector<Key> keys;
+    for (const Heat& heat : heats) {
+        const Key key = of(heat);
+        if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
+    return keys;
+}
+
+struct Sums {
+    std::size_t races = 0;
+    std::size_t finished = 0;
+    std::size_t laps = 0;
+    std::size_t frames = 0;
+    std::size_t without = 0;
+    std::size_t wrong = 0;
+    double hit = 0.0;
+    double time_s = 0.0;
+    double old_s = 0.0;
+    std::vector<double> departures_m;
+    std::vector<double> errors_m;
+    double unsteady = 0.0;
+    std::size_t with_pairs = 0;
+
+    void add(const RaceResult& result) {
+        ++races;
+        finished += result.finished() ? 1 : 0;
+        laps += static_cast<std::size_t>(result.finished_laps);
+        frames += static_cast<std::size_t>(result.frames);
+        without += static_cast<std::size_t>(result.frames_without_path);
+        wrong += static_cast<std::size_t>(result.wrong_unflagged);
+        // The lap in which a race ended counts as one.
+        hit += result.cones_hit / static_cast<double>(std::max(1, result.finished_laps + !result.finished()));
+        time_s += result.time_s;
+        old_s += result.old_path_s;
+        if (result.departure_m) departures_m.push_back(*result.departure_m);
+        if (result.lateral_error_p95_m) errors_m.push_back(*result.lateral_error_p95_m);
+        if (result.unsteady_share) {
+            unsteady += *result.unsteady_share;
+            ++with_pairs;
+        }
+    }
+};
+
+Json maybe(const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+}
+
+Json flat(const std::vector<Point>& points) {
+    Json list = Json::array();
+    for (const Point& point : points) {
+        list.push_back(std::round(point.x() * 100.0) / 100.0);
+        list.push_back(std::round(point.y() * 100.0) / 100.0);
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string race_table(std::span<const Heat> heats, int laps) {
+    TextTable table({{"method", true},
+                     {"fp"},
+                     {"races"},
+                     {"finished %"},
+                     {"laps %"},
+                     {"m to departure"},
+                     {"hit a lap"},
+                     {"error p95 m"},
+                     {"no path %"},
+                     {"old path %"},
+                     {"unsteady %"},
+                     {"wrong path %"}});
+    using Row = std::pair<std::string, double>;
+    for (const Row& row :
+         distinct<Row>(heats, [](const Heat& heat) { return Row(heat.method, heat.false_positive_rate); })) {
+        Sums sums;
+        for (const Heat& heat : heats) {
+            if (Row(heat.method, heat.false_positive_rate) == row) sums.add(heat.result);
+        }
+        const auto count = static_cast<double>(sums.races);
+        table.add(
+            {row.first, fmt::format("{}", row.second), std::to_string(sums.races),
+             percent(share(sums.finished, sums.races), 1),
+             percent(share(sums.laps, sums.races * static_cast<std::size_t>(laps)), 1),
+             fixed(quantile(sums.departures_m, 0.5), 0), fixed(sums.hit / count, 2),
+             fixed(quantile(sums.errors_m, 0.5), 2), percent(share(sums.without, sums.frames), 2),
+             sums.time_s > 0.0 ? percent(sums.old_s / sums.time_s, 2) : "-",
+             sums.with_pairs == 0 ? "-" : percent(sums.unsteady / static_cast<double>(sums.with_pairs), 1),
+             percent(share(sums.wrong, sums.frames), 2)});
+    }
+    std::string text = table.text();
+    TextTable lost(
+        {{"course", true}, {"method", true}, {"fp"}, {"not finished"}, {"m driven, median"}, {"how", true}});
+    bool any = false;
+    using Place = std::pair<std::string, Row>;
+    for (const Place& place : distinct<Place>(heats, [](const Heat& heat) {
+             return Place(heat.course, Row(heat.method, heat.false_positive_rate));
+         })) {
+        std::size_t races = 0;
+        std::vector<double> driven_m;
+        std::vector<std::string> how;
+        for (const Heat& heat : heats) {
+            if (Place(heat.course, Row(heat.method, heat.false_positive_rate)) != place) continue;
+            ++races;
+            if (heat.result.finished()) continue;
+            driven_m.push_back(heat.result.driven_m);
+            const std::string word(to_string(heat.result.end));
+            if (std::ranges::find(how, word) == how.end()) how.push_back(word);
+        }
+        if (driven_m.empty()) continue;
+        any = true;
+        std::string words;
+        for (const std::string& word : how) words += (words.empty() ? "" : ", ") + word;
+        lost.add({place.first, place.second.first, fmt::format("{}", place.second.second),
+                  fmt::format("{} of {}", driven_m.size(), races), fixed(quantile(driven_m, 0.5), 0), words});
+    }
+    if (any) text += "\n" + lost.text();
+    return text;
+}
+
+std::string answer_time_table(std::span<const Heat> heats) {
+    TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
+    for (const std::string& method :
+         distinct<std::string>(heats, [](const Heat& heat) { return heat.method; })) {
+        std::vector<double> times_ms;
+        for (const Heat& heat : heats) {
+            if (heat.method != method) continue;
+            times_ms.insert(times_ms.end(), heat.result.answer_ms.begin(), heat.result.answer_ms.end());
+        }
+        table.add({method, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
+    }
+    return table.text();
+}
+
+Json heat_json(const Heat& heat) {
+    const RaceResult& r = heat.result;
+    Json json{{"track", heat.course},
+              {"method", heat.method},
+              {"false_positive_rate", heat.false_positive_rate},
+              {"seed", heat.seed},
+              {"finished", r.finished()},
+              {"end", to_string(r.end)},
+              {"finished_laps", r.finished_laps},
+              {"driven_m", r.driven_m},
+              {"departure_m", maybe(r.departure_m)},
+              {"stop_said_m", maybe(r.stop_said_m)},
+              {"rest_m", maybe(r.rest_m)},
+              {"cones_hit", r.cones_hit},
+              {"lateral_error_p95_m", maybe(r.lateral_error_p95_m)},
+              {"frames", r.frames},
+              {"frames_without_path", r.frames_without_path},
+              {"frames_refused", r.frames_refused},
+              {"wrong_unflagged", r.wrong_unflagged},
+              {"time_s", r.time_s},
+              {"old_path_s", r.old_path_s},
+              {"unsteady_share", maybe(r.unsteady_share)},
+              {"laps_told", r.laps_told}};
+    if (!r.phases.empty()) json["phases"] = r.phases;
+    return json;
+}
+
+Json replay_json(const Heat& heat, const RaceCourse& course) {
+    std::vector<Point> left;
+    std::vector<Point> right;
+    std::vector<Point> other;
+    for (const Cone& cone : course.cones) {
+        (cone.color == ConeColor::blue     ? left
+         : cone.color == ConeColor::yellow ? right
+                                           : other)
+            .push_back(cone.position);
+    }
+    Json frames = Json::array();
+    for (const ReplayFrame& frame : heat.result.replay) {
+        frames.push_back({{"t", std::round(frame.time_s * 100.0) / 100.0},
+                          {"x", std::round(frame.pose.position.x() * 100.0) / 100.0},
+                          {"y", std::round(frame.pose.position.y() * 100.0) / 100.0},
+                          {"yaw", std::round(frame.pose.yaw_rad * 1000.0) / 1000.0},
+                          {"state", frame.state},
+                          {"path", flat(frame.path)},
+                          {"seen", flat(frame.seen)}});
+    }
+    return {{"track", heat.course},
+            {"method", heat.method},
+            {"false_positive_rate", heat.false_positive_rate},
+            {"seed", heat.seed},
+            {"end", to_string(heat.result.end)},
+            {"left", flat(left)},
+            {"right", flat(right)},
+            {"other", flat(other)},
+            {"false_positives", flat(heat.result.false_positives)},
+            {"frames", std::move(frames)}};
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "experiments/race/race.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace conelane::experiments {
+
+/// A race of a table.
+struct Heat {
+    std::string course;
+    std::string method;
+    double false_positive_rate = 0.0;
+    std::uint64_t seed = 0;
+    RaceResult result = {};
+};
+
+/// A row for each method and share of false positives, in the order in which they come first; then, for each
+/// course and method, how far the races went that were not finished.
+[[nodiscard]] std::string race_table(std::span<const Heat> heats, int laps);
+
+/// Median and 99th percentile of the real time of an answer, by method; not the same in two runs.
+[[nodiscard]] std::string answer_time_table(std::span<const Heat> heats);
+
+[[nodiscard]] nlohmann::ordered_json heat_json(const Heat& heat);
+/// What was driven: places of the car, paths and seen points of each frame, rounded to 1 cm.
+[[nodiscard]] nlohmann::ordered_json replay_json(const Heat& heat, const RaceCourse& course);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,166 @@
+#include "experiments/race/world.hpp"
+
+#include "evaluation/scenes/half_disc.hpp"
+#include "evaluation/scenes/persistent_points.hpp"
+#include "evaluation/seeded_random.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+/// Between the poses whose views decide where false positives persist, as in scenes.
+constexpr double kViewStep_m = 1.1;
+
+Point rotated(const Point& point, double angle_rad) {
+    const double c = std::cos(angle_rad);
+    const double s = std::sin(angle_rad);
+    return {c * point.x() - s * point.y(), s * point.x() + c * point.y()};
+}
+
+HalfDisc view_from(const Pose& pose, double range_m) {
+    return {pose.position, pose.heading(), range_m};
+}
+
+std::string key_of(const RaceCourse& course, const SightOptions& options, const std::string& purpose) {
+    return fmt::format("{}/{}/{}/{}/{}", course.name, options.condition.name, options.false_positive_rate,
+                       options.range_m, purpose);
+}
+
+}  // namespace
+
+Point MapFrame::to_map(const Point& world) const {
+    return rotated(world, yaw_rad) + shift;
+}
+
+Point MapFrame::to_world(const Point& map) const {
+    return rotated(map - shift, -yaw_rad);
+}
+
+Pose MapFrame::to_map(const Pose& world) const {
+    return {to_map(world.position), world.yaw_rad + yaw_rad};
+}
+
+MapFrame MapFrame::turned(double angle_rad, const Point& about, const Point& moved) const {
+    const Point centre = to_map(about);
+    return {yaw_rad + angle_rad, rotated(shift - centre, angle_rad) + centre + moved};
+}
+
+World::World(const RaceCourse& course, const SightOptions& options)
+    : options_(options),
+      points_(course.cones),
+      random_(generator_of(key_of(course, options, "race"), options.seed)) {
+    for (Cone& cone : points_) {
+        if (!options_.with_color) cone.color = ConeColor::unknown;
+        cone.confidence = 1.0;
+    }
+    if (options_.condition.persistent) add_persistent(course);
+    // Neither ids nor their order tell what a point is.
+    id_space_ = std::max<ConeId>(100'000, 256 * static_cast<ConeId>(points_.size()));
+    change_ids();
+}
+
+ConeId World::new_id() {
+    boost::random::uniform_int_distribution<ConeId> any(0, id_space_ - 1);
+    for (;;) {
+        const ConeId id = any(random_);
+        const auto place = std::ranges::lower_bound(used_ids_, id);
+        if (place != used_ids_.end() && *place == id) continue;
+        used_ids_.insert(place, id);
+        // Fresh false positives use up ids without end: room for as many again.
+        if (used_ids_.size() * 4 > static_cast<std::size_t>(id_space_)) id_space_ *= 2;
+        return id;
+    }
+}
+
+void World::change_ids() {
+    for (Cone& point : points_) point.id = options_.with_ids ? new_id() : kNoId;
+}
+
+Pose World::disturbed(const Pose& truth) {
+    const Condition& condition = options_.condition;
+    boost::random::normal_distribution<double> normal;
+    const double to_left_m = condition.pose_noise_lateral_m * normal(random_);
+    const double yaw_rad = condition.pose_noise_yaw_rad * normal(random_);
+    return {truth.position + to_left_m * Point(-truth.heading().y(), truth.heading().x()),
+            truth.yaw_rad + yaw_rad};
+}
+
+Frame World::look(const Pose& believed, const MapFrame& map, double time_s) {
+    const Condition& condition = options_.condition;
+    Frame frame{time_s, map.to_map(believed), {}};
+    frame.pose.yaw_rad = std::remainder(frame.pose.yaw_rad, 2.0 * std::acos(-1.0));
+    boost::random::normal_distribution<double> normal;
+    boost::random::uniform_01<double> uniform;
+    const HalfDisc view = view_from(believed, options_.range_m);
+    for (const Cone& point : points_) {
+        if (!view.contains(point.position)) continue;
+        if (uniform(random_) < condition.miss_rate) continue;
+        Cone seen = point;
+        const double x_m = condition.noise_sigma_m * normal(random_);
+        const double y_m = condition.noise_sigma_m * normal(random_);
+        seen.position = map.to_map(Point(seen.position + Point(x_m, y_m)));
+        frame.cones.push_back(seen);
+    }
+    if (!condition.persistent) add_fresh(frame.cones, believed, map);
+    shuffle(frame.cones, random_);
+    return frame;
+}
+
+double World::false_to(double seen) const {
+    const double rate = options_.false_positive_rate;
+    return std::round(rate * seen / (1.0 - rate));
+}
+
+Cone World::false_positive(const Point& position) {
+    constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::unknown};
+    boost::random::uniform_int_distribution<std::size_t> any(0, kColors.size() - 1);
+    Cone cone{kNoId, position};
+    const ConeColor color = kColors[any(random_)];
+    if (options_.with_color) cone.color = color;
+    return cone;
+}
+
+void World::add_persistent(const RaceCourse& course) {
+    std::vector<PersistentView> views;
+    const auto every = static_cast<std::size_t>(std::lround(kViewStep_m / course.step_m));
+    for (std::size_t i = 0; i < course.line.size(); i += every) {
+        PersistentView view{view_from(course.line[i], options_.range_m)};
+        const auto in_view = std::ranges::count_if(
+            course.cones, [&](const Cone& cone) { return view.view.contains(cone.position); });
+        // They are missed as often as cones are: the share among what is seen is that of what is there.
+        view.expected_points = false_to(static_cast<double>(in_view));
+        views.push_back(view);
+    }
+    // Drawn by a generator of their own: they are the same whatever is drawn later.
+    Generator random = generator_of(key_of(course, options_, "persistent false positives"), options_.seed);
+    false_positives_ = draw_persistent_points(views, random);
+    for (const Point& point : false_positives_) points_.push_back(false_positive(point));
+}
+
+void World::add_fresh(std::vector<Cone>& cones, const Pose& believed, const MapFrame& map) {
+    const HalfDisc view = view_from(believed, options_.range_m);
+    const auto count = static_cast<long>(false_to(static_cast<double>(cones.size())));
+    boost::random::uniform_real_distribution<double> any_m(-view.radius_m, view.radius_m);
+    for (long i = 0; i < count;) {
+        const double x_m = any_m(random_);
+        const double y_m = any_m(random_);
+        const Point point = view.centre + Point(x_m, y_m);
+        if (!view.contains(point)) continue;
+        cones.push_back(false_positive(map.to_map(point)));
+        if (options_.with_ids) cones.back().id = new_id();
+        ++i;
+    }
+}
+
+}  // namespace conelane::experiments

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "conelane/planner.hpp"
+#include "evaluation/scenes/condition.hpp"
+#include "experiments/race/course.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <boost/random/mersenne_twister.hpp>
+
+namespace conelane::experiments {
+
+/// Where the map of the car lies in the world.
+struct MapFrame {
+    double yaw_rad = 0.0;
+    Point shift{0.0, 0.0};  ///< [m]: map = rotated world + shift
+
+    [[nodiscard]] Point to_map(const Point& world) const;
+    [[nodiscard]] Point to_world(const Point& map) const;
+    [[nodiscard]] Pose to_map(const Pose& world) const;
+    /// Rotated about a point of the world, then moved.
+    [[nodiscard]] MapFrame turned(double angle_rad, const Point& about, const Point& moved) const;
+};
+
+struct SightOptions {
+    Condition condition;
+    double false_positive_rate = 0.0;  ///< false positives / all points in view, in [0, 0.99]
+    double range_m = 20.0;
+    bool with_color = false;  ///< else every cone is of unknown colour
+    bool with_ids = true;     ///< else every cone has kNoId
+    std::uint64_t seed = 0;
+};
+
+/// The cones and false positives around a course, and what a car sees of them.
+class World {
+  public:
+    World(const RaceCourse& course, const SightOptions& options);
+
+    /// What the car believes of its pose: noise drawn anew at each call, in the frame of the world.
+    [[nodiscard]] Pose disturbed(const Pose& truth);
+
+    /// The cones that are seen, in the map frame. `believed` is in the frame of the world. Each cone is
+    /// missed and moved by noise drawn anew; false positives that persist likewise.
+    [[nodiscard]] Frame look(const Pose& believed, const MapFrame& map, double time_s);
+
+    /// Every point in the world gets another id.
+    void change_ids();
+
+    /// False positives that persist; empty where the condition draws fresh ones in each frame.
+    [[nodiscard]] const std::vector<Point>& false_positives() const { return false_positives_; }
+
+  private:
+    using Generator = boost::random::mt19937_64;
+
+    void add_persistent(const RaceCourse& course);
+    void add_fresh(std::vector<Cone>& cones, const Pose& believed, const MapFrame& map);
+    [[nodiscard]] Cone false_positive(const Point& position);
+    [[nodiscard]] double false_to(double seen) const;
+
+    const SightOptions options_;
+    std::vector<Cone> points_;  ///< of the world: cones and what persists
+    std::vector<Point> false_positives_;
+    Generator random_;
+    ConeId id_space_ = 0;
+    std::vector<ConeId> used_ids_;
+    [[nodiscard]] ConeId new_id();
+};
+
+}  // namespace conelane::experiments

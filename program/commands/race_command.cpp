@@ -1,0 +1,285 @@
+#include "conelane/invalid_input.hpp"
+#include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/provenance.hpp"
+#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/tracks/track_spec.hpp"
+#include "experiments/options/shared_options.hpp"
+#include "experiments/race/entrants.hpp"
+#include "experiments/race/race_record.hpp"
+#include "program/commands/commands.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kDegree_rad = std::numbers::pi / 180.0;
+
+struct Options {
+    std::vector<std::string> tracks;
+    std::vector<std::string> methods{"front"};
+    bool planner = false;
+    bool both = false;
+    std::string mission;
+    std::string condition = "car";
+    std::vector<double> rates{0.0};
+    std::vector<std::uint64_t> seeds{1};
+    std::string ids = "tracked";
+    std::string fault = "none";
+    std::string replay = "unfinished";
+    RaceOptions race;
+    double latency_ms = 50.0;
+    double start_deg = 0.0;
+    double drift_deg = 0.0;
+    unsigned threads = 1;
+    std::string out;
+};
+
+std::optional<Mission> mission_of(const std::string& name) {
+    for (const Mission mission :
+         {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
+        if (to_string(mission) == name) return mission;
+    }
+    return std::nullopt;
+}
+
+bool has_known_course(std::optional<Mission> mission) {
+    return mission == Mission::acceleration || mission == Mission::skidpad;
+}
+
+std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission> mission) {
+    std::vector<RaceCourse> courses;
+    if (has_known_course(mission)) {
+        if (options.tracks.empty()) courses.push_back(mission_course(*mission));
+        for (const std::string& spec : options.tracks) {
+            for (const Track& track : load_tracks(spec)) courses.push_back(mission_course(*mission, track));
+        }
+        return courses;
+    }
+    for (const std::string& spec : options.tracks) {
+        for (const Track& track : load_tracks(spec)) {
+            if (!track.closed || !track.driven.empty()) {
+                fmt::print(stderr, "conelane: {} is no closed course with boundaries: left out\n",
+                           track.name);
+                continue;
+            }
+            courses.push_back(circuit(track));
+            if (mission) courses.back().mission = *mission;
+        }
+    }
+    if (courses.empty()) throw InvalidInput("--tracks", "hold no closed course with boundaries");
+    return courses;
+}
+
+/// A heat and what it needs to be driven.
+struct Entry {
+    const RaceCourse* course;
+    const RaceMethod* method;
+};
+
+void run_all(const Options& options, const std::vector<Entry>& entries, std::vector<Heat>& heats) {
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        try {
+            for (std::size_t i = next++; i < heats.size(); i = next++) {
+                Heat& heat = heats[i];
+                RaceOptions race_options = options.race;
+                race_options.sight.false_positive_rate = heat.false_positive_rate;
+                race_options.sight.seed = heat.seed;
+                race_options.keep_replay = options.replay != "none";
+                race_options.with_any_map = !entries[i].course->closed && heat.method != "truth";
+                heat.result = race(*entries[i].course, race_options,
+                                   make_entrant(*entries[i].method, *entries[i].course, race_options));
+                // What was not lost is not kept; the first race is, so that there is one to look at.
+                if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
+                    heat.result.replay.clear();
+                }
+            }
+        } catch (...) {
+            const std::scoped_lock lock(mutex);
+            failure = std::current_exception();
+            next = heats.size();
+        }
+    };
+    std::vector<std::jthread> threads;
+    for (unsigned i = 1; i < options.threads; ++i) threads.emplace_back(work);
+    work();
+    threads.clear();
+    if (failure) std::rethrow_exception(failure);
+}
+
+nlohmann::ordered_json parameters_of(const Options& options, const std::vector<RaceMethod>& methods) {
+    std::vector<std::string> names;
+    for (const RaceMethod& method : methods) names.push_back(method.name);
+    const Provenance origin = provenance();
+    return {{"commit", origin.commit},
+            {"compiler", origin.compiler},
+            {"machine", origin.machine},
+            {"tracks", options.tracks},
+            {"methods", names},
+            {"mission", options.mission},
+            {"condition", options.condition},
+            {"fp", options.rates},
+            {"seeds", options.seeds},
+            {"laps", options.race.laps},
+            {"range_m", options.race.sight.range_m},
+            {"speed_mps", options.race.speed_mps},
+            {"latency_ms", options.latency_ms},
+            {"colors", options.race.sight.with_color},
+            {"ids", options.ids},
+            {"fault", options.fault},
+            {"start_error_m", options.race.start_error_m},
+            {"start_error_deg", options.start_deg},
+            {"drift_m", options.race.drift_m},
+            {"drift_deg", options.drift_deg}};
+}
+
+void write_all(const Options& options, const std::vector<RaceMethod>& methods,
+               const std::vector<Entry>& entries, const std::vector<Heat>& heats) {
+    nlohmann::ordered_json json = parameters_of(options, methods);
+    json["races"] = nlohmann::ordered_json::array();
+    std::string replays;
+    for (std::size_t i = 0; i < heats.size(); ++i) {
+        json["races"].push_back(heat_json(heats[i]));
+        if (!heats[i].result.replay.empty()) {
+            replays += replay_json(heats[i], *entries[i].course).dump() + "\n";
+        }
+    }
+    const std::string table = race_table(heats, options.race.laps);
+    const std::string times = answer_time_table(heats);
+    const std::filesystem::path out = options.out;
+    std::filesystem::create_directories(out);
+    AtomicFile json_file(out / "race.json");
+    AtomicFile table_file(out / "table.txt");
+    AtomicFile replay_file(out / "replay.jsonl");
+    AtomicFile times_file(out / "times.txt");
+    json_file.stream() << json.dump(1) << "\n";
+    table_file.stream() << table;
+    replay_file.stream() << replays;
+    times_file.stream() << times;
+    AtomicFile* const files[] = {&json_file, &table_file, &replay_file, &times_file};
+    commit_together(files);
+    fmt::print("{}\n{}", table, times);
+}
+
+void run_races(Options& options) {
+    SceneOptions scene_options;
+    scene_options.conditions = {options.condition};
+    scene_options.false_positive_rates = options.rates;
+    scene_options.ranges_m = {options.race.sight.range_m};
+    validate(scene_options);
+    options.race.sight.condition = conditions_of(scene_options).front();
+    options.race.sight.with_ids = options.ids == "tracked";
+    options.race.fault = race_fault(options.fault);
+    options.race.latency_s = options.latency_ms / 1000.0;
+    options.race.start_error_rad = options.start_deg * kDegree_rad;
+    options.race.drift_rad = options.drift_deg * kDegree_rad;
+    const std::optional<Mission> mission = mission_of(options.mission);
+    options.race.with_stop = mission.has_value();
+    if (mission == Mission::autocross || has_known_course(mission)) {
+        if (options.race.laps != 1) {
+            throw InvalidInput("--laps", "of " + options.mission + " is 1");
+        }
+    }
+    const std::vector<RaceMethod> methods =
+        race_methods(options.methods, options.both      ? WithPlanner::both
+                                      : options.planner ? WithPlanner::only
+                                                        : WithPlanner::no);
+    const std::vector<RaceCourse> courses = courses_of(options, mission);
+    std::vector<Heat> heats;
+    std::vector<Entry> entries;
+    for (const RaceCourse& course : courses) {
+        for (const RaceMethod& method : methods) {
+            for (const double rate : options.rates) {
+                for (const std::uint64_t seed : options.seeds) {
+                    heats.push_back({course.name, method.name, rate, seed});
+                    entries.push_back({&course, &method});
+                }
+            }
+        }
+    }
+    run_all(options, entries, heats);
+    write_all(options, methods, entries, heats);
+}
+
+}  // namespace
+
+void add_race_command(CLI::App& program) {
+    CLI::App& command = *program.add_subcommand("race", "drives an event by the answers of methods");
+    auto options = std::make_shared<Options>();
+    command.add_option("--tracks", options->tracks,
+                       "as of `scenes`; closed courses. Acceleration and skidpad have one of their own");
+    command.add_option(
+        "--methods", options->methods,
+        "names as of `methods`, exec:NAME=COMMAND, truth: the true centre line, none: no path");
+    command.add_flag("--planner", options->planner, "each detector drives through a planner");
+    command.add_flag("--both", options->both, "each detector drives alone and through a planner");
+    command
+        .add_option("--mission", options->mission,
+                    "from a standstill to a stop: acceleration, skidpad, autocross or trackdrive; without it "
+                    "the car rolls and the last lap ends the race")
+        ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
+    command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
+    command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
+    command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
+    command.add_option("--laps", options->race.laps, "of a race")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command.add_option("--speed", options->race.speed_mps, "[m/s]")
+        ->check(CLI::Range(0.5, 40.0))
+        ->capture_default_str();
+    command.add_option("--seed", options->seeds, "a race for each")->delimiter(',');
+    command.add_option("--latency-ms", options->latency_ms, "from a frame to its path, simulated")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
+    command.add_option("--ids", options->ids, "tracked: points keep their id; none: no point has one")
+        ->check(CLI::IsMember({"tracked", "none"}))
+        ->capture_default_str();
+    command
+        .add_option("--fault", options->fault,
+                    "jump: the map moves 0.5 m; late, twice, order: of frames; blackout: 1 s without cones; "
+                    "ids: they change")
+        ->check(CLI::IsMember({"none", "jump", "late", "twice", "order", "blackout", "ids"}))
+        ->capture_default_str();
+    command
+        .add_option("--start-error", options->race.start_error_m, "the car starts so near to the start [m]")
+        ->check(CLI::Range(0.0, 3.0))
+        ->capture_default_str();
+    command.add_option("--start-error-deg", options->start_deg, "and so near to its direction")
+        ->check(CLI::Range(0.0, 45.0))
+        ->capture_default_str();
+    command.add_option("--drift", options->race.drift_m, "of the map in a lap [m]")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    command.add_option("--drift-deg", options->drift_deg, "of the map in a lap")
+        ->check(CLI::Range(0.0, 45.0))
+        ->capture_default_str();
+    command
+        .add_option("--replay", options->replay,
+                    "what of the races replay.jsonl holds: unfinished (and the first), all or none")
+        ->check(CLI::IsMember({"unfinished", "all", "none"}))
+        ->capture_default_str();
+    add_threads_option(command, options->threads, "same results with any number");
+    command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
+        ->required();
+    command.callback([options] { run_races(*options); });
+}
+
+}  // namespace conelane::experiments
