@@ -1,11 +1,404 @@
 #include "detectors/planner/known_course_planner.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/known_course.hpp"
+#include "detectors/planner/known_registration.hpp"
+#include "detectors/planner/seen_cones.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace conelane {
+namespace {
+
+// Registration from frame to frame.
+constexpr double kGain = 0.35;    ///< of a correction: one frame's noise moves the lane by so much of it
+constexpr double kJump_m = 0.25;  ///< a correction that is larger is a jump of the map: taken whole
+constexpr double kJump_rad = 0.03;
+constexpr int kMinMatched = 3;
+constexpr double kMinMatchedShare = 0.25;  ///< of the cones within kCounted_m
+constexpr double kCounted_m = 15.0;
+constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
+constexpr double kSearchAgain_s = 0.3;  ///< without support
+constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
+constexpr std::size_t kMinDrawnTogether = 6;
+
+// Which of the places where a course looks the same.
+constexpr double kEvidenceKept = 0.95;  ///< from frame to frame
+constexpr double kMinEvidence = 4.0;    ///< that another place has more
+constexpr std::array<int, 5> kShifts = {-2, -1, 0, 1, 2};
+constexpr std::size_t kHere = 2;
+
+// Progress along the route.
+constexpr double kWindow_m = 2.0;
+constexpr double kWindowShare = 0.4;  ///< of the distance driven since the last frame
+constexpr double kProgressStep_m = 0.25;
+constexpr double kMaxDriven_m = 30.0;  ///< between two frames; more is a jump of the pose
+
+// The last line: said a little after it, never before.
+constexpr double kAfterLine_m = 1.0;  ///< in two frames one after the other
+constexpr double kSurelyAfterLine_m = 2.0;
+
+// Where cones close the exit.
+constexpr double kClosedAfter_m = 10.0;  ///< the line at the earliest
+constexpr double kBeforeClosing_m = 2.0;
+constexpr int kMinClosingSightings = 3;
+
+// The lane of the detector, before the registration.
+constexpr double kUnregistered_m = 10.0;  ///< may be driven by it: both missions begin straight
+constexpr double kMaxStartTurn_rad = 0.6;
+
+constexpr double kSeenBeyond_m = 5.0;  ///< of the farthest matched cone, a lane is trusted
+
+void validate(const PlannerOptions& options) {
+    if (options.laps) throw InvalidInput("laps", "is for trackdrive and autocross");
+    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
+    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
+}
+
+/// The frame as a scene; cones without id get ids that no other cone has. Throws InvalidInput.
+Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
+    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
+    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
+    Scene scene{"frame", frame.pose, frame.cones};
+    std::vector<ConeId> used;
+    for (const Cone& cone : frame.cones) {
+        if (cone.id != kNoId) used.push_back(cone.id);
+    }
+    std::ranges::sort(used);
+    ConeId next = kNoId;
+    for (Cone& cone : scene.cones) {
+        if (cone.id != kNoId) continue;
+        while (std::ranges::binary_search(used, next)) ++next;
+        cone.id = next++;
+    }
+    validate(scene);
+    return scene;
+}
+
+class KnownCoursePlanner final : public Planner {
+  public:
+    explicit KnownCoursePlanner(const PlannerOptions& options)
+        : options_(options),
+          detector_(make_detector(options.detector, options.detector_options)),
+          known_(known_course(options.mission)) {}
+
+    Plan update(const Frame& frame, const DetectionLimits& limits) override;
+    std::optional<DrivableLane> course() const override { return std::nullopt; }
+    void reset() override;
+
+  private:
+    [[nodiscard]] const KnownCourse& shape() const { return known_.course(); }
+    void search(const Frame& frame, const SeenView& view);
+    void track(const Frame& frame, const SeenView& view);
+    [[nodiscard]] bool supports(const RegistrationFit& fit, const Frame& frame) const;
+    void choose_among_repetitions(std::span<const SeenCone> cones, const SeenView& view);
+    void search_again(const Frame& frame, const SeenView& view);
+    void accept(const RegistrationFit& fit, const Frame& frame);
+    void advance(const Pose& pose);
+    [[nodiscard]] double nearest_on_route(const Point& place, double from_s_m, double to_s_m) const;
+    void find_closing_cones();
+    [[nodiscard]] DrivableLane route_ahead() const;
+    void plan_registered(Plan& plan, const Frame& frame);
+    void plan_unregistered(Plan& plan, const Scene& scene, const DetectionLimits& limits);
+
+    PlannerOptions options_;
+    std::unique_ptr<LaneDetector> detector_;
+    KnownRegistration known_;
+
+    SeenCones seen_;
+    std::vector<SeenView> views_;  ///< while searching
+    std::optional<double> time_s_;
+    Pose first_pose_;
+    Pose last_pose_;
+    std::optional<Registration> registration_;
+    double supported_s_ = 0.0;     ///< time of the last frame whose cones speak for the registration
+    double supported_at_m_ = 0.0;  ///< where the car was on the route then
+    double seen_ahead_m_ = 0.0;    ///< of the car then
+    std::array<double, kShifts.size()> evidence_{};
+    double at_m_ = 0.0;         ///< of the car on the route
+    double progress_m_ = 0.0;   ///< the farthest that it was
+    double off_route_m_ = 0.0;  ///< of the car
+    int frames_after_line_ = 0;
+    bool finished_ = false;
+    double end_m_ = 0.0;  ///< of the route
+    bool began_ = false;  ///< a lane was given
+    Plan last_;
+};
+
+void KnownCoursePlanner::reset() {
+    detector_->reset();
+    seen_.clear();
+    views_.clear();
+    time_s_.reset();
+    registration_.reset();
+    evidence_ = {};
+    frames_after_line_ = 0;
+    finished_ = false;
+    began_ = false;
+    last_ = {};
+}
+
+Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limits) {
+    const Scene scene = checked_scene(frame, limits);
+    if (time_s_ && frame.time_s <= *time_s_) {
+        Plan plan = last_;
+        if (frame.time_s < *time_s_ && plan.state == PlanState::following) {
+            plan.state = PlanState::bridging;
+        }
+        return plan;
+    }
+    if (!time_s_) first_pose_ = last_pose_ = frame.pose;
+    time_s_ = frame.time_s;
+    seen_.observe(frame);
+    const SeenView view = view_of(frame);
+    Plan plan;
+    if (registration_) {
+        track(frame, view);
+        advance(frame.pose);
+    } else {
+        search(frame, view);
+    }
+    if (registration_) {
+        plan_registered(plan, frame);
+    } else {
+        plan_unregistered(plan, scene, limits);
+    }
+    plan.phase = registration_ ? shape().phase(finished_ ? shape().finish_s_m : progress_m_)
+                               : shape().phase(shape().start_x_m);
+    plan.lap = registration_ ? shape().laps(progress_m_) : 0;
+    last_pose_ = frame.pose;
+    last_ = plan;
+    return plan;
+}
+
+void KnownCoursePlanner::search(const Frame& frame, const SeenView& view) {
+    if (views_.size() == kMaxViews) views_.erase(views_.begin() + 1);
+    views_.push_back(view);
+    if (frame.cones.empty()) return;
+    // The car is expected where it has driven to since the first frame, straight on.
+    const double driven_m = first_pose_.ahead_m(frame.pose.position);
+    Pose expected{{shape().start_x_m + driven_m, 0.0}, 0.0};
+    if (const auto found = known_.search(seen_.cones(), views_, frame.pose, expected)) {
+        end_m_ = shape().end_s_m;
+        accept(*found, frame);
+        const Point place = registration_->to_course(frame.pose.position);
+        at_m_ = progress_m_ = std::min(place.x(), 0.0);
+        if (options_.mission == Mission::acceleration) at_m_ = progress_m_ = place.x();
+        advance(frame.pose);
+        supported_at_m_ = at_m_;
+        views_.clear();
+    }
+}
+
+void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) {
+    registration_ = fit.registration;
+    supported_s_ = frame.time_s;
+    seen_ahead_m_ = fit.farthest_m;
+}
+
+bool KnownCoursePlanner::supports(const RegistrationFit& fit, const Frame& frame) const {
+    const auto near = std::ranges::count_if(frame.cones, [&](const Cone& cone) {
+        return (cone.position - frame.pose.position).norm() < kCounted_m;
+    });
+    return fit.matched >= kMinMatched && fit.matched >= kMinMatchedShare * static_cast<double>(near) &&
+           off_route_m_ < kMaxOffRoute_m;
+}
+
+void KnownCoursePlanner::track(const Frame& frame, const SeenView& view) {
+    if (frame.cones.empty()) return;
+    // This frame alone: after a jump of the map, cones of earlier frames are elsewhere.
+    SeenCones now;
+    now.observe(frame);
+    const Registration before = *registration_;
+    Registration after = known_.refine(before, now.cones(), frame.pose.position);
+    const RegistrationFit fit = known_.fit(after, now.cones(), {&view, 1}, frame.pose);
+    if (!supports(fit, frame)) {
+        if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view);
+        return;
+    }
+    const Point car = before.to_course(frame.pose.position);
+    const Point moved = after.to_map(car) - before.to_map(car);
+    const double turned_rad =
+        std::remainder(after.course.yaw_rad - before.course.yaw_rad, 2.0 * std::numbers::pi);
+    if (moved.norm() < kJump_m && std::abs(turned_rad) < kJump_rad) {
+        after.course.yaw_rad = before.course.yaw_rad + kGain * turned_rad;
+        after.widening_m = before.widening_m + kGain * (after.widening_m - before.widening_m);
+        Registration turned = after;
+        turned.course.position = Point(0.0, 0.0);
+        after.course.position = before.to_map(car) + kGain * moved - turned.to_map(car);
+    }
+    registration_ = after;
+    supported_s_ = frame.time_s;
+    seen_ahead_m_ = fit.farthest_m;
+    if (shape().repeats_every_m > 0.0 && !finished_) choose_among_repetitions(now.cones(), view);
+}
+
+void KnownCoursePlanner::choose_among_repetitions(std::span<const SeenCone> cones, const SeenView& view) {
+    const auto shifted = [&](std::size_t i) {
+        Registration other = *registration_;
+        other.course.position = registration_->to_map({kShifts[i] * shape().repeats_every_m, 0.0});
+        return other;
+    };
+    for (std::size_t i = 0; i < kShifts.size(); ++i) {
+        evidence_[i] =
+            kEvidenceKept * evidence_[i] + known_.fit(shifted(i), cones, {&view, 1}, view.pose).score;
+    }
+    const auto best = std::ranges::max_element(evidence_);
+    if (*best < evidence_[kHere] + kMinEvidence) return;
+    const auto index = static_cast<std::size_t>(best - evidence_.begin());
+    registration_ = shifted(index);
+    const double moved_m = kShifts[index] * shape().repeats_every_m;
+    at_m_ -= moved_m;
+    progress_m_ -= moved_m;
+    supported_at_m_ -= moved_m;
+    evidence_ = {};
+}
+
+void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view) {
+    const Registration& old = *registration_;
+    const Pose expected{old.to_course(frame.pose.position), frame.pose.yaw_rad - old.course.yaw_rad};
+    SeenCones now;
+    now.observe(frame);
+    if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
+                                         {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35})) {
+        accept(*found, frame);
+        evidence_ = {};
+    }
+}
+
+double KnownCoursePlanner::nearest_on_route(const Point& place, double from_s_m, double to_s_m) const {
+    double nearest_m = from_s_m;
+    double distance_m2 = std::numeric_limits<double>::infinity();
+    for (double s_m = from_s_m; s_m <= to_s_m; s_m += kProgressStep_m) {
+        const double m2 = (shape().at(s_m).position - place).squaredNorm();
+        if (m2 >= distance_m2) continue;
+        distance_m2 = m2;
+        nearest_m = s_m;
+    }
+    // Along the tangent to the foot point: the rest of a step.
+    const DrivablePoint point = shape().at(nearest_m);
+    const Point heading(std::cos(point.heading_rad), std::sin(point.heading_rad));
+    const double rest_m = heading.dot(place - point.position);
+    return nearest_m + std::clamp(rest_m, -kProgressStep_m, kProgressStep_m);
+}
+
+void KnownCoursePlanner::advance(const Pose& pose) {
+    const Point place = registration_->to_course(pose.position);
+    const double driven_m = std::min((pose.position - last_pose_.position).norm(), kMaxDriven_m);
+    at_m_ = nearest_on_route(place, at_m_ - kWindow_m - kWindowShare * driven_m,
+                             at_m_ + kWindow_m + (1.0 + kWindowShare) * driven_m);
+    off_route_m_ = (shape().at(at_m_).position - place).norm();
+    progress_m_ = std::max(progress_m_, at_m_);
+    const double after_m = at_m_ - shape().finish_s_m;
+    frames_after_line_ = after_m >= kAfterLine_m ? frames_after_line_ + 1 : 0;
+    if (frames_after_line_ >= 2 || after_m >= kSurelyAfterLine_m) finished_ = true;
+}
+
+void KnownCoursePlanner::find_closing_cones() {
+    if (at_m_ < shape().finish_s_m - shape().max_ahead_m) return;
+    // In course coordinates x is the route before and after the line, the circles left out.
+    const double line_x_m = shape().at(shape().finish_s_m).position.x();
+    const double car_x_m = shape().at(at_m_).position.x();
+    for (const SeenCone& middle : seen_.cones()) {
+        const Point place = registration_->to_course(middle.position);
+        if (middle.sightings < kMinClosingSightings || std::abs(place.y()) > 0.7) continue;
+        if (place.x() < line_x_m + kClosedAfter_m || place.x() < car_x_m + kBeforeClosing_m) continue;
+        bool left = false;
+        bool right = false;
+        for (const SeenCone& side : seen_.cones()) {
+            const Point beside = registration_->to_course(side.position);
+            const double half_m = kKnownHalfWidth_m + registration_->widening_m;
+            if (side.sightings < kMinClosingSightings || std::abs(beside.x() - place.x()) > 0.7) continue;
+            if (std::abs(beside.y() - half_m) < 0.6) left = true;
+            if (std::abs(beside.y() + half_m) < 0.6) right = true;
+        }
+        if (!left || !right) continue;
+        end_m_ = std::min(end_m_, shape().finish_s_m + place.x() - line_x_m - kBeforeClosing_m);
+    }
+}
+
+DrivableLane KnownCoursePlanner::route_ahead() const {
+    DrivableLane lane;
+    const double step_m = options_.drivable.step_m;
+    const double to_go_m = end_m_ - at_m_;
+    lane.length_m = finished_ ? std::max(to_go_m, 0.0) : std::clamp(to_go_m, 0.0, shape().max_ahead_m);
+    // A lane is as wide as the rules say, or as the cones of a straight lane show.
+    const double half_m = options_.mission == Mission::acceleration
+                              ? kKnownHalfWidth_m + registration_->widening_m
+                              : kKnownHalfWidth_m;
+    const auto steps = static_cast<std::size_t>(std::floor(lane.length_m / step_m + 1e-9));
+    if (steps == 0) return {};
+    for (std::size_t i = 0; i <= steps; ++i) {
+        const double s_m = static_cast<double>(i) * step_m;
+        DrivablePoint point = shape().at(at_m_ + s_m);
+        point.s_m = s_m;
+        point.position = registration_->to_map(point.position);
+        point.heading_rad =
+            std::remainder(point.heading_rad + registration_->course.yaw_rad, 2.0 * std::numbers::pi);
+        if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
+        point.width_left_m = point.width_right_m = half_m;
+        lane.points.push_back(point);
+    }
+    return lane;
+}
+
+void KnownCoursePlanner::plan_registered(Plan& plan, const Frame& frame) {
+    plan.age_s = frame.time_s - supported_s_;
+    const bool old = plan.age_s > 0.0;
+    if (!old) supported_at_m_ = at_m_;
+    if (finished_ || at_m_ > shape().finish_s_m - shape().max_ahead_m) find_closing_cones();
+    plan.stop = finished_;
+    if (plan.age_s > options_.max_age_s || off_route_m_ > kMaxOffRoute_m) {
+        plan.state = finished_ ? PlanState::finished : PlanState::lost;
+        // Behind the last line there may be no cone: what is left of the lane is straight on.
+        if (!finished_ || off_route_m_ > kMaxOffRoute_m) return;
+    } else {
+        plan.state = finished_ ? PlanState::finished : old ? PlanState::bridging : PlanState::following;
+    }
+    plan.lane = route_ahead();
+    const double trusted_m = seen_ahead_m_ + kSeenBeyond_m - (at_m_ - supported_at_m_);
+    plan.safe_m = std::clamp(trusted_m, 0.0, plan.lane.length_m);
+    if (!plan.lane.points.empty()) plan.lane.trusted_m = plan.safe_m;
+    began_ = true;
+}
+
+void KnownCoursePlanner::plan_unregistered(Plan& plan, const Scene& scene, const DetectionLimits& limits) {
+    plan.state = began_ ? PlanState::lost : PlanState::searching;
+    const double driven_m = (scene.pose.position - first_pose_.position).norm();
+    const double left_m = kUnregistered_m - driven_m;
+    if (left_m <= 0.0 || scene.cones.size() < kMinDrawnTogether) return;
+    plan.answer = detector_->detect(scene, limits);
+    DrivableLane lane = drivable(plan.answer, scene, options_.drivable);
+    if (lane.points.size() < 2 || lane.closed) return;
+    const DrivablePoint& first = lane.points.front();
+    // Only where the lane begins at the car and goes on straight.
+    if ((first.position - scene.pose.position).norm() > kKnownHalfWidth_m) return;
+    const double trusted_m = std::min(left_m, lane.trusted_m.value_or(0.0));
+    std::erase_if(lane.points, [&](const DrivablePoint& point) {
+        return point.s_m > trusted_m || std::abs(std::remainder(point.heading_rad - scene.pose.yaw_rad,
+                                                                2.0 * std::numbers::pi)) > kMaxStartTurn_rad;
+    });
+    if (lane.points.size() < 2) return;
+    lane.length_m = lane.points.back().s_m;
+    lane.trusted_m = lane.length_m;
+    plan.state = PlanState::following;
+    plan.safe_m = lane.length_m;
+    plan.lane = std::move(lane);
+    began_ = true;
+}
+
+}  // namespace
 
 std::unique_ptr<Planner> make_known_course_planner(const PlannerOptions& options) {
-    throw InvalidInput("mission", "'" + std::string(to_string(options.mission)) + "' is not built yet");
+    validate(options);
+    return std::make_unique<KnownCoursePlanner>(options);
 }
 
 }  // namespace conelane

@@ -1,0 +1,326 @@
+#include "detectors/planner/known_registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+namespace conelane {
+namespace {
+
+constexpr double kMatched_m = 0.45;  ///< a seen cone is one of the course within this distance
+constexpr double kLineShare = 0.5;   ///< of a match that tells nothing along the lane
+constexpr double kColor = 0.2;       ///< gained or lost by a color
+constexpr double kMissing = 0.3;     ///< lost by a cone that should be in view and is not there
+constexpr double kMinScore = 4.0;    ///< of a registration that is trusted
+constexpr int kMinMatched = 6;
+constexpr double kMinMargin = 1.5;  ///< to the next distinct registration
+constexpr double kMinMarginShare = 0.2;
+constexpr double kDistinct_m = 0.7;  ///< registrations that differ by more, at the car
+constexpr double kDistinct_rad = 0.09;
+
+// The search over a grid of poses.
+constexpr double kCell_m = 0.25;
+constexpr double kNear_m = 0.9;    ///< of a boundary: counts in the search
+constexpr double kMargin_m = 2.0;  ///< of the raster around the course
+constexpr double kStep_m = 0.4;
+constexpr double kStep_rad = 0.035;
+constexpr std::size_t kMaxSearched = 80;  ///< cones: the nearest to the car
+constexpr std::size_t kMaxCandidates = 16;
+constexpr std::size_t kMaxFitted = 150;  ///< cones: the nearest to the car
+
+// The fit, in units of a cone's noise.
+constexpr double kConeNoise_m = 0.15;
+constexpr double kPriorPlace_m = 0.5;
+constexpr double kPriorYaw_rad = 0.05;
+constexpr double kPriorWidening_m = 0.1;
+constexpr std::array<double, 6> kWindows_m = {1.0, 0.8, 0.6, 0.45, 0.45, 0.45};
+
+double square(double value) {
+    return value * value;
+}
+
+Point rotated(const Point& vector, double angle_rad) {
+    const double c = std::cos(angle_rad);
+    const double s = std::sin(angle_rad);
+    return {c * vector.x() - s * vector.y(), s * vector.x() + c * vector.y()};
+}
+
+/// The line that a place in the course lies on within `window_m`, or none.
+const KnownLine* line_at(const KnownCourse& course, const Point& place, double widening_m, double window_m) {
+    for (const KnownLine& line : course.lines) {
+        if (place.x() < line.from_x_m || place.x() > line.to_x_m) continue;
+        if (std::abs(place.y() - line.y_m - widening_m * line.outward_y) < window_m) return &line;
+    }
+    return nullptr;
+}
+
+/// The cone of the course nearest to a place, if within `window_m`.
+std::optional<std::size_t> cone_at(const KnownCourse& course, const Point& place, double widening_m,
+                                   double window_m) {
+    std::optional<std::size_t> nearest;
+    double nearest_m2 = window_m * window_m;
+    for (std::size_t i = 0; i < course.cones.size(); ++i) {
+        const KnownCone& cone = course.cones[i];
+        const double along_m = place.x() - cone.position.x() - widening_m * cone.outward.x();
+        if (std::abs(along_m) > window_m) continue;
+        const double across_m = place.y() - cone.position.y() - widening_m * cone.outward.y();
+        const double distance_m2 = along_m * along_m + across_m * across_m;
+        if (distance_m2 >= nearest_m2) continue;
+        nearest_m2 = distance_m2;
+        nearest = i;
+    }
+    return nearest;
+}
+
+std::vector<SeenCone> nearest_to(const Point& car, std::span<const SeenCone> cones, std::size_t count) {
+    std::vector<SeenCone> nearest(cones.begin(), cones.end());
+    if (nearest.size() > count) {
+        std::ranges::stable_sort(nearest, {},
+                                 [&](const SeenCone& cone) { return (cone.position - car).squaredNorm(); });
+        nearest.resize(count);
+    }
+    return nearest;
+}
+
+}  // namespace
+
+Point Registration::to_course(const Point& in_map) const {
+    return {course.ahead_m(in_map), course.left_m(in_map)};
+}
+
+Point Registration::to_map(const Point& in_course) const {
+    return course.position + rotated(in_course, course.yaw_rad);
+}
+
+KnownRegistration::KnownRegistration(KnownCourse course) : course_(std::move(course)) {
+    Point low = course_.cones.front().position;
+    Point high = low;
+    for (const KnownCone& cone : course_.cones) {
+        low = low.cwiseMin(cone.position);
+        high = high.cwiseMax(cone.position);
+    }
+    for (const KnownLine& line : course_.lines) {
+        low.x() = std::min(low.x(), line.from_x_m);
+        high.x() = std::max(high.x(), line.to_x_m);
+    }
+    const double margin_m = kMargin_m + course_.max_widening_m;
+    raster_from_ = low - Point(margin_m, margin_m);
+    columns_ = static_cast<int>(std::ceil((high.x() - low.x() + 2.0 * margin_m) / kCell_m));
+    rows_ = static_cast<int>(std::ceil((high.y() - low.y() + 2.0 * margin_m) / kCell_m));
+    constexpr double kWidthStep_m = 0.25;
+    double widening_m = course_.min_widening_m;
+    do {
+        rasters_.push_back(raster(widening_m));
+        widening_m += kWidthStep_m;
+    } while (widening_m <= course_.max_widening_m);
+}
+
+KnownRegistration::Raster KnownRegistration::raster(double widening_m) const {
+    Raster result{widening_m, std::vector<float>(static_cast<std::size_t>(columns_ * rows_))};
+    for (int row = 0; row < rows_; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            const Point place = raster_from_ + kCell_m * Point(column + 0.5, row + 0.5);
+            double nearness = 0.0;
+            if (const auto cone = cone_at(course_, place, widening_m, kNear_m)) {
+                const Point at = course_.cones[*cone].position + widening_m * course_.cones[*cone].outward;
+                nearness = 1.0 - (place - at).squaredNorm() / square(kNear_m);
+            }
+            if (const KnownLine* line = line_at(course_, place, widening_m, kNear_m)) {
+                const double across_m = place.y() - line->y_m - widening_m * line->outward_y;
+                nearness = std::max(nearness, kLineShare * (1.0 - square(across_m / kNear_m)));
+            }
+            result.nearness[static_cast<std::size_t>(row * columns_ + column)] = static_cast<float>(nearness);
+        }
+    }
+    return result;
+}
+
+std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenCone> cones, const Pose& car,
+                                                           const Pose& expected,
+                                                           const SearchReach& reach) const {
+    std::vector<RegistrationFit> best;
+    const auto keep = [&](const RegistrationFit& candidate) {
+        if (best.size() == kMaxCandidates && candidate.score <= best.back().score) return;
+        const auto place = std::ranges::find_if(
+            best, [&](const RegistrationFit& other) { return candidate.score > other.score; });
+        // One candidate stands for its neighborhood: the best.
+        const auto near = [&](const RegistrationFit& other) {
+            return std::abs(candidate.registration.course.yaw_rad - other.registration.course.yaw_rad) <
+                       2.5 * kStep_rad &&
+                   (candidate.registration.to_course(car.position) -
+                    other.registration.to_course(car.position))
+                           .norm() < 2.5 * kStep_m;
+        };
+        if (std::any_of(best.begin(), place, near)) return;
+        const auto from = best.insert(place, candidate) + 1;
+        best.erase(std::remove_if(from, best.end(), near), best.end());
+        if (best.size() > kMaxCandidates) best.pop_back();
+    };
+    std::vector<Point> turned(cones.size());
+    const int yaws = static_cast<int>(std::ceil(reach.yaw_rad / kStep_rad));
+    const int aheads = static_cast<int>(std::ceil(reach.ahead_m / kStep_m));
+    const int lefts = static_cast<int>(std::ceil(reach.left_m / kStep_m));
+    for (int yaw = -yaws; yaw <= yaws; ++yaw) {
+        // The heading of the car in the course.
+        const double heading_rad = expected.yaw_rad + yaw * kStep_rad;
+        for (std::size_t i = 0; i < cones.size(); ++i) {
+            turned[i] = (rotated(cones[i].position - car.position, heading_rad - car.yaw_rad) +
+                         expected.position - raster_from_) /
+                        kCell_m;
+        }
+        for (int ahead = -aheads; ahead <= aheads; ++ahead) {
+            for (int left = -lefts; left <= lefts; ++left) {
+                const Point moved(ahead * kStep_m, left * kStep_m);
+                const Point cells = moved / kCell_m;
+                for (const Raster& raster : rasters_) {
+                    float score = 0.0F;
+                    for (const Point& cone : turned) {
+                        const double x = cone.x() + cells.x();
+                        const double y = cone.y() + cells.y();
+                        if (x < 0.0 || y < 0.0 || x >= columns_ || y >= rows_) continue;
+                        score += raster.nearness[static_cast<std::size_t>(static_cast<int>(y) * columns_ +
+                                                                          static_cast<int>(x))];
+                    }
+                    if (best.size() == kMaxCandidates && score <= best.back().score) continue;
+                    RegistrationFit candidate;
+                    candidate.score = score;
+                    candidate.registration.widening_m = raster.widening_m;
+                    candidate.registration.course.yaw_rad = car.yaw_rad - heading_rad;
+                    candidate.registration.course.position =
+                        car.position -
+                        rotated(expected.position + moved, candidate.registration.course.yaw_rad);
+                    keep(candidate);
+                }
+            }
+        }
+    }
+    return best;
+}
+
+std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCone> all,
+                                                         std::span<const SeenView> views, const Pose& car,
+                                                         const Pose& expected,
+                                                         const SearchReach& reach) const {
+    const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxSearched);
+    if (cones.size() < static_cast<std::size_t>(kMinMatched)) return std::nullopt;
+    std::vector<RegistrationFit> found = candidates(cones, car, expected, reach);
+    for (RegistrationFit& candidate : found) {
+        const Registration refined = refine(candidate.registration, cones, car.position);
+        candidate = fit(refined, cones, views, car);
+        // Of two that explain the cones equally well, the one nearer to what is expected.
+        const Point off = refined.to_course(car.position) - expected.position;
+        candidate.score -= 0.03 * off.squaredNorm();
+    }
+    if (found.empty()) return std::nullopt;
+    const auto best = std::ranges::max_element(found, {}, &RegistrationFit::score);
+    if (best->score < kMinScore || best->matched < kMinMatched) return std::nullopt;
+    double next = 0.0;
+    for (const RegistrationFit& other : found) {
+        Point off = other.registration.to_course(car.position) - best->registration.to_course(car.position);
+        // Where a course repeats itself, its place along the lane is found as the car drives.
+        if (course_.repeats_every_m > 0.0) off.x() = 0.0;
+        const double turned_rad = std::remainder(
+            other.registration.course.yaw_rad - best->registration.course.yaw_rad, 2.0 * std::numbers::pi);
+        if (off.norm() > kDistinct_m || std::abs(turned_rad) > kDistinct_rad) {
+            next = std::max(next, other.score);
+        }
+    }
+    if (best->score - next < std::max(kMinMargin, kMinMarginShare * best->score)) return std::nullopt;
+    return *best;
+}
+
+Registration KnownRegistration::refine(Registration registration, std::span<const SeenCone> all,
+                                       const Point& car) const {
+    const std::vector<SeenCone> cones = nearest_to(car, all, kMaxFitted);
+    using Vector = Eigen::Vector4d;  // along x, along y, yaw about the car, widening
+    const Vector prior(square(kConeNoise_m / kPriorPlace_m), square(kConeNoise_m / kPriorPlace_m),
+                       square(kConeNoise_m / kPriorYaw_rad), square(kConeNoise_m / kPriorWidening_m));
+    Vector total = Vector::Zero();
+    for (const double window_m : kWindows_m) {
+        Eigen::Matrix4d normal = prior.asDiagonal();
+        Vector right = -prior.cwiseProduct(total);
+        const Point pivot = registration.to_course(car);
+        for (const SeenCone& seen : cones) {
+            const Point place = registration.to_course(seen.position);
+            const Point arm = place - pivot;
+            if (const auto index = cone_at(course_, place, registration.widening_m, window_m)) {
+                const KnownCone& cone = course_.cones[*index];
+                const Point off = place - cone.position - registration.widening_m * cone.outward;
+                const double weight = square(1.0 - off.squaredNorm() / square(window_m));
+                Eigen::Matrix<double, 2, 4> rows;
+                rows << 1.0, 0.0, -arm.y(), cone.outward.x(), 0.0, 1.0, arm.x(), cone.outward.y();
+                normal += weight * rows.transpose() * rows;
+                right += weight * rows.transpose() * off;
+            } else if (const KnownLine* line = line_at(course_, place, registration.widening_m, window_m)) {
+                const double off_m = place.y() - line->y_m - registration.widening_m * line->outward_y;
+                const double weight = square(1.0 - square(off_m / window_m));
+                const Vector row(0.0, 1.0, arm.x(), line->outward_y);
+                normal += weight * row * row.transpose();
+                right += weight * off_m * row;
+            }
+        }
+        const Vector step = normal.ldlt().solve(right);
+        total += step;
+        // The course moves and turns about the car.
+        const double yaw_rad = registration.course.yaw_rad;
+        registration.course.yaw_rad = yaw_rad + step[2];
+        registration.course.position =
+            car + rotated(Point(step[0], step[1]), yaw_rad) - rotated(pivot, registration.course.yaw_rad);
+        registration.widening_m =
+            std::clamp(registration.widening_m + step[3], course_.min_widening_m, course_.max_widening_m);
+    }
+    return registration;
+}
+
+RegistrationFit KnownRegistration::fit(const Registration& registration, std::span<const SeenCone> all,
+                                       std::span<const SeenView> views, const Pose& car) const {
+    const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxFitted);
+    RegistrationFit result;
+    result.registration = registration;
+    std::vector<double> nearness(course_.cones.size(), 0.0);
+    std::vector<double> gained(course_.cones.size(), 0.0);
+    const auto reach_to = [&](const SeenCone& cone) {
+        if (car.ahead_m(cone.position) > 0.0) {
+            result.farthest_m = std::max(result.farthest_m, (cone.position - car.position).norm());
+        }
+    };
+    for (const SeenCone& seen : cones) {
+        const Point place = registration.to_course(seen.position);
+        if (const auto index = cone_at(course_, place, registration.widening_m, kMatched_m)) {
+            const KnownCone& cone = course_.cones[*index];
+            const Point off = place - cone.position - registration.widening_m * cone.outward;
+            const double near = 1.0 - off.squaredNorm() / square(kMatched_m);
+            if (near <= nearness[*index]) continue;
+            nearness[*index] = near;
+            gained[*index] = near;
+            if (seen.color != ConeColor::unknown && cone.color != ConeColor::unknown) {
+                gained[*index] += seen.color == cone.color ? kColor : -kColor;
+            }
+            reach_to(seen);
+        } else if (const KnownLine* line = line_at(course_, place, registration.widening_m, kMatched_m)) {
+            const double off_m = place.y() - line->y_m - registration.widening_m * line->outward_y;
+            result.score += kLineShare * (1.0 - square(off_m / kMatched_m));
+            ++result.matched;
+            reach_to(seen);
+        }
+    }
+    for (std::size_t i = 0; i < nearness.size(); ++i) {
+        result.score += gained[i];
+        if (nearness[i] > 0.0) {
+            ++result.matched;
+            continue;
+        }
+        const KnownCone& cone = course_.cones[i];
+        if (!cone.certain) continue;
+        const Point place = registration.to_map(cone.position + registration.widening_m * cone.outward);
+        if (std::ranges::any_of(views, [&](const SeenView& view) { return view.covers(place); })) {
+            result.score -= kMissing;
+        }
+    }
+    return result;
+}
+
+}  // namespace conelane

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "detectors/planner/known_course.hpp"
+#include "detectors/planner/seen_cones.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace conelane {
+
+/// Where a known course lies in the map, and how wide it is.
+struct Registration {
+    Pose course;              ///< its origin and x axis, in the map frame
+    double widening_m = 0.0;  ///< of the half width
+
+    [[nodiscard]] Point to_course(const Point& in_map) const;
+    [[nodiscard]] Point to_map(const Point& in_course) const;
+};
+
+/// How well a registration explains cones.
+struct RegistrationFit {
+    Registration registration;
+    double score = 0.0;       ///< matched cones, less for those that stand off, less for those not seen
+    int matched = 0;          ///< cones of the course, each by one seen cone at most
+    double farthest_m = 0.0;  ///< of the matched cones from the car, ahead of it
+};
+
+/// How far the car may stand from where a search expects it.
+struct SearchReach {
+    double ahead_m = 4.5;
+    double left_m = 4.0;
+    double yaw_rad = 0.5;
+};
+
+/// Finds a known course among cones.
+class KnownRegistration {
+  public:
+    explicit KnownRegistration(KnownCourse course);
+
+    [[nodiscard]] const KnownCourse& course() const { return course_; }
+
+    /// The registration that explains the cones best, of those that have the car within `reach` of
+    /// `expected` (course coordinates). Nothing where no registration stands out: it matches too few cones,
+    /// or a distinct one explains them nearly as well.
+    [[nodiscard]] std::optional<RegistrationFit> search(std::span<const SeenCone> cones,
+                                                        std::span<const SeenView> views, const Pose& car,
+                                                        const Pose& expected,
+                                                        const SearchReach& reach = {}) const;
+
+    /// Moves a registration onto the cones near the car, by at most about a meter. What the cones do not
+    /// determine stays.
+    [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> cones,
+                                      const Point& car) const;
+
+    /// What a registration explains. `views`: what they cover and no cone stands for lowers the score.
+    [[nodiscard]] RegistrationFit fit(const Registration& registration, std::span<const SeenCone> cones,
+                                      std::span<const SeenView> views, const Pose& car) const;
+
+  private:
+    /// How near the next boundary is to each place, for one width.
+    struct Raster {
+        double widening_m = 0.0;
+        std::vector<float> nearness;
+    };
+    [[nodiscard]] Raster raster(double widening_m) const;
+    [[nodiscard]] std::vector<RegistrationFit> candidates(std::span<const SeenCone> cones, const Pose& car,
+                                                          const Pose& expected,
+                                                          const SearchReach& reach) const;
+
+    KnownCourse course_;
+    Point raster_from_{0.0, 0.0};
+    int columns_ = 0;
+    int rows_ = 0;
+    std::vector<Raster> rasters_;
+};
+
+}  // namespace conelane
