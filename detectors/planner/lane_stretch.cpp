@@ -17,7 +17,7 @@ constexpr double kRight_rad = std::numbers::pi / 2.0;
 /// A lane that begins so far ahead of the car, or less, begins at it.
 constexpr double kAtCar_m = 0.5;
 constexpr double kBesideCar_m = 2.5;  ///< and no farther aside
-constexpr double kFarthestJoin_m = 12.0;
+constexpr double kMaxJoin_m = 12.0;
 constexpr double kJoinOffset_m = 1.2;  ///< of the lane's beginning from the lane that leads to it
 constexpr double kJoinTurn_rad = 0.8;
 constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns from one lane to the other
@@ -144,8 +144,8 @@ DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, d
 }
 
 double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m) {
-    double most_m = 0.0;
-    if (other.points.size() < 2) return most_m;
+    double max_m = 0.0;
+    if (other.points.size() < 2) return max_m;
     std::size_t at = 0;  // both are followed from the car on: another leg may be nearer
     for (const DrivablePoint& point : lane.points) {
         if (point.s_m > within_m) break;
@@ -167,9 +167,9 @@ double jump_m(const DrivableLane& lane, const DrivableLane& other, double within
         const bool past_end = nearest + 2 == other.points.size() && parameter >= 1.0;
         if (past_end && point.s_m >= other.points.back().s_m - 1.0) break;
         if (before_start && nearest_m < within_m) continue;
-        most_m = std::max(most_m, nearest_m);
+        max_m = std::max(max_m, nearest_m);
     }
-    return most_m;
+    return max_m;
 }
 
 std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
@@ -179,11 +179,11 @@ std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& p
     const Point offset = first.position - pose.position;
     const double ahead_m = offset.dot(direction(first.heading_rad));
     if (ahead_m <= kAtCar_m && offset.norm() <= kBesideCar_m) return lane;
-    if (offset.norm() > kFarthestJoin_m || pose.ahead_m(first.position) < -kBesideCar_m) return std::nullopt;
+    if (offset.norm() > kMaxJoin_m || pose.ahead_m(first.position) < -kBesideCar_m) return std::nullopt;
     std::vector<DrivablePoint> points;
     if (before != nullptr && before->points.size() > 1) {
         const Pose beginning{first.position, first.heading_rad};
-        const auto foot = foot_on(*before, beginning, 0.0, kFarthestJoin_m + kBesideCar_m);
+        const auto foot = foot_on(*before, beginning, 0.0, kMaxJoin_m + kBesideCar_m);
         if (foot && foot->offset_m <= kJoinOffset_m && foot->s_m < before->points.back().s_m + kAtCar_m &&
             std::abs(turn_rad(point_at(*before, foot->s_m).heading_rad, first.heading_rad)) <=
                 kJoinTurn_rad) {

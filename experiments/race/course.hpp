@@ -13,7 +13,7 @@ namespace conelane::experiments {
 /// Where a race is driven. Positions are true ones, in the frame of the course.
 struct RaceCourse {
     std::string name;
-    std::vector<Cone> cones;  ///< with their true colours
+    std::vector<Cone> cones;  ///< with their true colors
     std::vector<Pose> line;   ///< the true centre line from the start to the end, one pose every step_m
     bool closed = false;      ///< the line comes round; else it is driven once
     double step_m = 0.25;

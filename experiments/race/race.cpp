@@ -34,7 +34,7 @@ constexpr double kNear_m = 10.0;  ///< how far ahead a path counts as driven
 constexpr double kTruthAhead_m = 20.0;
 constexpr double kStopMargin_m = 0.5;  ///< of the truth, whose pose is noisy
 constexpr double kMaxAcceleration_mps2 = 6.0;
-constexpr double kLongestHalt_s = 5.0;
+constexpr double kMaxHalt_s = 5.0;
 
 constexpr double kJump_m = 0.5;
 constexpr double kFaultEvery_s = 5.0;
@@ -431,7 +431,7 @@ class Run {
         }
         const double past_m = foot_.at_m() - finish_m_;
         halted_steps_ = speed_mps_ > 0.0 ? 0 : halted_steps_ + 1;
-        const bool has_halted = halted_steps_ * kStep_s >= kLongestHalt_s;
+        const bool has_halted = halted_steps_ * kStep_s >= kMaxHalt_s;
         if (!options_.with_stop) {
             if (past_m >= 0.0) end(RaceEnd::finished);
             if (has_halted) end(RaceEnd::halted);

@@ -28,7 +28,7 @@ struct SightOptions {
     Condition condition;
     double false_positive_rate = 0.0;  ///< false positives / all points in view, in [0, 0.99]
     double range_m = 20.0;
-    bool with_color = false;  ///< else every cone is of unknown colour
+    bool with_color = false;  ///< else every cone is of unknown color
     bool with_ids = true;     ///< else every cone has kNoId
     std::uint64_t seed = 0;
 };
