@@ -49,10 +49,11 @@ struct Plan {
     PlanState state = PlanState::searching;
     /// Begins at the car. Empty where state is searching or lost, and where the car is at rest at the end.
     DrivableLane lane;
-    double safe_m = 0.0;  ///< along `lane`: how far it is trusted, or what is left of the last trusted stretch
-    double age_s = 0.0;   ///< of the frame that the lane stems from; 0 where following
-    int lap = 0;          ///< start lines crossed since the start, not counting the first one at the start
-    bool stop = false;    ///< come to rest inside what is left of `lane`
+    double safe_m =
+        0.0;             ///< along `lane`: how far it is trusted, or what is left of the last trusted stretch
+    double age_s = 0.0;  ///< of the frame that the lane stems from; 0 where following
+    int lap = 0;         ///< start lines crossed since the start, not counting the first one at the start
+    bool stop = false;   ///< come to rest inside what is left of `lane`
     std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
     LaneAnswer answer;       ///< of the detector in this frame
 };
