@@ -7,10 +7,10 @@
 namespace conelane {
 namespace {
 
-/// Cells are a power of two wide, so that dividing by it does not round, and wider than kDoubledCone_m, so
-/// that doubles are in the same or in neighbouring cells.
-constexpr double kCellsPerMetre = 4.0;
-static_assert(kDoubledCone_m * kCellsPerMetre < 1.0);
+/// Cells are a power of two wide, so that dividing by it does not round, and wider than any radius, so that
+/// doubles are in the same or in neighbouring cells.
+constexpr double kCellsPerMetre = 2.0;
+static_assert(DoubledCones::kMaxRadius_m * kCellsPerMetre < 1.0);
 /// Positions farther away share the last cell.
 constexpr double kLastCell = 1e15;
 
@@ -60,7 +60,7 @@ std::size_t DoubledCones::first_slot(const Cell& cell) const {
 std::size_t DoubledCones::kept_near(const Scene& scene, const Point& position) const {
     const Cell centre = cell_of(position);
     std::size_t nearest = kNone;
-    double nearest_m = kDoubledCone_m;
+    double nearest_m = radius_m_;
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
         for (std::int64_t dy = -1; dy <= 1; ++dy) {
             const Cell cell{centre.x + dx, centre.y + dy};

@@ -9,15 +9,21 @@
 
 namespace conelane {
 
-/// Finds the cones of a scene that are held twice, see kDoubledCone_m. Keeps memory from call to call: once
-/// it is warm, nothing is allocated.
+/// Finds the cones of a scene that are held twice: those that stand at most `radius_m` apart. Keeps memory
+/// from call to call: once it is warm, nothing is allocated.
 ///
-/// Cones are looked at in the order of their ids. A cone that stands within kDoubledCone_m of one that was
-/// kept is merged into it, of several into the nearest, of equally near ones into the smallest id; else it is
+/// Cones are looked at in the order of their ids. A cone that stands within the radius of one that was kept
+/// is merged into it, of several into the nearest, of equally near ones into the smallest id; else it is
 /// kept. So the order of the scene's cones does not count, kept cones stand farther apart than that, and what
 /// is kept is a part of the scene: the cones that are left stay as they are.
 class DoubledCones {
   public:
+    static constexpr double kMaxRadius_m = 0.4;
+
+    /// Precondition: `radius_m` is from 0 to kMaxRadius_m.
+    explicit DoubledCones(double radius_m) : radius_m_(radius_m) {}
+
+    [[nodiscard]] double radius_m() const { return radius_m_; }
     /// The scene with each cone once: `scene` itself where no cone is doubled, else a copy without the merged
     /// ones, valid until the next call. Time n log n. Precondition: the scene is valid.
     [[nodiscard]] const Scene& merge(const Scene& scene);
@@ -43,6 +49,7 @@ class DoubledCones {
     [[nodiscard]] std::size_t kept_near(const Scene& scene, const Point& position) const;
     void keep(const Point& position, std::size_t cone);
 
+    double radius_m_;
     std::vector<std::size_t> by_id_;  ///< indices of the cones
     std::vector<Slot> slots_;         ///< open addressing, a power of two, at most half full
     std::vector<bool> kept_;

@@ -78,13 +78,77 @@ TEST_P(DoubledConesOf, UpToTenCentimetresAreOneCone) {
 
 TEST_P(DoubledConesOf, FartherApartTheyAreCones) {
     const Scene once = tests::straight_front_scene(5);
-    for (const double distance_m : {0.2, 0.3}) {
+    const double radius_m = make_detector(GetParam())->doubled_cone_m();
+    for (const double distance_m : {0.2, 0.3, 0.4}) {
+        if (distance_m <= radius_m) continue;
         SCOPED_TRACE(distance_m);
         const LaneAnswer answer = detect(doubled(once, distance_m));
         EXPECT_NE(answer.status, LaneStatus::error) << answer.message;
         EXPECT_TRUE(answer.merged.empty());
     }
 }
+
+/// The radius is the detector's own, also through what wraps it.
+TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
+    const Scene once = tests::straight_front_scene(5);
+    const std::unique_ptr<LaneDetector> nearest = make_detector(GetParam(), {.nearest = 8});
+    EXPECT_EQ(nearest->doubled_cone_m(), make_detector(GetParam())->doubled_cone_m());
+    const LaneAnswer expected = nearest->detect(once, tests::kNoTimeLimit);
+    nearest->reset();
+    const LaneAnswer answer =
+        nearest->detect(doubled(once, 0.99 * nearest->doubled_cone_m()), tests::kNoTimeLimit);
+    EXPECT_EQ(answer.status, expected.status);
+    EXPECT_EQ(answer.lane, expected.lane);
+    EXPECT_EQ(answer.merged.size(), once.cones.size());
+}
+
+class DoublesOfFront : public testing::TestWithParam<std::string> {};
+
+/// At 1, 5, 10, 20 and 30 cm, whether all cones are doubled or every third one, and whichever of the two has
+/// the smaller id.
+TEST_P(DoublesOfFront, TakeNoTrustAway) {
+    const auto detect = [&](const Scene& scene) {
+        return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);
+    };
+    const Scene once = tests::straight_front_scene(7);
+    const LaneAnswer expected = detect(once);
+    ASSERT_EQ(expected.status, LaneStatus::found);
+    ASSERT_GT(expected.trusted_m.value_or(0.0), 15.0);
+    for (const double distance_m : {0.01, 0.05, 0.1, 0.2, 0.3}) {
+        for (const std::size_t every : {std::size_t{1}, std::size_t{3}}) {
+            SCOPED_TRACE(testing::Message() << distance_m << " m, every " << every);
+            Scene twice = doubled(once, distance_m);
+            const std::size_t count = once.cones.size();
+            for (std::size_t i = count; i-- > 0;) {
+                if (i % every != 0) twice.cones.erase(twice.cones.begin() + static_cast<std::ptrdiff_t>(i));
+            }
+            const std::size_t doubles = twice.cones.size() - count;
+            const LaneAnswer first_kept = detect(twice);
+            EXPECT_EQ(first_kept.lane, expected.lane);
+            EXPECT_EQ(first_kept.trusted_m, expected.trusted_m);
+            EXPECT_EQ(first_kept.confidence, expected.confidence);
+            EXPECT_EQ(first_kept.merged.size(), doubles);
+            // The double has the smaller id: it stands for the cone, off by the distance.
+            for (std::size_t i = 0; i < doubles; ++i) twice.cones[i].id -= 2 * kDouble;
+            const LaneAnswer double_kept = detect(twice);
+            ASSERT_EQ(double_kept.merged.size(), doubles);
+            for (const MergedCone& merged : double_kept.merged) EXPECT_EQ(merged.into, merged.cone - kDouble);
+            Lane lane = double_kept.lane;
+            for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
+                for (ConeId& id : *side) id += id < 0 ? kDouble : 0;
+            }
+            EXPECT_EQ(lane, expected.lane);
+            EXPECT_GT(double_kept.trusted_m.value_or(0.0), *expected.trusted_m - 1.0);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Front, DoublesOfFront, testing::Values("front", "front-warm"),
+                         [](const auto& detector) {
+                             std::string words = detector.param;
+                             std::ranges::replace(words, '-', '_');
+                             return words;
+                         });
 
 std::vector<std::string> all_names() {
     std::vector<std::string> names;
@@ -99,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), []
 });
 
 TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = tests::straight_front_scene(10);
         EXPECT_EQ(&doubles.merge(scene), &scene);
@@ -110,9 +174,10 @@ TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
 }
 
 TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
-    DoubledCones doubles;
     std::size_t merged = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const double radius_m = seed % 4 < 2 ? kDoubledCone_m : DoubledCones::kMaxRadius_m;
+        DoubledCones doubles(radius_m);
         SCOPED_TRACE(seed);
         boost::random::mt19937_64 random(seed);
         // From crowds to few doubles; about the origin, and where cells have large numbers.
@@ -131,7 +196,7 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         for (const Cone& a : once.cones) {
             for (const Cone& b : once.cones) {
                 if (a.id == b.id) continue;
-                EXPECT_GT((a.position - b.position).norm(), kDoubledCone_m);
+                EXPECT_GT((a.position - b.position).norm(), radius_m);
             }
         }
         const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
@@ -139,7 +204,7 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
             EXPECT_EQ(std::ranges::count(kept, cone.cone), 0);
             EXPECT_EQ(std::ranges::count(kept, cone.into), 1);
             EXPECT_LT(cone.into, cone.cone);
-            EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), kDoubledCone_m);
+            EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), radius_m);
         }
         // The order of the list does not count.
         std::vector<MergedCone> before = doubles.merged();
@@ -155,7 +220,7 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
 TEST(DoubledCones, ARowOfConesDoesNotCollapse) {
     Scene scene;
     for (ConeId id = 0; id < 10; ++id) scene.cones.push_back({id, {0.08 * static_cast<double>(id), 2.0}});
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 2, 4, 6, 8}));
 }
 
@@ -163,7 +228,7 @@ TEST(DoubledCones, FarthestPositionsAreNoTrouble) {
     const double most = std::numeric_limits<double>::max();
     Scene scene;
     scene.cones = {{0, {most, -most}}, {1, {-most, most}}, {2, {1e300, 0.0}}, {3, {1e300, 0.0}}};
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 1, 2}));
 }
 
@@ -175,7 +240,8 @@ TEST(DoubledCones, ManyAtOnePlaceTakeNoLongerThanManyApart) {
         const double x = near(random);
         scene.cones.push_back({id, {x, near(random)}});
     }
-    DoubledCones doubles;  // each against each other would be 2e10 distances, which no test waits for
+    DoubledCones doubles(
+        kDoubledCone_m);  // each against each other would be 2e10 distances, which no test waits for
     EXPECT_EQ(doubles.merge(scene).cones.size(), 1U);
 }
 

@@ -49,10 +49,11 @@ struct UncutLane {
 };
 
 /// Cones of a scene that stand at most this far apart [m] are one cone that a map holds twice: the base of
-/// the smallest cone of the rules is 0.228 m wide, so the middles of two cones cannot be that near.
+/// the smallest cone of the rules is 0.228 m wide, so the middles of two cones cannot be that near. A
+/// detector may merge cones that stand farther apart, see LaneDetector::doubled_cone_m.
 inline constexpr double kDoubledCone_m = 0.12;
 
-/// A cone that a detector did not look at, since it stands within kDoubledCone_m of another one.
+/// A cone that a detector did not look at, since it stands within its doubled_cone_m of another one.
 struct MergedCone {
     ConeId cone;
     ConeId into;  ///< the smaller id, which stands for both in the lane
@@ -91,7 +92,7 @@ struct DetectionLimits {
 /// one thread; instances are independent of each other.
 class LaneDetector {
   public:
-    LaneDetector();
+    LaneDetector() : LaneDetector(kDoubledCone_m) {}
     LaneDetector(const LaneDetector&) = delete;
     LaneDetector& operator=(const LaneDetector&) = delete;
     virtual ~LaneDetector();
@@ -100,8 +101,15 @@ class LaneDetector {
     /// search or its backend throws give status error and a message.
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
+    /// Cones that stand at most this far apart [m] are one cone for this detector.
+    [[nodiscard]] double doubled_cone_m() const;
+
     /// Forgets what was carried from earlier scenes.
     virtual void reset() {}
+
+  protected:
+    /// Of a detector that merges cones up to `doubled_cone_m` apart, 0.4 m at most.
+    explicit LaneDetector(double doubled_cone_m);
 
   private:
     /// Precondition: the scene is valid and has no doubles, and the limit is a number.
