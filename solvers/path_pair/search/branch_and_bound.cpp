@@ -57,9 +57,8 @@ constexpr std::int64_t kFirstTries = 1000;  ///< and for the first one
 BranchAndBound::BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
     : graph_(graph), incumbent_(incumbent), options_(options) {}
 
-BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance,
-                                            std::function<bool()> stopped) {
-    begin(system, tolerance, std::move(stopped));
+BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tolerance, SearchClock& clock) {
+    begin(system, tolerance, clock);
     root_.bound = graph_.share_bound();
     root_.max_steps = options_.root_steps;
     ++nodes_;
@@ -77,18 +76,18 @@ BranchAndBound::Outcome BranchAndBound::run(const LegSystem& system, double tole
     return {std::min(open_bound, cutoff()), open_bound == kUnreachable};
 }
 
-double BranchAndBound::run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
-    begin(system, tolerance, std::move(stopped));
+double BranchAndBound::run_root(const LegSystem& system, double tolerance, SearchClock& clock) {
+    begin(system, tolerance, clock);
     root_.max_steps = options_.root_steps;
     ascend(root_, true);
     return root_.bound;
 }
 
 std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& system, double unit,
-                                                            std::function<bool()> stopped) {
+                                                            SearchClock& clock) {
     unit_ = unit;
     stages_.clear();
-    begin(system, 0.0, std::move(stopped));
+    begin(system, 0.0, clock);
     root_.max_steps = options_.root_steps;
     ascend(root_, true);
     unit_ = 0.0;
@@ -96,17 +95,16 @@ std::vector<Multipliers> BranchAndBound::run_root_in_stages(const LegSystem& sys
     return std::move(stages_);
 }
 
-void BranchAndBound::begin(const LegSystem& system, double tolerance, std::function<bool()> stopped) {
+void BranchAndBound::begin(const LegSystem& system, double tolerance, SearchClock& clock) {
     tolerance_ = tolerance;
-    clock_ = SearchClock(std::move(stopped));
-    stopped_ = [this] { return clock_.out_of_time(); };
+    clock_ = &clock;
     cliques_.clear();
     decisions_.reset(graph_);
-    relaxation_.bind(graph_, system, cliques_, decisions_, clock_);
-    completion_.bind(graph_, relaxation_, incumbent_, clock_);
-    fronts_.bind(relaxation_, stopped_);
-    frontier_search_.bind(graph_, relaxation_, incumbent_);
-    beam_.bind(graph_, relaxation_, incumbent_, clock_);
+    relaxation_.bind(graph_, system, cliques_, decisions_, clock);
+    completion_.bind(graph_, relaxation_, incumbent_, clock);
+    fronts_.bind(relaxation_, clock);
+    frontier_search_.bind(graph_, relaxation_, incumbent_, clock);
+    beam_.bind(graph_, relaxation_, incumbent_, clock);
     edge_use_.assign(to_index(graph_.edge_count()), 0.0);
     end_use_.assign(to_index(graph_.cone_count()), 0.0);
     index_.assign(to_index(graph_.cone_count()), 0);
@@ -114,7 +112,7 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, std::funct
     for (std::size_t cone = 0; cone < starting_.size(); ++cone) {
         if (system.kind_count == 2 && system.kinds[1].start[cone] != 0) starting_[cone] = 1;
     }
-    root_.graph.assign(graph_, starting_, clock_);
+    root_.graph.assign(graph_, starting_, clock);
     whole_system_ = &system;
     begin_improvement();
     root_.multipliers.cone.assign(to_index(graph_.cone_count()), 0.0);
@@ -201,14 +199,14 @@ BranchAndBound::Verdict BranchAndBound::ascend(Node& here, bool is_root) {
         if (is_root && (state.step >= kFirstImprovement || graph_.arc_count() >= kLateAscent)) {
             improve_incumbent(here.graph, here.bound);
         }
-        if (stopped_()) return Verdict::stopped;
+        if (clock_->out_of_time()) return Verdict::stopped;
         state.value = evaluate(here.graph);
         if (state.value == -kUnreachable) return Verdict::stopped;
         note_value(here, state);
         here.bound = std::max(here.bound, state.value);
         if (state.value >= cutoff()) return Verdict::closed;
         relaxation_.evaluate_backward(here.graph);
-        if (clock_.struck()) return Verdict::stopped;
+        if (clock_->struck()) return Verdict::stopped;
         count_usage(here.graph);
         if (options_.complete_walks && state.step == state.next_completion) complete_walks(here.graph, state);
         if (state.value >= cutoff()) return Verdict::closed;
@@ -364,16 +362,16 @@ BranchAndBound::Verdict BranchAndBound::search_below(const ResidualGraph& graph,
 BranchAndBound::Verdict BranchAndBound::build_frontiers(const ResidualGraph& graph,
                                                         const FrontierLimits& limits) {
     const auto limit = [&] { return cutoff() + relaxation_.offset(); };
-    edge_sets_.assign(graph_, graph, clock_);
+    edge_sets_.assign(graph_, graph, *clock_);
     if (limits.beam_width > 0) beam_.run(graph, edge_sets_, tolerance_, limits.beam_width);
-    if (clock_.struck()) return Verdict::stopped;
-    dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, clock_);
-    if (clock_.struck()) return Verdict::stopped;
+    if (clock_->struck()) return Verdict::stopped;
+    dominated_edges_.find(graph, relaxation_, edge_sets_, options_.drop_dominated_edges, *clock_);
+    if (clock_->struck()) return Verdict::stopped;
     const bool built = fronts_.build(graph, dominated_edges_, limit(), limits.fronts,
                                      options_.drop_dominated_edges ? &edge_sets_ : nullptr);
-    clock_.out_of_time(kWorkPerMadeFront * to_index(fronts_.size()));
+    clock_->out_of_time(kWorkPerMadeFront * to_index(fronts_.size()));
     if (!built) {
-        return stopped_() ? Verdict::stopped : Verdict::open;
+        return clock_->out_of_time() ? Verdict::stopped : Verdict::open;
     }
     double bound = fronts_.find_onward(limit());
     if (options_.drop_dominated_edges && bound < limit()) {
@@ -382,7 +380,7 @@ BranchAndBound::Verdict BranchAndBound::build_frontiers(const ResidualGraph& gra
         fronts_.find_forward();
         bound = fronts_.find_onward(limit());
     }
-    if (stopped_()) return Verdict::stopped;
+    if (clock_->out_of_time()) return Verdict::stopped;
     if (!(bound < limit())) return Verdict::closed;
     fronts_.drop(limit());
     frontiers_are_built_ = true;
@@ -391,7 +389,7 @@ BranchAndBound::Verdict BranchAndBound::build_frontiers(const ResidualGraph& gra
 
 void BranchAndBound::find_tables() {
     onward_tables_.find(fronts_, edge_sets_, cutoff() + relaxation_.offset(), fronts_.size() >= kWideFronts,
-                        stopped_);
+                        *clock_);
 }
 
 BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& graph,
@@ -408,11 +406,11 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& gr
     }
     find_tables();
     for (const std::size_t width : {kNarrow, FrontierSearch::kAnyWidth}) {
-        if (stopped_()) return Verdict::stopped;
+        if (clock_->out_of_time()) return Verdict::stopped;
         if (width == kNarrow && fronts_.size() < kWideFronts) continue;
         const double before = incumbent_.cutoff();
-        const FrontierSearch::Outcome outcome = frontier_search_.run(
-            fronts_, edge_sets_, onward_tables_, {tolerance_, width, max_labels}, stopped_);
+        const FrontierSearch::Outcome outcome =
+            frontier_search_.run(fronts_, edge_sets_, onward_tables_, {tolerance_, width, max_labels});
         if (outcome == FrontierSearch::Outcome::exhausted) return Verdict::closed;
         if (outcome == FrontierSearch::Outcome::stopped) break;
         if (incumbent_.cutoff() < before) {
@@ -420,7 +418,7 @@ BranchAndBound::Verdict BranchAndBound::search_frontiers(const ResidualGraph& gr
             find_tables();
         }
     }
-    return stopped_() ? Verdict::stopped : Verdict::open;
+    return clock_->out_of_time() ? Verdict::stopped : Verdict::open;
 }
 
 void BranchAndBound::count_usage(const ResidualGraph& graph) {
@@ -452,7 +450,7 @@ void BranchAndBound::separate(const ResidualGraph& graph, Multipliers& multiplie
     if (cliques_.size() >= kMaxCliques) return;
     edge_alive_.assign(to_index(graph_.edge_count()), 0);
     for (int a = 0; a < graph.size(); ++a) edge_alive_[to_index(graph.edge(a))] = 1;
-    separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_, clock_);
+    separation_.separate(graph_, edge_use_, edge_alive_, kCliquesPerRound, cliques_, *clock_);
     multipliers.clique.resize(to_index(cliques_.size()), 0.0);
 }
 

@@ -19,7 +19,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -41,16 +40,15 @@ class BranchAndBound {
         bool complete;
     };
     /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
-    Outcome run(const LegSystem& system, double tolerance, std::function<bool()> stopped);
+    Outcome run(const LegSystem& system, double tolerance, SearchClock& clock);
 
     /// The root's ascent alone: its best bound, minus infinity if stopped before there was one.
-    double run_root(const LegSystem& system, double tolerance, std::function<bool()> stopped);
+    double run_root(const LegSystem& system, double tolerance, SearchClock& clock);
 
     /// The root's ascent without incumbents of its own. Multipliers are whole numbers of `unit`, cycles stay
     /// without gain at them. Returned are those that dropped something, in order, and at last the best ones;
     /// those alone that reach the cutoff where some do. Empty if stopped before there were any.
-    std::vector<Multipliers> run_root_in_stages(const LegSystem& system, double unit,
-                                                std::function<bool()> stopped);
+    std::vector<Multipliers> run_root_in_stages(const LegSystem& system, double unit, SearchClock& clock);
 
     [[nodiscard]] std::int64_t nodes() const { return nodes_; }
     void reset_nodes() { nodes_ = 0; }
@@ -100,7 +98,7 @@ class BranchAndBound {
         std::vector<double> end_use;
     };
 
-    void begin(const LegSystem& system, double tolerance, std::function<bool()> stopped);
+    void begin(const LegSystem& system, double tolerance, SearchClock& clock);
     void begin_improvement();
     /// Searches windows around the incumbent and around pairs of beam searches, for a share of the work that
     /// is larger where `bound` is far from the incumbent. `alive`: what a better lane graph may use.
@@ -174,8 +172,7 @@ class BranchAndBound {
     Incumbent& incumbent_;
     const PathPairOptions& options_;
     double tolerance_ = 0.0;
-    std::function<bool()> stopped_;  ///< looks at the clock
-    SearchClock clock_;
+    SearchClock* clock_ = nullptr;
     CliquePool cliques_;
     CliqueSeparation separation_;
     Decisions decisions_;

@@ -53,7 +53,7 @@ void BranchAndBound::begin_improvement() {
 }
 
 bool BranchAndBound::may_improve(double gap) const {
-    const std::int64_t total = clock_.total_work();
+    const std::int64_t total = clock_->total_work();
     const std::int64_t own = improvement_.work + (in_window_ ? total - improvement_.entered : 0);
     const auto other = static_cast<double>(total - own);
     const double wide =
@@ -81,7 +81,7 @@ void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound)
     if (!may_improve(gap)) return;
     decisions_.reset(graph_);
     enter_windows(alive);
-    while (may_improve(gap) && !clock_.out_of_time()) {
+    while (may_improve(gap) && !clock_->out_of_time()) {
         if (state.needs_start) {
             begin_phase();
         } else {
@@ -95,7 +95,7 @@ void BranchAndBound::improve_incumbent(const ResidualGraph& alive, double bound)
 /// From here on `incumbent_` is the pair that is improved, and the best one is kept aside.
 void BranchAndBound::enter_windows(const ResidualGraph& alive) {
     Improvement& state = improvement_;
-    if (!state.has_whole) state.has_whole = whole_.assign(graph_, starting_, clock_);
+    if (!state.has_whole) state.has_whole = whole_.assign(graph_, starting_, *clock_);
     std::vector<char>& usable = edge_alive_;
     usable.assign(to_index(graph_.arc_count()), 0);
     for (const int arc : alive.arc) usable[to_index(arc)] = 1;
@@ -105,7 +105,7 @@ void BranchAndBound::enter_windows(const ResidualGraph& alive) {
     state.edge_use = edge_use_;
     state.end_use = end_use_;
     state.ascent = ascent_;
-    state.entered = clock_.total_work();
+    state.entered = clock_->total_work();
     std::swap(relaxation_, window_relaxation_);
     state.best = incumbent_;
     std::swap(incumbent_, state.pair);
@@ -119,7 +119,7 @@ void BranchAndBound::leave_windows() {
     incumbent_ = state.best;
     state.known_cost = incumbent_.cutoff();
     std::swap(relaxation_, window_relaxation_);
-    state.work += clock_.total_work() - state.entered;
+    state.work += clock_->total_work() - state.entered;
     multipliers_ = state.multipliers;
     multipliers_.clique.resize(to_index(cliques_.size()), 0.0);
     edge_use_ = state.edge_use;
@@ -136,7 +136,7 @@ void BranchAndBound::begin_phase() {
         incumbent_ = state.best;
     } else {
         incumbent_.reset(graph_, 0.0);
-        pair_beam_.run(graph_, *whole_system_, phase.beam, incumbent_, clock_);
+        pair_beam_.run(graph_, *whole_system_, phase.beam, incumbent_, *clock_);
         if (!incumbent_.found() ||
             std::ranges::find(state.start_costs, incumbent_.cutoff()) != state.start_costs.end()) {
             return;
@@ -150,9 +150,9 @@ void BranchAndBound::begin_phase() {
 /// False where the pair has no window left that might improve it.
 bool BranchAndBound::search_window() {
     if (!window_.next(incumbent_.legs(), order_)) return false;
-    relaxation_.bind(graph_, window_.system(), cliques_, decisions_, clock_);
+    relaxation_.bind(graph_, window_.system(), cliques_, decisions_, *clock_);
     keep_successor_.assign(whole_.out_arc.size(), 1);
-    clock_.out_of_time(whole_.arc.size() + whole_.out_arc.size() / 8);
+    clock_->out_of_time(whole_.arc.size() + whole_.out_arc.size() / 8);
     window_node_.graph.filter(whole_, order_, keep_successor_, index_);
     window_node_.multipliers.cone.assign(to_index(graph_.cone_count()), 0.0);
     window_node_.multipliers.clique.assign(to_index(cliques_.size()), 0.0);
