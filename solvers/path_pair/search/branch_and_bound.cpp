@@ -101,7 +101,8 @@ void BranchAndBound::begin(const LegSystem& system, double tolerance, SearchCloc
     cliques_.clear();
     decisions_.reset(graph_);
     relaxation_.bind(graph_, system, cliques_, decisions_, clock);
-    completion_.bind(graph_, relaxation_, incumbent_, clock);
+    second_leg_.reset(graph_, clock);
+    completion_.bind(graph_, relaxation_, incumbent_, second_leg_, clock);
     fronts_.bind(relaxation_, clock);
     frontier_search_.bind(graph_, relaxation_, incumbent_, clock);
     beam_.bind(graph_, relaxation_, incumbent_, clock);

@@ -15,6 +15,7 @@
 #include "solvers/path_pair/primal/incumbent_window.hpp"
 #include "solvers/path_pair/primal/pair_beam.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
+#include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
 #include <cstddef>
@@ -177,6 +178,7 @@ class BranchAndBound {
     CliqueSeparation separation_;
     Decisions decisions_;
     PairRelaxation relaxation_;
+    SecondLegBound second_leg_;
     PairCompletion completion_;
     EdgeSets edge_sets_;
     DominatedEdges dominated_edges_;

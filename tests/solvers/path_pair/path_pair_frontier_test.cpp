@@ -14,6 +14,7 @@
 #include "solvers/path_pair/primal/frontier_beam.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
+#include "solvers/path_pair/primal/second_leg_bound.hpp"
 #include "tests/support/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
@@ -250,8 +251,10 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
     parameters.d_max = 16.0;
     Fronts s(make_problem(scene, parameters), 1);
     s.relaxation.evaluate_backward(s.residual);
+    SecondLegBound second;
+    second.reset(s.graph, s.clock);
     PairCompletion completion;
-    completion.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    completion.bind(s.graph, s.relaxation, s.incumbent, second, s.clock);
     completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 1e-9, 0);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), -5.0 + 0.4 * std::pow(0.4 / 1.7, 4), 1e-9);
