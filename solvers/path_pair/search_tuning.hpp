@@ -8,8 +8,9 @@ namespace conelane {
 
 // Numbers of path-pair's search. They decide how long it takes, never what is proven: every claimed optimum
 // is an optimum with any of them. "Row ..." names the row of the table "What was tried" in exact-search.md
-// that has the measurement. Numbers without a row are those of its row "other steps, patience, ...": others
-// took within 3 % either way, or were better by one objective and worse by the other.
+// that has the measurement. Numbers without a row, but for limits of memory, are those of its row "other
+// steps, patience, ...": others took within 3 % either way, or were better by one objective and worse by the
+// other.
 
 /// When a node's ascent shortens its steps, and when it ends.
 struct AscentPatience {
@@ -19,12 +20,13 @@ struct AscentPatience {
 
 /// The ascent of a node's multipliers.
 struct AscentTuning {
-    AscentPatience root{
-        8, 0.2};  ///< min_scale: row "fronts tried again at 0.6", 16 % less with 0.2 than with 0.05
+    /// min_scale: row "fronts tried again at 0.6", together with retry_gap.
+    AscentPatience root{8, 0.2};
     AscentPatience node{4, 0.1};
     double min_gain = 0.005;  ///< share of the gap by which a step's bound has to rise to be progress
-    double max_overshoot =
-        2.0;  ///< gaps that the root's steps aim at, at most: row "the ascent's steps aimed at ..."
+    /// Gaps that the root's steps aim at, at most: row "the ascent's steps aimed at the incumbent of
+    /// windows".
+    double max_overshoot = 2.0;
     double use_memory = 0.9;  ///< share of the averaged use of an edge, or an end, that a step keeps
     int steps_per_separation = 4;
     int cliques_per_separation = 12;
@@ -50,23 +52,23 @@ struct FrontierTuning {
     std::size_t max_label_words = 40'000'000;  ///< of 8 bytes, of the labels' sets of edges together
 
     std::size_t work_per_front =
-        500;                 ///< steps of the clock (ns) to make one: docs/path-pair.md, half a microsecond
-    int wide_fronts = 4000;  ///< from here on there are detours, and a narrow search first
+        500;                        ///< steps of the clock to make one: half a microsecond, docs/path-pair.md
+    int wide_fronts = 4000;         ///< from here on there are detours, and a narrow search first
     std::size_t narrow_labels = 2;  ///< that it expands at a front
 
     // Beams for an incumbent. Widths in labels at an arc.
     std::size_t first_beam_width = 2;  ///< before the root's first try: row "a beam before the first fronts"
     int first_beam_min_arcs = 70;      ///< of a graph that has it, ...
     int first_beam_end_arcs = 1000;    ///< ... and from here on none: its windows come first
-    std::array<int, 2> beam_steps{
-        20, 60};                 ///< of the root, or later: row "a beam of 16, 24 or 32, and earlier ones"
-    std::size_t beam_width = 8;  ///< the same row
+    /// Of the root, or later: row "a beam of 16, 24 or 32, and earlier ones", as is the width.
+    std::array<int, 2> beam_steps{20, 60};
+    std::size_t beam_width = 8;
 
     // Targets of the last try: row "targets below the incumbent".
     std::array<double, 3> targets{0.3, 0.6, 1.0};  ///< shares of the gap
-    std::array<double, 2> lower_targets{0.3,
-                                        0.1};  ///< of a target's gap that was too wide: row "lower targets"
-    double min_target_gap = 1.0;               ///< cost by which targets differ at least
+    /// Of a target's gap that was too wide: row "lower targets where one was too wide".
+    std::array<double, 2> lower_targets{0.3, 0.1};
+    double min_target_gap = 1.0;  ///< cost by which targets differ at least
 };
 
 /// Which node is next, and on what it branches.
