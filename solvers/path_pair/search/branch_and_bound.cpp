@@ -82,7 +82,7 @@ void BranchAndBound::take_decisions(const Node& node) {
         if (branching.on == Branching::On::end) {
             decisions_.decide_end(branching.what, in ? Decisions::End::always : Decisions::End::never);
         } else if (in) {
-            decisions_.require_edge(graph_, branching.what, true);
+            decisions_.require_edge(graph_, branching.what);
         }
     }
 }
