@@ -51,8 +51,8 @@ struct FrontierTuning {
     std::size_t max_labels = 1'000'000;
     std::size_t max_label_words = 40'000'000;  ///< of 8 bytes, of the labels' sets of edges together
 
-    std::size_t work_per_front =
-        500;                        ///< steps of the clock to make one: half a microsecond, docs/path-pair.md
+    /// Steps of the clock to make one: half a microsecond, docs/path-pair.md.
+    std::size_t work_per_front = 500;
     int wide_fronts = 4000;         ///< from here on there are detours, and a narrow search first
     std::size_t narrow_labels = 2;  ///< that it expands at a front
 
