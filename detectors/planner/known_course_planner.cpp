@@ -1,6 +1,7 @@
 #include "detectors/planner/known_course_planner.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/frame.hpp"
 #include "detectors/planner/known_course.hpp"
 #include "detectors/planner/known_registration.hpp"
 #include "detectors/planner/seen_cones.hpp"
@@ -58,28 +59,7 @@ constexpr double kSeenBeyond_m = 5.0;  ///< of the farthest matched cone, a lane
 
 void validate(const PlannerOptions& options) {
     if (options.laps) throw InvalidInput("laps", "is for trackdrive and autocross");
-    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
-    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
-}
-
-/// The frame as a scene; cones without id get ids that no other cone has. Throws InvalidInput.
-Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
-    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
-    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
-    Scene scene{"frame", frame.pose, frame.cones};
-    std::vector<ConeId> used;
-    for (const Cone& cone : frame.cones) {
-        if (cone.id != kNoId) used.push_back(cone.id);
-    }
-    std::ranges::sort(used);
-    ConeId next = kNoId;
-    for (Cone& cone : scene.cones) {
-        if (cone.id != kNoId) continue;
-        while (std::ranges::binary_search(used, next)) ++next;
-        cone.id = next++;
-    }
-    validate(scene);
-    return scene;
+    validate_shared(options);
 }
 
 class KnownCoursePlanner final : public Planner {
