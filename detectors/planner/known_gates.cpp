@@ -10,12 +10,13 @@ namespace {
 
 constexpr double kReach_m = 7.0;  ///< the lines are this near to where they are expected
 constexpr double kStep_m = 0.25;
-constexpr double kAlong_m = 0.85;   ///< cones of a gate are this near to its middle
-constexpr double kInside_m = 0.5;   ///< of the boundary
-constexpr double kOutside_m = 0.8;  ///< big cones may stand farther outside
-constexpr double kColor = 0.25;     ///< of a cone: gained by orange, lost by blue or yellow
-constexpr double kKept = 0.93;      ///< from frame to frame: the map may have moved
-constexpr double kMinWeight = 1.5;  ///< two frames
+constexpr double kAlong_m = 0.85;    ///< cones of a gate are this near to its middle
+constexpr double kInside_m = 0.5;    ///< of the boundary
+constexpr double kOutside_m = 0.8;   ///< big cones may stand farther outside
+constexpr double kColor = 0.25;      ///< of a cone: gained by orange, lost by blue or yellow
+constexpr double kKept = 0.93;       ///< from frame to frame: the map may have moved
+constexpr double kMinWeight = 1.5;   ///< two frames
+constexpr double kViewKept = 0.995;  ///< of range and bearing, from frame to frame
 
 // Log likelihoods.
 constexpr double kStartSigma_m = 1.6;  ///< of the start line where no gate has been seen
@@ -41,6 +42,7 @@ GateEvidence::GateEvidence(double finish_m) : finish_m_(finish_m) {
 }
 
 void GateEvidence::clear() {
+    range_m_ = bearing_rad_ = 0.0;
     start_line_m_ = 0.0;
     has_seen_finish_ = false;
     for (std::vector<Place>* places : {&start_, &finish_}) {
@@ -51,7 +53,10 @@ void GateEvidence::clear() {
     }
 }
 
-void GateEvidence::observe(const Registration& registration, const Frame& frame, const SeenView& view) {
+void GateEvidence::observe(const Registration& registration, const Frame& frame, const SeenView& seen) {
+    range_m_ = std::max(seen.range_m, kViewKept * range_m_);
+    bearing_rad_ = std::max(seen.bearing_rad, kViewKept * bearing_rad_);
+    const SeenView view{seen.pose, range_m_, bearing_rad_};
     struct OnBoundary {
         double x_m;
         std::size_t side;

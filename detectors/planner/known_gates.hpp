@@ -19,7 +19,7 @@ class GateEvidence {
     explicit GateEvidence(double finish_m);
 
     /// Counts the cones of one frame.
-    void observe(const Registration& registration, const Frame& frame, const SeenView& view);
+    void observe(const Registration& registration, const Frame& frame, const SeenView& seen);
 
     /// Where the start line is, as an x coordinate; the likeliest place. Ties: the smaller one.
     [[nodiscard]] double start_line_m() const { return start_line_m_; }
@@ -42,6 +42,9 @@ class GateEvidence {
     void decide();
 
     double finish_m_;
+    /// How far frames looked so far: where no cone stands behind a gate, its own frame does not tell.
+    double range_m_ = 0.0;
+    double bearing_rad_ = 0.0;
     std::vector<Place> start_;
     std::vector<Place> finish_;
     double start_line_m_ = 0.0;
