@@ -110,6 +110,7 @@ TEST_P(DoublesOfFront, TakeNoTrustAway) {
     const auto detect = [&](const Scene& scene) {
         return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);
     };
+    EXPECT_EQ(make_detector(GetParam())->doubled_cone_m(), kFrontDoubledCone_m);
     const Scene once = tests::straight_front_scene(7);
     const LaneAnswer expected = detect(once);
     ASSERT_EQ(expected.status, LaneStatus::found);
