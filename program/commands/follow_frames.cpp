@@ -74,12 +74,12 @@ class PlanSink {
         write(plan_line(line.number, line.frame->time_s, plan));
         if (plan.answer.status == LaneStatus::error) {
             errors_.add_error(method_, std::to_string(line.number), plan.answer.message);
+        } else {
+            errors_.add_answer(method_);
         }
-        errors_.add_answer(method_);
     }
     void put_refused(const FrameLine& line, const std::string& message) {
         write(refused_frame_line(line.number, message));
-        errors_.add_answer(method_);
         errors_.add_error(method_, std::to_string(line.number), message);
     }
     void commit() {

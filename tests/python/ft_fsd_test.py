@@ -272,7 +272,8 @@ class RecordedRuns(unittest.TestCase):
             at_car += np.linalg.norm(path[0, 1:3] - position) < 1.0  # no path of an earlier frame
             both += len(left) > 0 and len(right) > 0
         self.assertEqual(count, 440)
-        self.assertGreater(at_car, 430)
+        # Where colours contradict the lane of the planner there is no path: in 13 frames of this run.
+        self.assertGreater(at_car, 415)
         self.assertGreater(both, 390)
 
     def test_every_lane_that_is_found_can_be_driven_and_says_how_far(self):
