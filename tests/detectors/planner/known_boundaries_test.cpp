@@ -1,7 +1,6 @@
 // The geometry of acceleration and skidpad, against numbers computed by hand from the rules.
 
 #include "detectors/planner/known_course.hpp"
-
 #include "tests/detectors/planner/known_event.hpp"
 
 #include <cmath>
