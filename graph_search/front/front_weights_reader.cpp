@@ -208,26 +208,13 @@ class JsonReader {
     std::size_t at_ = 0;
 };
 
-struct FeatureList {
-    std::string_view key;
-    std::span<const FrontFeature> features;
-};
-std::array<FeatureList, 6> feature_lists() {
-    return {{{"state", state_feature_table()},
-             {"extend", extend_feature_table()},
-             {"stop", stop_feature_table()},
-             {"start", start_feature_table()},
-             {"cone", cone_feature_table()},
-             {"lane", whole_lane_feature_table()}}};
-}
-
 /// The inputs have to be those that the library computes, in their order.
 void read_features(JsonReader& json) {
     if (json.next() != '{') throw InvalidInput("features", "must be an object of lists of names");
     std::set<std::string> seen;
     json.object([&](const std::string& key) {
-        const auto lists = feature_lists();
-        const auto known = std::ranges::find(lists, key, &FeatureList::key);
+        const auto lists = front_feature_lists();
+        const auto known = std::ranges::find(lists, key, &FrontFeatureList::key);
         if (known == lists.end()) throw InvalidInput("features", "'" + key + "' is no list of the library");
         if (!seen.insert(key).second) throw InvalidInput("features", "'" + key + "' is there twice");
         if (json.next() != '[') throw InvalidInput("features", "'" + key + "' must be a list of names");
@@ -247,7 +234,7 @@ void read_features(JsonReader& json) {
                                                std::to_string(known->features.size()) +
                                                " as the library: the weights are of another version");
     });
-    for (const FeatureList& list : feature_lists()) {
+    for (const FrontFeatureList& list : front_feature_lists()) {
         if (!seen.contains(std::string(list.key)))
             throw InvalidInput("features", "'" + std::string(list.key) + "' is missing");
     }

@@ -97,15 +97,9 @@ std::shared_ptr<const StepScores> shipped_step_scores() {
 
 FrontWeights shipped_front_weights() {
     std::vector<std::string_view> known;
-    const auto add = [&](auto table) {
-        for (const FrontFeature& feature : table) known.push_back(feature.name);
-    };
-    add(state_feature_table());
-    add(extend_feature_table());
-    add(stop_feature_table());
-    add(start_feature_table());
-    add(cone_feature_table());
-    add(whole_lane_feature_table());
+    for (const FrontFeatureList& list : front_feature_lists()) {
+        for (const FrontFeature& feature : list.features) known.push_back(feature.name);
+    }
     require(std::ranges::equal(kFront.features, known), "features", "are not those of the library");
     FrontWeights result{weights(kFront.extend), weights(kFront.stop),   weights(kFront.start),
                         weights(kFront.rank),   weights(kFront.usable), weights(kFront.right),
