@@ -8,7 +8,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-// Replaces the clocks of the whole program, of the C library and of every library that it links: a test
+// Fakes the clocks of the whole program, of the C library and of every library that it links: a test
 // program includes this once. The monotonic clock is as it was, but ahead by what a test asks for, as if the
 // processor had been away; the time of day jumps by an hour, forth and back, from one look at it to the next.
 

@@ -1,4 +1,4 @@
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 
 #include "model/geometry.hpp"
 
