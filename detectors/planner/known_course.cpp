@@ -13,97 +13,70 @@ constexpr double kPi = std::numbers::pi;
 // Acceleration.
 constexpr double kFinish_m = 75.0;
 constexpr double kRestWithin_m = 100.0;
-constexpr double kSpacing_m = 5.0;
-constexpr double kGateHalf_m = 0.3;  ///< the big cones of a gate stand this far before and behind its line
+constexpr double kBeforeStart_m = 6.0;
+constexpr double kSpacing_m = 5.0;       ///< of cones, more or less
+constexpr double kSpacingReach_m = 3.2;  ///< a place without a cone within it lacks one
 
 // Skidpad.
 constexpr double kRadius_m = 9.125;  ///< of the route, and half the distance of the centres
 constexpr double kCircle_m = 2.0 * kPi * kRadius_m;
 constexpr double kExit_m = 25.0;
+constexpr double kEntryFrom_m = -20.0;
+constexpr double kExitTo_m = 27.0;
+constexpr double kJunction_m = 7.4;  ///< where the outer circle meets the lanes of entry and exit
 constexpr int kInnerCones = 16;
+constexpr double kRingReach_m = 1.9;
+constexpr double kOtherLane_m = 1.3;  ///< nearer to the x axis the outer circle lies in another lane
 constexpr std::array<std::string_view, 6> kPhases = {"approach", "right 1", "right 2",
                                                      "left 1",   "left 2",  "exit"};
 
-/// Two cones beside each other at `x`.
-void add_pair(KnownCourse& course, double x_m, bool certain, ConeColor left, ConeColor right) {
-    course.cones.push_back({{x_m, kKnownHalfWidth_m}, {0.0, 1.0}, certain, left});
-    course.cones.push_back({{x_m, -kKnownHalfWidth_m}, {0.0, -1.0}, certain, right});
-}
-
-void add_lines(KnownCourse& course, double from_x_m, double to_x_m) {
-    course.lines.push_back({from_x_m, to_x_m, kKnownHalfWidth_m, 1.0});
-    course.lines.push_back({from_x_m, to_x_m, -kKnownHalfWidth_m, -1.0});
+/// Both boundaries of a lane along the x axis.
+void add_lines(KnownCourse& course, double from_x_m, double to_x_m, ConeColor left, ConeColor right) {
+    course.lines.push_back({from_x_m, to_x_m, kKnownHalfWidth_m, 1.0, left});
+    course.lines.push_back({from_x_m, to_x_m, -kKnownHalfWidth_m, -1.0, right});
 }
 
 KnownCourse acceleration() {
     KnownCourse course;
     course.mission = Mission::acceleration;
-    course.start_x_m = -1.0;  // between the 0.3 m of the rules and the 2 m of a simulator
+    course.start_x_m = -1.5;  // between the 0.3 m of the rules and the 2 m of a simulator
     course.finish_s_m = kFinish_m;
     course.end_s_m = kFinish_m + kRestWithin_m;
     course.max_ahead_m = 60.0;
-    course.max_widening_m = 1.25;
-    course.repeats_every_m = kSpacing_m;
-    const auto gate = [&](double x_m) {
-        for (const double half_m : {-kGateHalf_m, kGateHalf_m}) {
-            add_pair(course, x_m + half_m, true, ConeColor::orange, ConeColor::orange);
-        }
-    };
-    gate(0.0);
-    for (double x_m = kSpacing_m; x_m < kFinish_m - 1.0; x_m += kSpacing_m) {
-        add_pair(course, x_m, true, ConeColor::blue, ConeColor::yellow);
+    course.min_widening_m = -0.1;
+    course.max_widening_m = 1.4;
+    add_lines(course, -kBeforeStart_m, kFinish_m - 1.0, ConeColor::blue, ConeColor::yellow);
+    add_lines(course, kFinish_m - 1.0, course.end_s_m, ConeColor::orange, ConeColor::orange);
+    for (double x_m = 0.0; x_m <= kFinish_m; x_m += kSpacing_m) {
+        course.places.push_back({{x_m, kKnownHalfWidth_m}, {0.0, 1.0}, kSpacingReach_m});
+        course.places.push_back({{x_m, -kKnownHalfWidth_m}, {0.0, -1.0}, kSpacingReach_m});
     }
-    gate(kFinish_m);
-    for (double x_m = kFinish_m + kSpacing_m; x_m <= course.end_s_m; x_m += kSpacing_m) {
-        add_pair(course, x_m, false, ConeColor::orange, ConeColor::orange);
-    }
-    add_lines(course, -6.0, course.end_s_m);
     return course;
 }
 
 KnownCourse skidpad() {
     KnownCourse course;
     course.mission = Mission::skidpad;
+    course.has_place_along = true;
     course.start_x_m = -15.75;  // between the 15 m of the rules and the 16.7 m of recordings
     course.finish_s_m = 4.0 * kCircle_m;
     course.end_s_m = course.finish_s_m + kExit_m;
     course.max_ahead_m = 25.0;
     course.min_widening_m = -0.15;
     course.max_widening_m = 0.35;
-    for (const double x_m : {-15.0, -11.25, 11.0, 16.0, 21.0}) {
-        add_pair(course, x_m, false, ConeColor::orange, ConeColor::orange);
-    }
-    add_lines(course, -20.0, -8.5);
-    add_lines(course, 8.5, 27.0);
+    add_lines(course, kEntryFrom_m, -kJunction_m, ConeColor::orange, ConeColor::orange);
+    add_lines(course, kJunction_m, kExitTo_m, ConeColor::orange, ConeColor::orange);
     for (const double side : {-1.0, 1.0}) {  // the right circle, then the left one
         const Point centre(0.0, side * kRadius_m);
         const ConeColor inner = side < 0.0 ? ConeColor::yellow : ConeColor::blue;
         const ConeColor outer = side < 0.0 ? ConeColor::blue : ConeColor::yellow;
-        // From the place where the circles touch, so that both mirror each other.
-        const auto direction = [&](double angle_rad) {
-            return Point(std::sin(angle_rad), -side * std::cos(angle_rad));
-        };
+        const double inner_m = kRadius_m - kKnownHalfWidth_m;
+        course.arcs.push_back({centre, inner_m, -1.0, side, 0.0, inner});
+        course.arcs.push_back({centre, kRadius_m + kKnownHalfWidth_m, 1.0, side, kOtherLane_m, outer});
         for (int i = 0; i < kInnerCones; ++i) {
-            const Point out = direction(2.0 * kPi * i / kInnerCones);
-            course.cones.push_back({centre + (kRadius_m - kKnownHalfWidth_m) * out, -out, true, inner});
-        }
-        // 11 of the 16 places are outside of the lanes between the circles; two more cones stand where the
-        // outer circle meets these lanes, or nearer to their neighbor.
-        for (int i = 3; i <= kInnerCones - 3; ++i) {
-            const Point out = direction(2.0 * kPi * i / kInnerCones);
-            course.cones.push_back({centre + (kRadius_m + kKnownHalfWidth_m) * out, out, true, outer});
-        }
-        for (const double from_middle_rad : {0.79, 1.0}) {
-            for (const double angle_rad : {from_middle_rad, -from_middle_rad}) {
-                const Point out = direction(angle_rad);
-                course.cones.push_back({centre + (kRadius_m + kKnownHalfWidth_m) * out, out, false, outer});
-            }
-        }
-    }
-    // The gate of big cones at the timing line; events differ in where it stands.
-    for (const double x_m : {-1.2, 1.2}) {
-        for (const double side : {1.0, -1.0}) {
-            course.cones.push_back({{x_m, side * 1.75}, {0.0, side}, false, ConeColor::orange});
+            const double angle_rad = 2.0 * kPi * i / kInnerCones;
+            const Point out(std::sin(angle_rad), -side * std::cos(angle_rad));
+            course.places.push_back({centre + inner_m * out, -out, kRingReach_m});
         }
     }
     return course;
@@ -113,6 +86,29 @@ KnownCourse skidpad() {
 
 KnownCourse known_course(Mission mission) {
     return mission == Mission::skidpad ? skidpad() : acceleration();
+}
+
+std::optional<BoundaryContact> KnownCourse::boundary_at(const Point& place, double widening_m,
+                                                        double window_m) const {
+    std::optional<BoundaryContact> nearest;
+    double nearest_m = window_m;
+    for (const KnownLine& line : lines) {
+        if (place.x() < line.from_x_m || place.x() > line.to_x_m) continue;
+        const double off_m = place.y() - line.y_m - widening_m * line.outward_y;
+        if (std::abs(off_m) >= nearest_m) continue;
+        nearest_m = std::abs(off_m);
+        nearest = BoundaryContact{{0.0, 1.0}, off_m, line.outward_y, line.color};
+    }
+    for (const KnownArc& arc : arcs) {
+        if (arc.side * place.y() < arc.min_aside_m) continue;
+        const Point arm = place - arc.centre;
+        const double distance_m = arm.norm();
+        const double off_m = distance_m - arc.radius_m - widening_m * arc.outward;
+        if (std::abs(off_m) >= nearest_m || distance_m == 0.0) continue;
+        nearest_m = std::abs(off_m);
+        nearest = BoundaryContact{arm / distance_m, off_m, arc.outward, arc.color};
+    }
+    return nearest;
 }
 
 DrivablePoint KnownCourse::at(double s_m) const {

@@ -1,13 +1,16 @@
 #include "detectors/planner/known_course_planner.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "detectors/planner/frame.hpp"
 #include "detectors/planner/known_course.hpp"
+#include "detectors/planner/known_gates.hpp"
 #include "detectors/planner/known_registration.hpp"
 #include "detectors/planner/seen_cones.hpp"
+#include "model/deadline.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -22,18 +25,10 @@ constexpr double kGain = 0.35;    ///< of a correction: one frame's noise moves 
 constexpr double kJump_m = 0.25;  ///< a correction that is larger is a jump of the map: taken whole
 constexpr double kJump_rad = 0.03;
 constexpr int kMinMatched = 3;
-constexpr double kMinMatchedShare = 0.25;  ///< of the cones within kCounted_m
-constexpr double kCounted_m = 15.0;
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
 constexpr double kSearchAgain_s = 0.3;  ///< without support
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
 constexpr std::size_t kMinDrawnTogether = 6;
-
-// Which of the places where a course looks the same.
-constexpr double kEvidenceKept = 0.95;  ///< from frame to frame
-constexpr double kMinEvidence = 4.0;    ///< that another place has more
-constexpr std::array<int, 5> kShifts = {-2, -1, 0, 1, 2};
-constexpr std::size_t kHere = 2;
 
 // Progress along the route.
 constexpr double kWindow_m = 2.0;
@@ -44,11 +39,14 @@ constexpr double kMaxDriven_m = 30.0;  ///< between two frames; more is a jump o
 // The last line: said a little after it, never before.
 constexpr double kAfterLine_m = 1.0;  ///< in two frames one after the other
 constexpr double kSurelyAfterLine_m = 2.0;
+constexpr double kUnseenLine_m = 2.5;  ///< farther where no gate has shown the line
 
 // Where cones close the exit.
 constexpr double kClosedAfter_m = 10.0;  ///< the line at the earliest
 constexpr double kBeforeClosing_m = 2.0;
 constexpr int kMinClosingSightings = 3;
+constexpr double kRow_m = 1.5;   ///< behind a row: what stands there is not of it
+constexpr double kMiddle = 0.6;  ///< of the half width: a cone nearer to the middle stands in the way
 
 // The lane of the detector, before the registration.
 constexpr double kUnregistered_m = 10.0;  ///< may be driven by it: both missions begin straight
@@ -58,28 +56,7 @@ constexpr double kSeenBeyond_m = 5.0;  ///< of the farthest matched cone, a lane
 
 void validate(const PlannerOptions& options) {
     if (options.laps) throw InvalidInput("laps", "is for trackdrive and autocross");
-    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
-    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
-}
-
-/// The frame as a scene; cones without id get ids that no other cone has. Throws InvalidInput.
-Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
-    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
-    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
-    Scene scene{"frame", frame.pose, frame.cones};
-    std::vector<ConeId> used;
-    for (const Cone& cone : frame.cones) {
-        if (cone.id != kNoId) used.push_back(cone.id);
-    }
-    std::ranges::sort(used);
-    ConeId next = kNoId;
-    for (Cone& cone : scene.cones) {
-        if (cone.id != kNoId) continue;
-        while (std::ranges::binary_search(used, next)) ++next;
-        cone.id = next++;
-    }
-    validate(scene);
-    return scene;
+    validate_shared(options);
 }
 
 class KnownCoursePlanner final : public Planner {
@@ -87,7 +64,8 @@ class KnownCoursePlanner final : public Planner {
     explicit KnownCoursePlanner(const PlannerOptions& options)
         : options_(options),
           detector_(make_detector(options.detector, options.detector_options)),
-          known_(known_course(options.mission)) {}
+          known_(known_course(options.mission)),
+          gates_(known_.course().finish_s_m) {}
 
     Plan update(const Frame& frame, const DetectionLimits& limits) override;
     std::optional<DrivableLane> course() const override { return std::nullopt; }
@@ -95,13 +73,17 @@ class KnownCoursePlanner final : public Planner {
 
   private:
     [[nodiscard]] const KnownCourse& shape() const { return known_.course(); }
-    void search(const Frame& frame, const SeenView& view);
-    void track(const Frame& frame, const SeenView& view);
-    [[nodiscard]] bool supports(const RegistrationFit& fit, const Frame& frame) const;
-    void choose_among_repetitions(std::span<const SeenCone> cones, const SeenView& view);
-    void search_again(const Frame& frame, const SeenView& view);
+    void search(const Frame& frame, const SeenView& view, const Deadline& deadline);
+    void track(const Frame& frame, const SeenView& view, const Deadline& deadline);
+    [[nodiscard]] bool supports(const RegistrationFit& fit) const;
+    void search_again(const Frame& frame, const SeenView& view, const Deadline& deadline);
+    void find_lines(const Frame& frame, const SeenView& view);
     void accept(const RegistrationFit& fit, const Frame& frame);
     void advance(const Pose& pose);
+    /// A place of the map in the coordinates of the route.
+    [[nodiscard]] Point on_route(const Point& in_map) const {
+        return registration_->to_course(in_map) - Point(line_m_, 0.0);
+    }
     [[nodiscard]] double nearest_on_route(const Point& place, double from_s_m, double to_s_m) const;
     void find_closing_cones();
     [[nodiscard]] DrivableLane route_ahead() const;
@@ -111,6 +93,7 @@ class KnownCoursePlanner final : public Planner {
     PlannerOptions options_;
     std::unique_ptr<LaneDetector> detector_;
     KnownRegistration known_;
+    GateEvidence gates_;  ///< of acceleration
 
     SeenCones seen_;
     std::vector<SeenView> views_;  ///< while searching
@@ -121,14 +104,15 @@ class KnownCoursePlanner final : public Planner {
     double supported_s_ = 0.0;     ///< time of the last frame whose cones speak for the registration
     double supported_at_m_ = 0.0;  ///< where the car was on the route then
     double seen_ahead_m_ = 0.0;    ///< of the car then
-    std::array<double, kShifts.size()> evidence_{};
-    double at_m_ = 0.0;         ///< of the car on the route
-    double progress_m_ = 0.0;   ///< the farthest that it was
-    double off_route_m_ = 0.0;  ///< of the car
+    double line_m_ = 0.0;          ///< x of the start line in the registration; 0 in skidpad
+    double at_m_ = 0.0;            ///< of the car on the route
+    double progress_m_ = 0.0;      ///< the farthest that it was
+    double off_route_m_ = 0.0;     ///< of the car
     int frames_after_line_ = 0;
     bool finished_ = false;
-    double end_m_ = 0.0;  ///< of the route
-    bool began_ = false;  ///< a lane was given
+    double end_m_ = 0.0;                ///< of the route
+    std::optional<double> closed_x_m_;  ///< a row of cones across the exit, in coordinates of the route
+    bool began_ = false;                ///< a lane was given
     Plan last_;
 };
 
@@ -138,14 +122,17 @@ void KnownCoursePlanner::reset() {
     views_.clear();
     time_s_.reset();
     registration_.reset();
-    evidence_ = {};
+    gates_.clear();
+    line_m_ = 0.0;
     frames_after_line_ = 0;
     finished_ = false;
+    closed_x_m_.reset();
     began_ = false;
     last_ = {};
 }
 
 Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limits) {
+    const Deadline deadline(limits.time_limit_ms);
     const Scene scene = checked_scene(frame, limits);
     if (time_s_ && frame.time_s <= *time_s_) {
         Plan plan = last_;
@@ -160,10 +147,11 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
     const SeenView view = view_of(frame);
     Plan plan;
     if (registration_) {
-        track(frame, view);
+        track(frame, view, deadline);
+        find_lines(frame, view);
         advance(frame.pose);
     } else {
-        search(frame, view);
+        search(frame, view, deadline);
     }
     if (registration_) {
         plan_registered(plan, frame);
@@ -178,19 +166,19 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
     return plan;
 }
 
-void KnownCoursePlanner::search(const Frame& frame, const SeenView& view) {
+void KnownCoursePlanner::search(const Frame& frame, const SeenView& view, const Deadline& deadline) {
     if (views_.size() == kMaxViews) views_.erase(views_.begin() + 1);
     views_.push_back(view);
     if (frame.cones.empty()) return;
     // The car is expected where it has driven to since the first frame, straight on.
     const double driven_m = first_pose_.ahead_m(frame.pose.position);
     Pose expected{{shape().start_x_m + driven_m, 0.0}, 0.0};
-    if (const auto found = known_.search(seen_.cones(), views_, frame.pose, expected)) {
+    if (const auto found = known_.search(seen_.cones(), views_, frame.pose, expected, {}, deadline)) {
         end_m_ = shape().end_s_m;
         accept(*found, frame);
-        const Point place = registration_->to_course(frame.pose.position);
-        at_m_ = progress_m_ = std::min(place.x(), 0.0);
-        if (options_.mission == Mission::acceleration) at_m_ = progress_m_ = place.x();
+        find_lines(frame, view);
+        const double x_m = registration_->to_course(frame.pose.position).x() - line_m_;
+        at_m_ = progress_m_ = shape().has_place_along ? std::min(x_m, 0.0) : x_m;
         advance(frame.pose);
         supported_at_m_ = at_m_;
         views_.clear();
@@ -203,15 +191,11 @@ void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) 
     seen_ahead_m_ = fit.farthest_m;
 }
 
-bool KnownCoursePlanner::supports(const RegistrationFit& fit, const Frame& frame) const {
-    const auto near = std::ranges::count_if(frame.cones, [&](const Cone& cone) {
-        return (cone.position - frame.pose.position).norm() < kCounted_m;
-    });
-    return fit.matched >= kMinMatched && fit.matched >= kMinMatchedShare * static_cast<double>(near) &&
-           off_route_m_ < kMaxOffRoute_m;
+bool KnownCoursePlanner::supports(const RegistrationFit& fit) const {
+    return fit.matched >= kMinMatched && fit.matched >= fit.beside && off_route_m_ < kMaxOffRoute_m;
 }
 
-void KnownCoursePlanner::track(const Frame& frame, const SeenView& view) {
+void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
     if (frame.cones.empty()) return;
     // This frame alone: after a jump of the map, cones of earlier frames are elsewhere.
     SeenCones now;
@@ -219,8 +203,8 @@ void KnownCoursePlanner::track(const Frame& frame, const SeenView& view) {
     const Registration before = *registration_;
     Registration after = known_.refine(before, now.cones(), frame.pose.position);
     const RegistrationFit fit = known_.fit(after, now.cones(), {&view, 1}, frame.pose);
-    if (!supports(fit, frame)) {
-        if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view);
+    if (!supports(fit)) {
+        if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view, deadline);
         return;
     }
     const Point car = before.to_course(frame.pose.position);
@@ -237,39 +221,27 @@ void KnownCoursePlanner::track(const Frame& frame, const SeenView& view) {
     registration_ = after;
     supported_s_ = frame.time_s;
     seen_ahead_m_ = fit.farthest_m;
-    if (shape().repeats_every_m > 0.0 && !finished_) choose_among_repetitions(now.cones(), view);
 }
 
-void KnownCoursePlanner::choose_among_repetitions(std::span<const SeenCone> cones, const SeenView& view) {
-    const auto shifted = [&](std::size_t i) {
-        Registration other = *registration_;
-        other.course.position = registration_->to_map({kShifts[i] * shape().repeats_every_m, 0.0});
-        return other;
-    };
-    for (std::size_t i = 0; i < kShifts.size(); ++i) {
-        evidence_[i] =
-            kEvidenceKept * evidence_[i] + known_.fit(shifted(i), cones, {&view, 1}, view.pose).score;
-    }
-    const auto best = std::ranges::max_element(evidence_);
-    if (*best < evidence_[kHere] + kMinEvidence) return;
-    const auto index = static_cast<std::size_t>(best - evidence_.begin());
-    registration_ = shifted(index);
-    const double moved_m = kShifts[index] * shape().repeats_every_m;
+void KnownCoursePlanner::find_lines(const Frame& frame, const SeenView& view) {
+    if (shape().has_place_along || finished_ || frame.cones.empty()) return;
+    gates_.observe(*registration_, frame, view);
+    const double moved_m = gates_.start_line_m() - line_m_;
+    line_m_ += moved_m;
     at_m_ -= moved_m;
     progress_m_ -= moved_m;
     supported_at_m_ -= moved_m;
-    evidence_ = {};
+    if (closed_x_m_) *closed_x_m_ -= moved_m;
 }
 
-void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view) {
+void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, const Deadline& deadline) {
     const Registration& old = *registration_;
     const Pose expected{old.to_course(frame.pose.position), frame.pose.yaw_rad - old.course.yaw_rad};
     SeenCones now;
     now.observe(frame);
     if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
-                                         {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35})) {
+                                         {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline)) {
         accept(*found, frame);
-        evidence_ = {};
     }
 }
 
@@ -290,15 +262,17 @@ double KnownCoursePlanner::nearest_on_route(const Point& place, double from_s_m,
 }
 
 void KnownCoursePlanner::advance(const Pose& pose) {
-    const Point place = registration_->to_course(pose.position);
+    const Point place = on_route(pose.position);
     const double driven_m = std::min((pose.position - last_pose_.position).norm(), kMaxDriven_m);
     at_m_ = nearest_on_route(place, at_m_ - kWindow_m - kWindowShare * driven_m,
                              at_m_ + kWindow_m + (1.0 + kWindowShare) * driven_m);
     off_route_m_ = (shape().at(at_m_).position - place).norm();
     progress_m_ = std::max(progress_m_, at_m_);
     const double after_m = at_m_ - shape().finish_s_m;
-    frames_after_line_ = after_m >= kAfterLine_m ? frames_after_line_ + 1 : 0;
-    if (frames_after_line_ >= 2 || after_m >= kSurelyAfterLine_m) finished_ = true;
+    const bool has_seen_line = shape().has_place_along || gates_.has_seen_finish();
+    const double unseen_m = has_seen_line ? 0.0 : kUnseenLine_m;
+    frames_after_line_ = after_m >= kAfterLine_m + unseen_m ? frames_after_line_ + 1 : 0;
+    if (frames_after_line_ >= 2 || after_m >= kSurelyAfterLine_m + unseen_m) finished_ = true;
 }
 
 void KnownCoursePlanner::find_closing_cones() {
@@ -306,21 +280,40 @@ void KnownCoursePlanner::find_closing_cones() {
     // In course coordinates x is the route before and after the line, the circles left out.
     const double line_x_m = shape().at(shape().finish_s_m).position.x();
     const double car_x_m = shape().at(at_m_).position.x();
+    const double half_m = kKnownHalfWidth_m + registration_->widening_m;
+    struct OnBoundary {
+        double x_m;
+        bool left;
+    };
+    std::vector<OnBoundary> beside;
+    for (const SeenCone& cone : seen_.cones()) {
+        const Point place = on_route(cone.position);
+        if (cone.sightings < kMinClosingSightings || std::abs(std::abs(place.y()) - half_m) > 0.6) continue;
+        beside.push_back({place.x(), place.y() > 0.0});
+    }
+    const auto has_pair = [&](double from_x_m, double to_x_m) {
+        const auto has = [&](bool left) {
+            return std::ranges::any_of(beside, [&](const OnBoundary& cone) {
+                return cone.left == left && cone.x_m > from_x_m && cone.x_m < to_x_m;
+            });
+        };
+        return has(true) && has(false);
+    };
+    const double infinity_m = std::numeric_limits<double>::infinity();
+    if (closed_x_m_ && has_pair(*closed_x_m_ + kRow_m, infinity_m)) closed_x_m_.reset();
     for (const SeenCone& middle : seen_.cones()) {
-        const Point place = registration_->to_course(middle.position);
-        if (middle.sightings < kMinClosingSightings || std::abs(place.y()) > 0.7) continue;
+        const Point place = on_route(middle.position);
+        if (middle.sightings < kMinClosingSightings || std::abs(place.y()) > kMiddle * half_m) continue;
+        if (middle.color == ConeColor::blue || middle.color == ConeColor::yellow) continue;
         if (place.x() < line_x_m + kClosedAfter_m || place.x() < car_x_m + kBeforeClosing_m) continue;
-        bool left = false;
-        bool right = false;
-        for (const SeenCone& side : seen_.cones()) {
-            const Point beside = registration_->to_course(side.position);
-            const double half_m = kKnownHalfWidth_m + registration_->widening_m;
-            if (side.sightings < kMinClosingSightings || std::abs(beside.x() - place.x()) > 0.7) continue;
-            if (std::abs(beside.y() - half_m) < 0.6) left = true;
-            if (std::abs(beside.y() + half_m) < 0.6) right = true;
-        }
-        if (!left || !right) continue;
-        end_m_ = std::min(end_m_, shape().finish_s_m + place.x() - line_x_m - kBeforeClosing_m);
+        // A row across, and no lane behind it.
+        if (!has_pair(place.x() - 0.7, place.x() + 0.7)) continue;
+        if (has_pair(place.x() + kRow_m, infinity_m)) continue;
+        closed_x_m_ = std::min(closed_x_m_.value_or(infinity_m), place.x());
+    }
+    end_m_ = shape().end_s_m;
+    if (closed_x_m_) {
+        end_m_ = std::min(end_m_, shape().finish_s_m + *closed_x_m_ - line_x_m - kBeforeClosing_m);
     }
 }
 
@@ -339,7 +332,7 @@ DrivableLane KnownCoursePlanner::route_ahead() const {
         const double s_m = static_cast<double>(i) * step_m;
         DrivablePoint point = shape().at(at_m_ + s_m);
         point.s_m = s_m;
-        point.position = registration_->to_map(point.position);
+        point.position = registration_->to_map(point.position + Point(line_m_, 0.0));
         point.heading_rad =
             std::remainder(point.heading_rad + registration_->course.yaw_rad, 2.0 * std::numbers::pi);
         if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;

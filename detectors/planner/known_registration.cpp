@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -10,10 +9,10 @@
 namespace conelane {
 namespace {
 
-constexpr double kMatched_m = 0.45;  ///< a seen cone is one of the course within this distance
-constexpr double kLineShare = 0.5;   ///< of a match that tells nothing along the lane
+constexpr double kMatched_m = 0.45;  ///< a seen cone is on a boundary within this distance
+constexpr double kBeside_m = 0.9;    ///< and beside it within this one
 constexpr double kColor = 0.2;       ///< gained or lost by a color
-constexpr double kMissing = 0.3;     ///< lost by a cone that should be in view and is not there
+constexpr double kMissing = 0.3;     ///< lost by a place that should have a cone in view and has none
 constexpr double kMinScore = 4.0;    ///< of a registration that is trusted
 constexpr int kMinMatched = 6;
 constexpr double kMinMargin = 1.5;  ///< to the next distinct registration
@@ -48,33 +47,6 @@ Point rotated(const Point& vector, double angle_rad) {
     return {c * vector.x() - s * vector.y(), s * vector.x() + c * vector.y()};
 }
 
-/// The line that a place in the course lies on within `window_m`, or none.
-const KnownLine* line_at(const KnownCourse& course, const Point& place, double widening_m, double window_m) {
-    for (const KnownLine& line : course.lines) {
-        if (place.x() < line.from_x_m || place.x() > line.to_x_m) continue;
-        if (std::abs(place.y() - line.y_m - widening_m * line.outward_y) < window_m) return &line;
-    }
-    return nullptr;
-}
-
-/// The cone of the course nearest to a place, if within `window_m`.
-std::optional<std::size_t> cone_at(const KnownCourse& course, const Point& place, double widening_m,
-                                   double window_m) {
-    std::optional<std::size_t> nearest;
-    double nearest_m2 = window_m * window_m;
-    for (std::size_t i = 0; i < course.cones.size(); ++i) {
-        const KnownCone& cone = course.cones[i];
-        const double along_m = place.x() - cone.position.x() - widening_m * cone.outward.x();
-        if (std::abs(along_m) > window_m) continue;
-        const double across_m = place.y() - cone.position.y() - widening_m * cone.outward.y();
-        const double distance_m2 = along_m * along_m + across_m * across_m;
-        if (distance_m2 >= nearest_m2) continue;
-        nearest_m2 = distance_m2;
-        nearest = i;
-    }
-    return nearest;
-}
-
 std::vector<SeenCone> nearest_to(const Point& car, std::span<const SeenCone> cones, std::size_t count) {
     std::vector<SeenCone> nearest(cones.begin(), cones.end());
     if (nearest.size() > count) {
@@ -96,15 +68,16 @@ Point Registration::to_map(const Point& in_course) const {
 }
 
 KnownRegistration::KnownRegistration(KnownCourse course) : course_(std::move(course)) {
-    Point low = course_.cones.front().position;
-    Point high = low;
-    for (const KnownCone& cone : course_.cones) {
-        low = low.cwiseMin(cone.position);
-        high = high.cwiseMax(cone.position);
-    }
+    Point low(0.0, 0.0);
+    Point high(0.0, 0.0);
     for (const KnownLine& line : course_.lines) {
-        low.x() = std::min(low.x(), line.from_x_m);
-        high.x() = std::max(high.x(), line.to_x_m);
+        low = low.cwiseMin(Point(line.from_x_m, line.y_m));
+        high = high.cwiseMax(Point(line.to_x_m, line.y_m));
+    }
+    for (const KnownArc& arc : course_.arcs) {
+        const Point half(arc.radius_m, arc.radius_m);
+        low = low.cwiseMin(arc.centre - half);
+        high = high.cwiseMax(arc.centre + half);
     }
     const double margin_m = kMargin_m + course_.max_widening_m;
     raster_from_ = low - Point(margin_m, margin_m);
@@ -123,15 +96,8 @@ KnownRegistration::Raster KnownRegistration::raster(double widening_m) const {
     for (int row = 0; row < rows_; ++row) {
         for (int column = 0; column < columns_; ++column) {
             const Point place = raster_from_ + kCell_m * Point(column + 0.5, row + 0.5);
-            double nearness = 0.0;
-            if (const auto cone = cone_at(course_, place, widening_m, kNear_m)) {
-                const Point at = course_.cones[*cone].position + widening_m * course_.cones[*cone].outward;
-                nearness = 1.0 - (place - at).squaredNorm() / square(kNear_m);
-            }
-            if (const KnownLine* line = line_at(course_, place, widening_m, kNear_m)) {
-                const double across_m = place.y() - line->y_m - widening_m * line->outward_y;
-                nearness = std::max(nearness, kLineShare * (1.0 - square(across_m / kNear_m)));
-            }
+            const auto contact = course_.boundary_at(place, widening_m, kNear_m);
+            const double nearness = contact ? 1.0 - square(contact->off_m / kNear_m) : 0.0;
             result.nearness[static_cast<std::size_t>(row * columns_ + column)] = static_cast<float>(nearness);
         }
     }
@@ -139,8 +105,8 @@ KnownRegistration::Raster KnownRegistration::raster(double widening_m) const {
 }
 
 std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenCone> cones, const Pose& car,
-                                                           const Pose& expected,
-                                                           const SearchReach& reach) const {
+                                                           const Pose& expected, const SearchReach& reach,
+                                                           const Deadline& deadline) const {
     std::vector<RegistrationFit> best;
     const auto keep = [&](const RegistrationFit& candidate) {
         if (best.size() == kMaxCandidates && candidate.score <= best.back().score) return;
@@ -161,9 +127,10 @@ std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenC
     };
     std::vector<Point> turned(cones.size());
     const int yaws = static_cast<int>(std::ceil(reach.yaw_rad / kStep_rad));
-    const int aheads = static_cast<int>(std::ceil(reach.ahead_m / kStep_m));
+    const int aheads = course_.has_place_along ? static_cast<int>(std::ceil(reach.ahead_m / kStep_m)) : 0;
     const int lefts = static_cast<int>(std::ceil(reach.left_m / kStep_m));
     for (int yaw = -yaws; yaw <= yaws; ++yaw) {
+        if (deadline.passed()) return {};
         // The heading of the car in the course.
         const double heading_rad = expected.yaw_rad + yaw * kStep_rad;
         for (std::size_t i = 0; i < cones.size(); ++i) {
@@ -202,13 +169,14 @@ std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenC
 
 std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCone> all,
                                                          std::span<const SeenView> views, const Pose& car,
-                                                         const Pose& expected,
-                                                         const SearchReach& reach) const {
+                                                         const Pose& expected, const SearchReach& reach,
+                                                         const Deadline& deadline) const {
     const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxSearched);
     if (cones.size() < static_cast<std::size_t>(kMinMatched)) return std::nullopt;
-    std::vector<RegistrationFit> found = candidates(cones, car, expected, reach);
+    std::vector<RegistrationFit> found = candidates(cones, car, expected, reach, deadline);
     for (RegistrationFit& candidate : found) {
         const Registration refined = refine(candidate.registration, cones, car.position);
+        if (deadline.passed()) return std::nullopt;
         candidate = fit(refined, cones, views, car);
         // Of two that explain the cones equally well, the one nearer to what is expected.
         const Point off = refined.to_course(car.position) - expected.position;
@@ -216,12 +184,13 @@ std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCon
     }
     if (found.empty()) return std::nullopt;
     const auto best = std::ranges::max_element(found, {}, &RegistrationFit::score);
-    if (best->score < kMinScore || best->matched < kMinMatched) return std::nullopt;
+    if (best->score < kMinScore || best->matched < kMinMatched || best->beside > best->matched) {
+        return std::nullopt;
+    }
     double next = 0.0;
     for (const RegistrationFit& other : found) {
         Point off = other.registration.to_course(car.position) - best->registration.to_course(car.position);
-        // Where a course repeats itself, its place along the lane is found as the car drives.
-        if (course_.repeats_every_m > 0.0) off.x() = 0.0;
+        if (!course_.has_place_along) off.x() = 0.0;
         const double turned_rad = std::remainder(
             other.registration.course.yaw_rad - best->registration.course.yaw_rad, 2.0 * std::numbers::pi);
         if (off.norm() > kDistinct_m || std::abs(turned_rad) > kDistinct_rad) {
@@ -246,21 +215,14 @@ Registration KnownRegistration::refine(Registration registration, std::span<cons
         for (const SeenCone& seen : cones) {
             const Point place = registration.to_course(seen.position);
             const Point arm = place - pivot;
-            if (const auto index = cone_at(course_, place, registration.widening_m, window_m)) {
-                const KnownCone& cone = course_.cones[*index];
-                const Point off = place - cone.position - registration.widening_m * cone.outward;
-                const double weight = square(1.0 - off.squaredNorm() / square(window_m));
-                Eigen::Matrix<double, 2, 4> rows;
-                rows << 1.0, 0.0, -arm.y(), cone.outward.x(), 0.0, 1.0, arm.x(), cone.outward.y();
-                normal += weight * rows.transpose() * rows;
-                right += weight * rows.transpose() * off;
-            } else if (const KnownLine* line = line_at(course_, place, registration.widening_m, window_m)) {
-                const double off_m = place.y() - line->y_m - registration.widening_m * line->outward_y;
-                const double weight = square(1.0 - square(off_m / window_m));
-                const Vector row(0.0, 1.0, arm.x(), line->outward_y);
-                normal += weight * row * row.transpose();
-                right += weight * off_m * row;
-            }
+            const auto contact = course_.boundary_at(place, registration.widening_m, window_m);
+            if (!contact) continue;
+            const double weight = square(1.0 - square(contact->off_m / window_m));
+            const Point& across = contact->normal;
+            const Vector row(across.x(), across.y(), arm.x() * across.y() - arm.y() * across.x(),
+                             contact->outward);
+            normal += weight * row * row.transpose();
+            right += weight * contact->off_m * row;
         }
         const Vector step = normal.ldlt().solve(right);
         total += step;
@@ -280,45 +242,35 @@ RegistrationFit KnownRegistration::fit(const Registration& registration, std::sp
     const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxFitted);
     RegistrationFit result;
     result.registration = registration;
-    std::vector<double> nearness(course_.cones.size(), 0.0);
-    std::vector<double> gained(course_.cones.size(), 0.0);
-    const auto reach_to = [&](const SeenCone& cone) {
-        if (car.ahead_m(cone.position) > 0.0) {
-            result.farthest_m = std::max(result.farthest_m, (cone.position - car.position).norm());
-        }
-    };
     for (const SeenCone& seen : cones) {
         const Point place = registration.to_course(seen.position);
-        if (const auto index = cone_at(course_, place, registration.widening_m, kMatched_m)) {
-            const KnownCone& cone = course_.cones[*index];
-            const Point off = place - cone.position - registration.widening_m * cone.outward;
-            const double near = 1.0 - off.squaredNorm() / square(kMatched_m);
-            if (near <= nearness[*index]) continue;
-            nearness[*index] = near;
-            gained[*index] = near;
-            if (seen.color != ConeColor::unknown && cone.color != ConeColor::unknown) {
-                gained[*index] += seen.color == cone.color ? kColor : -kColor;
-            }
-            reach_to(seen);
-        } else if (const KnownLine* line = line_at(course_, place, registration.widening_m, kMatched_m)) {
-            const double off_m = place.y() - line->y_m - registration.widening_m * line->outward_y;
-            result.score += kLineShare * (1.0 - square(off_m / kMatched_m));
-            ++result.matched;
-            reach_to(seen);
-        }
-    }
-    for (std::size_t i = 0; i < nearness.size(); ++i) {
-        result.score += gained[i];
-        if (nearness[i] > 0.0) {
-            ++result.matched;
+        const auto contact = course_.boundary_at(place, registration.widening_m, kBeside_m);
+        if (!contact) continue;
+        if (std::abs(contact->off_m) >= kMatched_m) {
+            ++result.beside;
             continue;
         }
-        const KnownCone& cone = course_.cones[i];
-        if (!cone.certain) continue;
-        const Point place = registration.to_map(cone.position + registration.widening_m * cone.outward);
-        if (std::ranges::any_of(views, [&](const SeenView& view) { return view.covers(place); })) {
-            result.score -= kMissing;
+        ++result.matched;
+        result.score += 1.0 - square(contact->off_m / kMatched_m);
+        if (seen.color != ConeColor::unknown && contact->color != ConeColor::unknown) {
+            if (seen.color == contact->color) {
+                result.score += kColor;
+            } else if (seen.color != ConeColor::orange && contact->color != ConeColor::orange) {
+                result.score -= kColor;
+            }
         }
+        if (car.ahead_m(seen.position) > 0.0) {
+            result.farthest_m = std::max(result.farthest_m, (seen.position - car.position).norm());
+        }
+    }
+    for (const KnownPlace& known : course_.places) {
+        const Point place = registration.to_map(known.position + registration.widening_m * known.outward);
+        const bool in_view =
+            std::ranges::any_of(views, [&](const SeenView& view) { return view.covers(place); });
+        if (!in_view) continue;
+        const bool is_there = std::ranges::any_of(
+            cones, [&](const SeenCone& cone) { return (cone.position - place).norm() < known.reach_m; });
+        if (!is_there) result.score -= kMissing;
     }
     return result;
 }

@@ -2,8 +2,8 @@
 
 #include "detectors/planner/known_course.hpp"
 #include "detectors/planner/seen_cones.hpp"
+#include "model/deadline.hpp"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,14 +22,15 @@ struct Registration {
 /// How well a registration explains cones.
 struct RegistrationFit {
     Registration registration;
-    double score = 0.0;       ///< matched cones, less for those that stand off, less for those not seen
-    int matched = 0;          ///< cones of the course, each by one seen cone at most
-    double farthest_m = 0.0;  ///< of the matched cones from the car, ahead of it
+    double score = 0.0;       ///< cones on boundaries, less for those that stand off, less for places without
+    int matched = 0;          ///< cones on a boundary
+    int beside = 0;           ///< cones beside one, in a band of the same area: as many by chance
+    double farthest_m = 0.0;  ///< of the cones on a boundary from the car, ahead of it
 };
 
 /// How far the car may stand from where a search expects it.
 struct SearchReach {
-    double ahead_m = 4.5;
+    double ahead_m = 4.5;  ///< of no use where the boundaries do not tell the place along x
     double left_m = 4.0;
     double yaw_rad = 0.5;
 };
@@ -43,11 +44,13 @@ class KnownRegistration {
 
     /// The registration that explains the cones best, of those that have the car within `reach` of
     /// `expected` (course coordinates). Nothing where no registration stands out: it matches too few cones,
-    /// or a distinct one explains them nearly as well.
+    /// or a distinct one explains them nearly as well, or `deadline` passed. Where the boundaries do not tell
+    /// the place along x, that of `expected` stays. No side effects; the time is bounded by the reach,
+    /// whatever the number of cones.
     [[nodiscard]] std::optional<RegistrationFit> search(std::span<const SeenCone> cones,
                                                         std::span<const SeenView> views, const Pose& car,
-                                                        const Pose& expected,
-                                                        const SearchReach& reach = {}) const;
+                                                        const Pose& expected, const SearchReach& reach = {},
+                                                        const Deadline& deadline = Deadline()) const;
 
     /// Moves a registration onto the cones near the car, by at most about a meter. What the cones do not
     /// determine stays.
@@ -66,8 +69,8 @@ class KnownRegistration {
     };
     [[nodiscard]] Raster raster(double widening_m) const;
     [[nodiscard]] std::vector<RegistrationFit> candidates(std::span<const SeenCone> cones, const Pose& car,
-                                                          const Pose& expected,
-                                                          const SearchReach& reach) const;
+                                                          const Pose& expected, const SearchReach& reach,
+                                                          const Deadline& deadline) const;
 
     KnownCourse course_;
     Point raster_from_{0.0, 0.0};

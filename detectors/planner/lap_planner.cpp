@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/cone_memory.hpp"
 #include "detectors/planner/course_memory.hpp"
+#include "detectors/planner/frame.hpp"
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
 #include "detectors/planner/lap_counter.hpp"
@@ -20,27 +21,7 @@ namespace {
 
 void validate(const PlannerOptions& options) {
     if (options.laps && *options.laps < 1) throw InvalidInput("laps", "is not at least 1");
-    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
-    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
-}
-
-void validate(const Frame& frame, const DetectionLimits& limits) {
-    if (!std::isfinite(frame.time_s)) throw InvalidInput("time_s", "is not finite");
-    if (std::isnan(limits.time_limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
-    // Cones without id are told apart by numbers that no cone with an id has.
-    Scene scene{"frame", frame.pose, frame.cones};
-    std::vector<ConeId> used;
-    for (const Cone& cone : frame.cones) {
-        if (cone.id != kNoId) used.push_back(cone.id);
-    }
-    std::ranges::sort(used);
-    ConeId next = kNoId;
-    for (Cone& cone : scene.cones) {
-        if (cone.id != kNoId) continue;
-        while (std::ranges::binary_search(used, next)) ++next;
-        cone.id = next++;
-    }
-    validate(scene);
+    validate_shared(options);
 }
 
 class LapPlanner final : public Planner {
@@ -104,7 +85,7 @@ void LapPlanner::move_along(const RigidShift& shift) {
 }
 
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
-    validate(frame, limits);
+    static_cast<void>(checked_scene(frame, limits));  // refuses what is not valid
     if (time_s_ && frame.time_s <= *time_s_) {
         // The same frame has the same answer; an older one says nothing new.
         Plan plan = last_;

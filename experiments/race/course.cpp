@@ -1,12 +1,19 @@
 #include "experiments/race/course.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/seeded_random.hpp"
 #include "evaluation/tracks/centre_line.hpp"
 #include "model/geometry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
 
 namespace conelane::experiments {
 namespace {
@@ -104,6 +111,164 @@ RaceCourse skidpad_shape() {
     return course;
 }
 
+/// Draws what an event leaves open.
+class Variation {
+  public:
+    Variation(Mission mission, std::uint64_t seed)
+        : random_(generator_of("varied " + std::string(to_string(mission)), seed)),
+          jitter_m_(number(0.0, 0.2)),
+          missing_(number(0.0, 0.08)) {}
+
+    double number(double low, double high) {
+        return boost::random::uniform_real_distribution<double>(low, high)(random_);
+    }
+    int count(int low, int high) { return boost::random::uniform_int_distribution<int>(low, high)(random_); }
+    bool chance(double share) { return boost::random::uniform_01<double>()(random_) < share; }
+
+    /// Sets a cone near its place, or forgets it.
+    void set(RaceCourse& course, const Point& place, ConeColor color) {
+        if (!chance(missing_)) set_surely(course, place, color);
+    }
+    void set_surely(RaceCourse& course, const Point& place, ConeColor color) {
+        boost::random::normal_distribution<double> normal(0.0, 0.5);
+        const auto off_m = [&] { return jitter_m_ * std::clamp(normal(random_), -1.5, 1.5); };
+        const double x_m = off_m();
+        const double y_m = off_m();
+        add_cone(course, place.x() + x_m, place.y() + y_m, color);
+    }
+    void set_pair(RaceCourse& course, double x_m, double half_width_m, ConeColor left, ConeColor right) {
+        set(course, {x_m, half_width_m}, left);
+        set(course, {x_m, -half_width_m}, right);
+    }
+
+  private:
+    boost::random::mt19937_64 random_;
+    double jitter_m_;
+    double missing_;
+};
+
+/// Cones that have nothing to do with the lane: at least `clear_m` from its centre line.
+void strew(Variation& vary, RaceCourse& course, int count, double clear_m, const Point& low,
+           const Point& high) {
+    for (int i = 0; i < count; ++i) {
+        const double x_m = vary.number(low.x(), high.x());
+        const double y_m = vary.number(low.y(), high.y());
+        const Point place(x_m, y_m);
+        const bool clear = std::ranges::all_of(
+            course.line, [&](const Pose& pose) { return (pose.position - place).norm() > clear_m; });
+        if (clear) add_cone(course, x_m, y_m, ConeColor::unknown);
+    }
+}
+
+/// A row of cones across the lane.
+void close_exit(Variation& vary, RaceCourse& course, double x_m, double half_width_m) {
+    const int cones = vary.count(3, 5);
+    for (int i = 0; i < cones; ++i) {
+        const double y_m = half_width_m * (2.0 * i / (cones - 1) - 1.0);
+        vary.set_surely(course, {x_m, y_m}, ConeColor::orange);
+    }
+}
+
+RaceCourse varied_acceleration(std::uint64_t seed) {
+    RaceCourse course = acceleration_shape();
+    Variation vary(course.mission, seed);
+    const double half_m = vary.number(1.5, 2.5);
+    course.half_width_m = half_m;
+    course.start_m = kBehind_m + vary.number(-3.0, -0.3);
+    const double spacing_m = vary.number(4.0, 6.0);
+    const double gate_half_m = vary.number(0.25, 0.6);
+    const double wider_m = vary.chance(0.3) ? vary.number(0.0, 0.4) : 0.0;  // the big cones stand
+    const ConeColor gate_color = vary.chance(0.3) ? ConeColor::unknown : ConeColor::orange;
+    const bool has_start_gate = vary.chance(0.85);
+    for (double x_m = has_start_gate ? spacing_m : 0.0; x_m < kAcceleration_m - 1.5; x_m += spacing_m) {
+        vary.set_pair(course, x_m, half_m, ConeColor::blue, ConeColor::yellow);
+    }
+    for (const double offset_m : {-gate_half_m, gate_half_m}) {
+        if (has_start_gate) vary.set_pair(course, offset_m, half_m + wider_m, gate_color, gate_color);
+        for (const double side : {1.0, -1.0}) {
+            vary.set_surely(course, {kAcceleration_m + offset_m, side * (half_m + wider_m)}, gate_color);
+        }
+    }
+    const int exit = vary.count(0, 2);  // nothing, cones at the sides, also closed
+    const double exit_m = kAcceleration_m + vary.number(60.0, 100.0);
+    if (exit > 0) {
+        for (double x_m = kAcceleration_m + spacing_m; x_m < exit_m; x_m += spacing_m) {
+            vary.set_pair(course, x_m, half_m, ConeColor::orange, ConeColor::orange);
+        }
+    }
+    if (exit == 2) {
+        close_exit(vary, course, exit_m, half_m);
+        course.rest_m = exit_m - kAcceleration_m;
+    }
+    if (vary.chance(0.3)) {  // where cars wait
+        for (const double x_m : {-8.0, -5.0}) {
+            vary.set_pair(course, x_m, half_m, ConeColor::orange, ConeColor::orange);
+        }
+    }
+    strew(vary, course, vary.count(0, 10), half_m + 1.0, {-5.0, -10.0}, {130.0, 10.0});
+    return course;
+}
+
+RaceCourse varied_skidpad(std::uint64_t seed) {
+    RaceCourse course = skidpad_shape();
+    Variation vary(course.mission, seed);
+    course.start_m = kBehind_m + vary.number(-17.0, -14.0);
+    const double wider_m = vary.number(0.0, 0.2);  // where the rules measure to the edge of a cone
+    const double inner_m = kSkidpadInner_m - wider_m;
+    const double outer_m = kSkidpadOuter_m + wider_m;
+    const double half_m = kSkidpadHalfWidth_m + wider_m;
+    const bool has_outer = vary.chance(0.85);
+    const int outer_places = vary.chance(0.7) ? 16 : vary.count(14, 20);
+    // The ring turned, in places.
+    const double turned = vary.chance(0.5) ? 0.0 : vary.number(0.0, 1.0);
+    for (const double side : {-1.0, 1.0}) {
+        const Point centre(0.0, side * kSkidpadRadius_m);
+        const auto direction = [&](double angle_rad) {
+            return Point(std::sin(angle_rad), -side * std::cos(angle_rad));
+        };
+        for (int i = 0; i < 16; ++i) {
+            vary.set(course, centre + inner_m * direction(2.0 * kPi * (i + turned) / 16),
+                     side < 0.0 ? ConeColor::yellow : ConeColor::blue);
+        }
+        for (int i = 0; i < outer_places && has_outer; ++i) {
+            const Point place = centre + outer_m * direction(2.0 * kPi * (i + turned) / outer_places);
+            const bool in_other_lane = side * place.y() < half_m - 0.05;
+            if (!in_other_lane) {
+                vary.set(course, place, side < 0.0 ? ConeColor::blue : ConeColor::yellow);
+            }
+        }
+    }
+    const double lane_half_m = half_m + vary.number(0.0, 0.15);
+    if (vary.chance(0.8)) {
+        const double spacing_m = vary.number(2.5, 5.0);
+        const double to_m = vary.number(9.0, 11.5);
+        for (int i = vary.count(1, 4); i >= 0; --i) {
+            vary.set_pair(course, -to_m - i * spacing_m, lane_half_m, ConeColor::orange, ConeColor::orange);
+        }
+    }
+    const double exit_m = vary.number(19.0, 25.0);
+    if (vary.chance(0.8)) {
+        const double spacing_m = vary.number(2.5, 5.0);
+        for (double x_m = vary.number(9.0, 11.5); x_m < exit_m; x_m += spacing_m) {
+            vary.set_pair(course, x_m, lane_half_m, ConeColor::orange, ConeColor::orange);
+        }
+    }
+    if (vary.chance(0.5)) {
+        close_exit(vary, course, exit_m, lane_half_m);
+        course.rest_m = exit_m;
+    }
+    const double gate_half_m = half_m + vary.number(0.1, 0.5);
+    const ConeColor gate_color = vary.chance(0.3) ? ConeColor::unknown : ConeColor::orange;
+    if (vary.chance(0.8)) {
+        const double gate_m = vary.number(0.3, 1.5);
+        for (const double x_m : {-gate_m, gate_m}) {
+            vary.set_pair(course, x_m, gate_half_m, gate_color, gate_color);
+        }
+    }
+    strew(vary, course, vary.count(0, 10), half_m + 1.0, {-25.0, -25.0}, {30.0, 25.0});
+    return course;
+}
+
 void measure(RaceCourse& course) {
     std::vector<Point> points;
     for (const Pose& pose : course.line) points.push_back(pose.position);
@@ -196,6 +361,24 @@ RaceCourse mission_course(Mission mission, const Track& track) {
     RaceCourse course = mission == Mission::skidpad ? skidpad_shape() : acceleration_shape();
     course.name = track.name;
     course.cones = track.cones;
+    if (mission == Mission::acceleration) {
+        std::vector<double> aside_m;
+        for (const std::vector<std::size_t>* side : {&track.left, &track.right}) {
+            for (const std::size_t i : *side) aside_m.push_back(std::abs(track.cones[i].position.y()));
+        }
+        if (!aside_m.empty()) {
+            const auto middle = aside_m.begin() + static_cast<std::ptrdiff_t>(aside_m.size() / 2);
+            std::ranges::nth_element(aside_m, middle);
+            course.half_width_m = *middle;
+        }
+    }
+    measure(course);
+    return course;
+}
+
+RaceCourse varied_mission_course(Mission mission, std::uint64_t seed) {
+    RaceCourse course = mission == Mission::skidpad ? varied_skidpad(seed) : varied_acceleration(seed);
+    course.name = "varied " + course.name;
     measure(course);
     return course;
 }

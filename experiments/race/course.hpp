@@ -3,6 +3,7 @@
 #include "conelane/planner.hpp"
 #include "evaluation/tracks/track.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,8 +45,14 @@ struct RaceCourse {
 [[nodiscard]] RaceCourse skidpad_course();
 
 /// The geometry of acceleration or skidpad with the cones of a track of that event, whose frame must be as
-/// above.
+/// above. The lane of an acceleration is as wide as the track's boundaries say.
 [[nodiscard]] RaceCourse mission_course(Mission mission, const Track& track);
 [[nodiscard]] RaceCourse mission_course(Mission mission);
+
+/// Acceleration or skidpad as an event might set it up, drawn anew for each seed: width, spacing, gates,
+/// entry and exit as the rules leave room, cones some decimetres off their place, missing ones, and some
+/// that are no part of the course. The frame is as above, the start within 1.5 m of that of the rules. The
+/// big cones of an acceleration's finish are always there.
+[[nodiscard]] RaceCourse varied_mission_course(Mission mission, std::uint64_t seed);
 
 }  // namespace conelane::experiments

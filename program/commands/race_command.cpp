@@ -42,6 +42,7 @@ struct Options {
     std::string condition = "car";
     std::vector<double> rates{0.0};
     std::vector<std::uint64_t> seeds{1};
+    bool vary = false;
     std::string ids = "tracked";
     std::string fault = "none";
     std::string replay = "unfinished";
@@ -71,15 +72,26 @@ bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
 }
 
+/// With --vary one for each seed, in their order.
 std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission> mission) {
     std::vector<RaceCourse> courses;
     if (has_known_course(mission)) {
+        if (options.vary) {
+            if (!options.tracks.empty()) {
+                throw InvalidInput("--vary", "is for the courses that missions have of their own");
+            }
+            for (const std::uint64_t seed : options.seeds) {
+                courses.push_back(varied_mission_course(*mission, seed));
+            }
+            return courses;
+        }
         if (options.tracks.empty()) courses.push_back(mission_course(*mission));
         for (const std::string& spec : options.tracks) {
             for (const Track& track : load_tracks(spec)) courses.push_back(mission_course(*mission, track));
         }
         return courses;
     }
+    if (options.vary) throw InvalidInput("--vary", "is for the missions acceleration and skidpad");
     for (const std::string& spec : options.tracks) {
         for (const Track& track : load_tracks(spec)) {
             if (!track.closed || !track.driven.empty()) {
@@ -147,6 +159,7 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"condition", options.condition},
             {"fp", options.rates},
             {"seeds", options.seeds},
+            {"vary", options.vary},
             {"laps", options.race.laps},
             {"range_m", options.race.sight.range_m},
             {"speed_mps", options.race.speed_mps},
@@ -233,11 +246,13 @@ void run_races(Options& options) {
     const std::vector<RaceCourse> courses = courses_of(options, mission);
     std::vector<Heat> heats;
     std::vector<Entry> entries;
-    for (const RaceCourse& course : courses) {
+    const std::size_t distinct_courses = options.vary ? 1 : courses.size();
+    for (std::size_t first = 0; first < distinct_courses; ++first) {
         for (const RaceMethod& method : methods) {
             for (const double rate : options.rates) {
-                for (const std::uint64_t seed : options.seeds) {
-                    heats.push_back({course.name, method.name, rate, seed});
+                for (std::size_t i = 0; i < options.seeds.size(); ++i) {
+                    const RaceCourse& course = courses[options.vary ? i : first];
+                    heats.push_back({course.name, method.name, rate, options.seeds[i]});
                     entries.push_back({&course, &method});
                 }
             }
@@ -266,6 +281,9 @@ void add_race_command(CLI::App& program) {
                     "from a standstill to a stop: acceleration, skidpad, autocross or trackdrive; without it "
                     "the car rolls and the last lap ends the race")
         ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
+    command.add_flag("--vary", options->vary,
+                     "acceleration and skidpad: each seed sets the course up another way, as the rules leave "
+                     "room");
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
