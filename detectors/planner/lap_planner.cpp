@@ -59,6 +59,7 @@ class LapPlanner final : public Planner {
     LapCounter counter_;
     CourseMemory course_;
     std::optional<double> time_s_;
+    Pose pose_;  ///< of that time
     Plan last_;
     bool started_ = false;     ///< a lane was driven
     bool off_course_ = false;  ///< what is seen has outweighed the course of the lap before
@@ -87,14 +88,16 @@ void LapPlanner::move_along(const RigidShift& shift) {
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     static_cast<void>(checked_scene(frame, limits));  // refuses what is not valid
     if (time_s_ && frame.time_s <= *time_s_) {
-        // The same frame has the same answer; an older one says nothing new.
+        // The same frame has the same answer; an older one, or one of a clock that stands still, says
+        // nothing that can be trusted.
         Plan plan = last_;
-        if (frame.time_s < *time_s_ && plan.state == PlanState::following) {
-            plan.state = PlanState::bridging;
-        }
+        const bool is_same = frame.time_s == *time_s_ && frame.pose.position == pose_.position &&
+                             frame.pose.yaw_rad == pose_.yaw_rad;
+        if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
         return plan;
     }
     time_s_ = frame.time_s;
+    pose_ = frame.pose;
     if (const auto shift = cones_.observe(frame)) move_along(*shift);
     const Scene scene = cones_.scene(frame.pose);
     Plan plan;
