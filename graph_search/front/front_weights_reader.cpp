@@ -299,6 +299,11 @@ double read_number(JsonReader& json, const std::string& key) {
     return json.number();
 }
 
+#ifdef __wasi__  // a WebAssembly module has no files: weights come as bytes
+std::string bytes_of(const std::filesystem::path& /*file*/) {
+    throw InvalidInput("weights", "cannot be read");
+}
+#else
 std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string bytes(1U << 16U, '\0');
@@ -312,6 +317,7 @@ std::string bytes_of(const std::filesystem::path& file) {
     bytes.resize(size);
     return bytes;
 }
+#endif
 
 }  // namespace
 
