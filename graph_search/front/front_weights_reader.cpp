@@ -26,8 +26,6 @@ namespace {
 constexpr double kVersion = 1.0;
 /// Of nested values; the recursion is as deep.
 constexpr int kMaxDepth = 64;
-/// The shipped file has 0.13 MB.
-constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
 
 /// The double nearest to a number of JSON; infinite where it is out of range.
 double double_of(std::string_view number) {
@@ -305,6 +303,7 @@ std::string bytes_of(const std::filesystem::path& /*file*/) {
 }
 #else
 std::string bytes_of(const std::filesystem::path& file) {
+    constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;  // the shipped file has 0.13 MB
     std::ifstream stream(file, std::ios::binary);
     std::string bytes(1U << 16U, '\0');
     std::size_t size = 0;

@@ -12,7 +12,7 @@
 
 namespace {
 
-[[clang::import_module("conelane"), clang::import_name("thrown")]] extern "C" void conelane_thrown(
+extern "C" __attribute__((import_module("conelane"), import_name("thrown"))) void conelane_thrown(
     const char* message);
 
 /// Where exceptions are made; one is enough, since the first one ends the instance.

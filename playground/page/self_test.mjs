@@ -12,11 +12,11 @@ export function selfTest(conelane, stored) {
   let lanes = 0;
   for (const { scene, answers } of stored) {
     for (const native of answers) {
-      const answer = conelane.detect(scene, { method: native.method, time_limit_ms: 10_000 });
+      const answer = conelane.detect(scene, { method: native.method, time_limit_ms: Infinity });
       lanes += 1;
       if (!sameLane(answer, native)) failed.push(`${scene.id}, ${native.method}: another lane`);
     }
-    for (let i = 0; i < CALLS; i++) times.push(conelane.detect(scene, { method: "front", time_limit_ms: 10_000 }).latency_ms);
+    for (let i = 0; i < CALLS; i++) times.push(conelane.detect(scene, { method: "front", time_limit_ms: Infinity }).latency_ms);
   }
   times.sort((a, b) => a - b);
   return { failed, lanes, scenes: stored.length, median_ms: times[Math.floor(times.length / 2)] };
