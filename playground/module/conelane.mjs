@@ -129,7 +129,7 @@ function told(error) {
 class Conelane {
   #module;
   #instance;
-  #restarts = -1;
+  #restarts = 0;
 
   constructor(module) {
     this.#module = module;
@@ -138,18 +138,16 @@ class Conelane {
   }
 
   /** How many times an error ended an instance of the module. */
-  get restarts() { return Math.max(this.#restarts, 0); }
+  get restarts() { return this.#restarts; }
 
   #ask(name, given) {
-    if (!this.#instance) {
-      this.#instance = new Instance(this.#module);
-      this.#restarts += 1;
-    }
+    this.#instance ??= new Instance(this.#module);
     try {
       this.#instance.call(name, given);
       return this.#instance.answer();
     } catch (error) {
       this.#instance = null;
+      this.#restarts += 1;
       throw told(error);
     }
   }

@@ -50,7 +50,7 @@ export class Client {
     });
   }
 
-  #receive({ id, result, error, restarts }) {
+  #receive({ id, result, error, is_restarted }) {
     const waiting = this.#waiting.get(id);
     if (!waiting) return;
     this.#waiting.delete(id);
@@ -59,7 +59,7 @@ export class Client {
       waiting.resolve(result);
       return;
     }
-    if (restarts > 0) this.onRestart?.(error);
+    if (is_restarted) this.onRestart?.(error);
     waiting.reject(new Error(error));
   }
 

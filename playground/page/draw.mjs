@@ -89,7 +89,7 @@ function triangle(ctx, px, py, size) {
 }
 
 /** Half the height of a cone [px]. */
-export function coneSize(view) { return Math.min(Math.max(view.scale * 0.3, 3.2), 8); }
+export function coneSize(view) { return Math.min(Math.max(view.scale * 0.36, 3.6), 9); }
 
 function drawCones(ctx, view, state, colors) {
   const { seen, missed, world, sight, marks_false, selected, hovered } = state;
@@ -284,7 +284,9 @@ function drawEdge(ctx, view, edge, place, colors) {
   ctx.setLineDash([]);
 }
 
-function drawRun(ctx, view, run, colors) {
+function drawRun(ctx, view, run, place, colors) {
+  const planned = { color: "--drive", width: 2.5, alpha: 0.8, dash: [] };
+  if (run.plan?.answer.status === "found") drawLane(ctx, view, planned, { answer: run.plan.answer }, place, colors, true);
   ctx.strokeStyle = colors["--drive"];
   ctx.globalAlpha = 0.55;
   ctx.lineWidth = 3;
@@ -322,7 +324,7 @@ export function draw(ctx, view, state, colors) {
       label = false;
     }
   } else {
-    drawRun(ctx, view, state.run, colors);
+    drawRun(ctx, view, state.run, place, colors);
   }
   drawCones(ctx, view, state, colors);
   if (state.edge) drawEdge(ctx, view, state.edge, place, colors);

@@ -163,8 +163,8 @@ function tellMethod(name) {
   const add = (key, value) => rows.push(`<dt>${key}</dt><dd>${value}</dd>`);
   let status = STATUS[answer.status];
   if (answer.status === "found") status = `${answer.left.length} + ${answer.right.length} cones${answer.closed ? ", closed" : ""}${line?.points.length ? `, ${line.length_m.toFixed(0)} m` : ""}`;
-  if (answer.stopped_by) status += ` (limit: ${answer.stopped_by})`;
   add("lane", status);
+  if (answer.stopped_by) add("stopped by its limit of", answer.stopped_by);
   if (answer.message) add("says", escape(answer.message));
   if (answer.confidence !== undefined)
     add("confidence", `<span class="bar" style="color: var(${METHODS.find((one) => one.name === name).color})"><i style="width: ${answer.confidence * 100}%"></i></span>${(answer.confidence * 100).toFixed(1)} %`);
@@ -360,7 +360,7 @@ function tellPlaybar() {
     $("frame").max = state.file.scenes.length - 1;
     $("frame").value = state.file.at;
   }
-  $("play").textContent = playing ? "⏸ Pause" : isFile() ? "▶ Play" : state.run && state.run.state === "driving" ? "▶ Go on" : "▶ Drive a lap";
+  $("play").textContent = playing ? "Pause" : isFile() ? "▶ Play" : state.run && state.run.state === "driving" ? "▶ Go on" : "▶ Drive a lap";
   document.body.dataset.playing = String(playing);
   tellRun();
 }
@@ -552,8 +552,7 @@ function deleteCone(id) {
 const say = (text) => { $("said").textContent = text; };
 
 function select(id) {
-  state.selected = id;
-  state.edge = null;
+  Object.assign(state, { selected: id, hovered: null, edge: null });
   const cone = state.seen.find((one) => one.id === id);
   if (id === null) say("");
   else if (cone) {
@@ -581,8 +580,9 @@ function placeOf(event) {
 }
 
 function coneAt(px, py, reach) {
+  const known = new Set(state.seen.map((one) => one.id));
   let best = null, distance = reach;
-  for (const cone of [...state.seen, ...state.missed]) {
+  for (const cone of [...state.world.cones.filter((one) => !known.has(one.id)), ...state.seen]) {
     const [x, y] = view.px(cone.x, cone.y), far = Math.hypot(x - px, y - py);
     if (far <= distance) [best, distance] = [cone.id, far];
   }
@@ -1035,6 +1035,7 @@ async function begin() {
   } else await chooseCourse(first);
   await whenSettled();
   document.body.dataset.ready = "true";
+  changed(); // once more, by a module that is warm
   await runSelfTest();
 }
 

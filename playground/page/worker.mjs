@@ -6,6 +6,13 @@ import { selfTest } from "./self_test.mjs";
 let conelane = null;
 let planner = null;
 
+/** The first calls of a module are slow: the browser is still compiling it. */
+function warmUp() {
+  const cones = Array.from({ length: 24 }, (_, i) => ({ id: i, x: 1 + 3 * (i >> 1), y: (i % 2 ? 1.8 : -1.8) + Math.sin(i >> 1) / 5 }));
+  for (const method of ["front", "front", "front", "clc", "rld-pair"])
+    detect({ scene: { pose: { x: 0, y: 0, yaw: 0 }, cones }, method, time_limit_ms: Infinity });
+}
+
 /** A lane, and the line to drive along it. A lane that cannot be driven has none. */
 function detect({ scene, method, time_limit_ms }) {
   const answer = conelane.detect(scene, { method, time_limit_ms });
@@ -16,6 +23,7 @@ function detect({ scene, method, time_limit_ms }) {
 const tasks = {
   load: async ({ bytes }) => {
     conelane = await load(bytes);
+    warmUp();
     const { version, methods, courses } = conelane;
     return { version, methods, courses };
   },
@@ -36,10 +44,11 @@ const tasks = {
 };
 
 addEventListener("message", async ({ data: { id, task, ...given } }) => {
+  const restarts = conelane?.restarts ?? 0;
   try {
     if (!Object.hasOwn(tasks, task)) throw new Error(`there is no task '${task}'`);
     postMessage({ id, result: await tasks[task](given) });
   } catch (error) {
-    postMessage({ id, error: error.message, restarts: conelane?.restarts ?? 0 });
+    postMessage({ id, error: error.message, is_restarted: (conelane?.restarts ?? 0) > restarts });
   }
 });
