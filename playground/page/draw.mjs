@@ -218,7 +218,7 @@ function drawLine(ctx, view, line, color, colors, label) {
   ctx.textAlign = "center";
   ctx.lineWidth = 4;
   ctx.strokeStyle = colors["--surface"];
-  const dx = Math.cos(end.heading_rad) * 30, dy = -Math.sin(end.heading_rad) * 18;
+  const dx = Math.cos(end.heading_rad) * 46, dy = -Math.sin(end.heading_rad) * 20;
   const words = `trusted ${trusted_m.toFixed(0)} m`;
   ctx.strokeText(words, px + dx, py + dy + 4);
   ctx.fillStyle = color;

@@ -164,7 +164,7 @@ function tellMethod(name) {
   let status = STATUS[answer.status];
   if (answer.status === "found") status = `${answer.left.length} + ${answer.right.length} cones${answer.closed ? ", closed" : ""}${line?.points.length ? `, ${line.length_m.toFixed(0)} m` : ""}`;
   add("lane", status);
-  if (answer.stopped_by) add("stopped by its limit of", answer.stopped_by);
+  if (answer.stopped_by) add("limit", `stopped by ${answer.stopped_by}`);
   if (answer.message) add("says", escape(answer.message));
   if (answer.confidence !== undefined)
     add("confidence", `<span class="bar" style="color: var(${METHODS.find((one) => one.name === name).color})"><i style="width: ${answer.confidence * 100}%"></i></span>${(answer.confidence * 100).toFixed(1)} %`);
@@ -1035,6 +1035,7 @@ async function begin() {
   } else await chooseCourse(first);
   await whenSettled();
   document.body.dataset.ready = "true";
+  for (const name of Object.keys(times)) times[name] = [];
   changed(); // once more, by a module that is warm
   await runSelfTest();
 }
