@@ -232,10 +232,13 @@ function tellCounts() {
 
 // ---- Worlds ----------------------------------------------------------------------------------------------------------------
 
-function setWorld(world, { car, sight, keepView = false } = {}) {
+function setWorld(world, { car, sight, keepView = false, keepLanes = false } = {}) {
   stopRun();
-  Object.assign(state, { world, car: { ...(car ?? world.start) }, selected: null, hovered: null, edge: null, found: {}, file_lanes: [] });
-  for (const name of Object.keys(times)) times[name] = [];
+  Object.assign(state, { world, car: { ...(car ?? world.start) }, selected: null, hovered: null, edge: null, file_lanes: [] });
+  if (!keepLanes) {
+    state.found = {};
+    for (const name of Object.keys(times)) times[name] = [];
+  }
   if (sight) state.sight = { ...state.sight, ...sight };
   state.original = snapshot();
   past.length = 0;
@@ -322,7 +325,7 @@ function showScene(at, isNew = false) {
   world.label = file.name;
   const sight = !isNew ? undefined : file.ahead ? { exact: false, rate: 0, noise_m: 0, missed: 0, range_m: 30 } : { exact: true };
   const isPlaying = playing;
-  setWorld(world, { sight, keepView: !isNew });
+  setWorld(world, { sight, keepView: !isNew, keepLanes: !isNew }); // a lane stays until there is the next one
   playing = isPlaying;
   state.file_lanes = file.lanes.filter((lane) => lane.scene === scene.id);
   if (!isNew) follow(state.car);
@@ -914,7 +917,9 @@ $("theme").addEventListener("click", () => setTheme(document.documentElement.dat
 function fitView() {
   const { car, sight, world } = state;
   isFollowing = true;
-  const cones = sight.exact ? world.cones : look(world, car, sight).cones;
+  const cones = sight.exact ? [...world.cones] : look(world, car, sight).cones;
+  // At least what is near the car, however few cones stand there.
+  for (const side of [-10, 10]) cones.push({ x: car.x + 20 * Math.cos(car.yaw) - side * Math.sin(car.yaw), y: car.y + 20 * Math.sin(car.yaw) + side * Math.cos(car.yaw) });
   const xs = [car.x, ...cones.map((cone) => cone.x)], ys = [car.y, ...cones.map((cone) => cone.y)];
   view.fit([Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)]);
   changed("picture");

@@ -7,7 +7,9 @@ import os
 import sys
 import unittest
 
-from chromium import Chromium
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "playground", "page"))
+from chromium import Chromium  # noqa: E402
 
 PAGE, CHROMIUM = (sys.argv[1:3] + ["", ""])[:2]
 LANE = "JSON.stringify([playground.state.found.front.answer.left, playground.state.found.front.answer.right])"
