@@ -21,8 +21,6 @@ namespace conelane {
 namespace {
 
 constexpr double kVersion = 1.0;
-/// The shipped file has 0.13 MB.
-constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;
 
 /// The inputs have to be those that the library computes, in their order.
 void read_features(JsonReader& json) {
@@ -102,7 +100,13 @@ double read_number(JsonReader& json, const std::string& key) {
     return json.number();
 }
 
+#ifdef __wasi__  // a WebAssembly module has no files: weights come as bytes
+std::string bytes_of(const std::filesystem::path& /*file*/) {
+    throw InvalidInput("weights", "cannot be read");
+}
+#else
 std::string bytes_of(const std::filesystem::path& file) {
+    constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;  // the shipped file has 0.13 MB
     std::ifstream stream(file, std::ios::binary);
     std::string bytes(1U << 16U, '\0');
     std::size_t size = 0;
@@ -115,6 +119,7 @@ std::string bytes_of(const std::filesystem::path& file) {
     bytes.resize(size);
     return bytes;
 }
+#endif
 
 }  // namespace
 
