@@ -30,7 +30,7 @@ function judge(conelane, scene, solution, changes) {
   return best;
 }
 
-/** What edges and turns cost now: a line of text each. */
+/** What edges cost, and their turns with each other. */
 function prices(conelane, scene, edges) {
   const { edges: priced, turns } = conelane.price(scene, edges);
   return { priced, turns };

@@ -855,9 +855,9 @@ function priceTable(edges, turns) {
   return `<table><tr><th></th><th>spacing</th><th>heading</th><th>angle</th><th>cost</th></tr>${rows.join("")}</table>`;
 }
 
-function coneWords({ id, role, edges, priced, turns, best }) {
+function coneWords({ id, role, priced, turns, best }) {
   const head = role === "none" ? `<p><b>Cone ${coneName(id)}</b> is not in the lane of rld-pair.</p>` : `<p><b>Cone ${coneName(id)}</b>, ${role} boundary of rld-pair.</p>`;
-  return head + changeWords(best, role !== "none") + priceTable(priced ?? edges, turns);
+  return head + changeWords(best, role !== "none") + priceTable(priced, turns);
 }
 
 function edgeWords({ from, to, is_chosen, priced, turns, best }) {
