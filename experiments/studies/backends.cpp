@@ -12,6 +12,7 @@
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
+#include "experiments/studies/aslib.hpp"
 #include "experiments/studies/backend_measures.hpp"
 #include "experiments/studies/cone_sets.hpp"
 #include "experiments/studies/peak_memory.hpp"
@@ -109,7 +110,8 @@ class Driver {
                        .latency_ms = mapped_ms + solved_ms,
                        .bound = report.bound,
                        .engine_ms = solver.engine_ms(),
-                       .rounds = report.rounds};
+                       .rounds = report.rounds,
+                       .stopped_by = report.stopped_by};
         if (!report.lane_graph) return row;
         const Claim claim{report.status == SolveStatus::optimal, *report.objective, report.bound};
         const CheckReport checked = check(cones, options_.parameters, *report.lane_graph, claim);
@@ -141,7 +143,7 @@ void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedSc
            const BackendOptions& options, ReferenceProblem& reference, BackendResults& results) {
     const std::vector<const AnnotatedScene*> wanted =
         scenes_of_size(scenes, size, options.limit, [](const AnnotatedScene&) { return true; });
-    BackendBlock block{size, backend.label(), {}, {}, reference.median_ms()};
+    BackendBlock block{size, backend.label(), {}, {}, reference.mean_ms()};
     const std::vector<std::size_t> starts = lap_starts(scenes);
     Progress progress(fmt::format("{} n={}", backend.label(), size_name(size)), wanted.size());
     Driver driver(backend, options);
@@ -281,6 +283,8 @@ class BackendsStudy : public Study {
             ->delimiter(',')
             ->check(CLI::Range(0.1, 1e7));
         add_time_limit_option(command, options_.time_limit_ms);
+        command.add_option("--aslib", aslib_,
+                           "a folder for the runs and features of the instances as a scenario of ASlib");
     }
 
     StudyResult run() override {
@@ -292,6 +296,7 @@ class BackendsStudy : public Study {
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const BackendResults results = backend_results(scenes, options_);
         const BackendMeasures measures = measures_of(results.rows, options_.time_limit_ms);
+        if (!aslib_.empty()) write_aslib_scenario(aslib_, results.rows, options_);
         StudyResult result = study_result(backend_table(results.rows) + left_out(), results.rows,
                                           [](const BackendRow& row) { return to_json(row); });
         result.errors = errors_among(results.rows);
@@ -370,7 +375,7 @@ class BackendsStudy : public Study {
         lines += provenance().machine + '\n';
         if (reference_ms.empty()) return lines;
         return lines + fmt::format(
-                           "reference problem: median {:.3f} ms, {} blocks, coefficient of variation "
+                           "reference problem: {:.3f} ms, median of {} blocks, coefficient of variation "
                            "{:.1f} %\n",
                            median(reference_ms), reference_ms.size(),
                            100.0 * coefficient_of_variation(reference_ms));
@@ -383,6 +388,7 @@ class BackendsStudy : public Study {
     bool all_visible_ = false;
     bool warm_start_ = false;
     bool all_rows_ = false;
+    std::string aslib_;
 };
 
 }  // namespace

@@ -58,6 +58,7 @@ struct BackendRow {
     /// A claim that the checked lane graph of another backend on the same cones contradicts: then `message`
     /// says which. The status stays what was claimed.
     bool refuted = false;
+    std::optional<StopReason> stopped_by{};
     std::vector<Knowledge> steps{};  ///< by the limits for the gap, and at the end
 };
 

@@ -25,15 +25,11 @@ Scene reference_scene() {
 
 ReferenceProblem::ReferenceProblem() : scene_(reference_scene()), solver_(make_path_pair_solver()) {}
 
-double ReferenceProblem::median_ms() {
-    constexpr double kEnough_ms = 50.0;
-    constexpr std::size_t kWarmUps = 3;
-    for (std::size_t k = 0; k < kWarmUps; ++k) (void)solve_scene(*solver_, scene_, {}, {});
-    std::vector<double> times_ms;
+double ReferenceProblem::mean_ms() {
+    constexpr int kSolves = 1000;
     const Stopwatch watch;
-    while (times_ms.size() < kWarmUps || watch.elapsed_ms() < kEnough_ms)
-        times_ms.push_back(solve_scene(*solver_, scene_, {}, {}).total_ms);
-    return median(times_ms);
+    for (int k = 0; k < kSolves; ++k) (void)solve_scene(*solver_, scene_, {}, {});
+    return watch.elapsed_ms() / kSolves;
 }
 
 double coefficient_of_variation(std::span<const double> values) {
