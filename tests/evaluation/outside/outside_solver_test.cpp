@@ -41,6 +41,23 @@ OutsideMethod method(const std::string& command) {
 constexpr SolverPatience kShort{
     .late_ms = 400.0, .start_ms = 10000.0, .end_ms = 400.0, .failures = 4, .lost_ms = 60000.0};
 
+/// Tests that run beside this one have temporary folders, too: this program has a place of its own for them.
+class OwnTemporaryPlace : public testing::Environment {
+  public:
+    void SetUp() override {
+        std::string place =
+            (std::filesystem::temp_directory_path() / "conelane_outside_tests_XXXXXX").string();
+        ASSERT_NE(::mkdtemp(place.data()), nullptr);
+        place_ = place;
+        ASSERT_EQ(::setenv("TMPDIR", place.c_str(), 1), 0);
+    }
+    void TearDown() override { std::filesystem::remove_all(place_); }
+
+  private:
+    std::filesystem::path place_;
+};
+const auto* const kPlace = testing::AddGlobalTestEnvironment(new OwnTemporaryPlace);
+
 std::size_t folders_left() {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::temp_directory_path())) {
