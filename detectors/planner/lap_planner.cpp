@@ -109,6 +109,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
     if (fresh) {
+        *fresh = steadied(*fresh, left, options_.drivable.step_m);
         path_.remember(*fresh, frame.time_s);
         plan.lane = std::move(*fresh);
         plan.state = PlanState::following;

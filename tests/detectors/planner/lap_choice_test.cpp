@@ -1,7 +1,9 @@
-// The choice between the lane driven by and one that jumps away from it; frames whose time stands still.
+// The choice between the lane driven by and one that jumps away from it; noise from frame to frame; frames
+// whose time stands still.
 
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
+#include "detectors/planner/lane_stretch.hpp"
 
 #include <cmath>
 
@@ -76,6 +78,46 @@ TEST(LaneChoice, FramesThatSpeakForTheLaneDrivenByHoldANewOneUp) {
     EXPECT_EQ(frames[0], 2) << "one frame against two";
     EXPECT_GT(frames[1], frames[0]);
     EXPECT_LT(frames[1], 10) << "and no trap";
+}
+
+DrivableLane line_aside(double left_m, double width_m) {
+    DrivableLane lane = line(0.0);
+    for (DrivablePoint& point : lane.points) {
+        point.position.y() += left_m;
+        point.width_left_m = width_m / 2.0;
+        point.width_right_m = width_m / 2.0;
+    }
+    lane.trusted_m = 15.0;
+    return lane;
+}
+
+TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
+    const DrivableLane lane = steadied(line_aside(0.4, 3.5), line_aside(0.0, 3.5), 0.5);
+    for (const DrivablePoint& point : lane.points) {
+        EXPECT_NEAR(point.width_left_m - point.width_right_m, 2.0 * (0.4 - point.position.y()), 1e-6);
+        if (point.s_m > 0.6 && point.s_m < 7.5) {
+            EXPECT_NEAR(point.position.y(), 0.2, 1e-6);
+        }
+        if (point.s_m > 12.6) {
+            EXPECT_NEAR(point.position.y(), 0.4, 1e-6);
+        }
+    }
+    ASSERT_TRUE(lane.trusted_m);
+    EXPECT_NEAR(*lane.trusted_m, 15.0, 1e-9);
+    EXPECT_NEAR(lane.points[10].s_m, 5.0, 1e-9) << "equal steps";
+}
+
+TEST(Steadied, ALaneThatIsElsewhereStays) {
+    for (const DrivablePoint& point : steadied(line_aside(1.0, 3.5), line_aside(0.0, 3.5), 0.5).points) {
+        EXPECT_NEAR(point.position.y(), 1.0, 1e-9);
+    }
+    EXPECT_EQ(steadied(line_aside(1.0, 3.5), {}, 0.5).points.size(), line(0.0).points.size());
+}
+
+TEST(Steadied, TheLineComesNoNearerToABoundary) {
+    for (const DrivablePoint& point : steadied(line_aside(0.4, 2.0), line_aside(0.0, 2.0), 0.5).points) {
+        EXPECT_NEAR(point.position.y(), 0.4, 1e-9);
+    }
 }
 
 TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
