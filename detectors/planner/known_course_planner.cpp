@@ -21,10 +21,17 @@ namespace conelane {
 namespace {
 
 // Registration from frame to frame.
-constexpr double kGain = 0.35;    ///< of a correction: one frame's noise moves the lane by so much of it
-constexpr double kJump_m = 0.25;  ///< a correction that is larger is a jump of the map: taken whole
-constexpr double kJump_rad = 0.03;
+/// The map moves little from frame to frame, and a boundary on a circle does not tell its turn: what the
+/// cones of one frame say counts little.
+constexpr Stiffness kSteady{.place_m = 0.04, .yaw_rad = 0.004, .widening_m = 0.02};
+constexpr Stiffness kSettling{.place_m = 0.15, .yaw_rad = 0.015, .widening_m = 0.05};
+constexpr int kSettlingFrames = 15;  ///< after a search
+constexpr double kJumpGain = 2.0;    ///< of the score, by a move that is not small: the map has jumped
+constexpr double kJumpGainShare = 0.15;
+constexpr int kJumpFrames = 2;  ///< that say so, one after the other
 constexpr int kMinMatched = 3;
+constexpr double kSurplusGain = 0.3;    ///< of one frame
+constexpr double kMinSurplus = 0.3;     ///< of cones on boundaries over those beside, of both
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
 constexpr double kSearchAgain_s = 0.3;  ///< without support
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
@@ -52,6 +59,12 @@ constexpr double kMiddle = 0.6;  ///< of the half width: a cone nearer to the mi
 constexpr double kUnregistered_m = 10.0;  ///< may be driven by it: both missions begin straight
 constexpr double kMaxStartTurn_rad = 0.6;
 
+// Or what all likely registrations have in common.
+constexpr std::size_t kViewsBeforeCommon = 5;
+constexpr double kAgreed_m = 0.7;
+constexpr double kLikely = 0.92;  ///< of the best score
+constexpr double kMinCommon_m = 2.5;
+
 constexpr double kSeenBeyond_m = 5.0;  ///< of the farthest matched cone, a lane is trusted
 
 void validate(const PlannerOptions& options) {
@@ -75,7 +88,7 @@ class KnownCoursePlanner final : public Planner {
     [[nodiscard]] const KnownCourse& shape() const { return known_.course(); }
     void search(const Frame& frame, const SeenView& view, const Deadline& deadline);
     void track(const Frame& frame, const SeenView& view, const Deadline& deadline);
-    [[nodiscard]] bool supports(const RegistrationFit& fit) const;
+    bool supports(const RegistrationFit& fit);
     void search_again(const Frame& frame, const SeenView& view, const Deadline& deadline);
     void find_lines(const Frame& frame, const SeenView& view);
     void accept(const RegistrationFit& fit, const Frame& frame);
@@ -87,8 +100,9 @@ class KnownCoursePlanner final : public Planner {
     [[nodiscard]] double nearest_on_route(const Point& place, double from_s_m, double to_s_m) const;
     void find_closing_cones();
     [[nodiscard]] DrivableLane route_ahead() const;
+    [[nodiscard]] DrivableLane common_route(const Pose& car, double length_m) const;
     void plan_registered(Plan& plan, const Frame& frame);
-    void plan_unregistered(Plan& plan, const Scene& scene, const DetectionLimits& limits);
+    void plan_unregistered(Plan& plan, const Scene& scene, const Deadline& deadline);
 
     PlannerOptions options_;
     std::unique_ptr<LaneDetector> detector_;
@@ -96,10 +110,15 @@ class KnownCoursePlanner final : public Planner {
     GateEvidence gates_;  ///< of acceleration
 
     SeenCones seen_;
-    std::vector<SeenView> views_;  ///< while searching
+    std::vector<SeenView> views_;              ///< while searching
+    std::vector<RegistrationFit> contenders_;  ///< of this frame, while searching
+    int settling_ = 0;                         ///< frames until the registration is steady
+    double surplus_ = 1.0;  ///< of cones on boundaries over those beside them, mean of the last frames
+    int jump_frames_ = 0;   ///< one after the other that say that the map has jumped
     std::optional<double> time_s_;
     Pose first_pose_;
     Pose last_pose_;
+    std::size_t last_count_ = 0;  ///< of cones
     std::optional<Registration> registration_;
     double supported_s_ = 0.0;     ///< time of the last frame whose cones speak for the registration
     double supported_at_m_ = 0.0;  ///< where the car was on the route then
@@ -120,6 +139,9 @@ void KnownCoursePlanner::reset() {
     detector_->reset();
     seen_.clear();
     views_.clear();
+    contenders_.clear();
+    settling_ = 0;
+    jump_frames_ = 0;
     time_s_.reset();
     registration_.reset();
     gates_.clear();
@@ -136,9 +158,10 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
     const Scene scene = checked_scene(frame, limits);
     if (time_s_ && frame.time_s <= *time_s_) {
         Plan plan = last_;
-        if (frame.time_s < *time_s_ && plan.state == PlanState::following) {
-            plan.state = PlanState::bridging;
-        }
+        // The same frame again has the same answer; another one says nothing new.
+        const bool is_same = frame.time_s == *time_s_ && frame.pose.position == last_pose_.position &&
+                             frame.cones.size() == last_count_;
+        if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
         return plan;
     }
     if (!time_s_) first_pose_ = last_pose_ = frame.pose;
@@ -156,12 +179,13 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
     if (registration_) {
         plan_registered(plan, frame);
     } else {
-        plan_unregistered(plan, scene, limits);
+        plan_unregistered(plan, scene, deadline);
     }
     plan.phase = registration_ ? shape().phase(finished_ ? shape().finish_s_m : progress_m_)
                                : shape().phase(shape().start_x_m);
     plan.lap = registration_ ? shape().laps(progress_m_) : 0;
     last_pose_ = frame.pose;
+    last_count_ = frame.cones.size();
     last_ = plan;
     return plan;
 }
@@ -169,19 +193,22 @@ Plan KnownCoursePlanner::update(const Frame& frame, const DetectionLimits& limit
 void KnownCoursePlanner::search(const Frame& frame, const SeenView& view, const Deadline& deadline) {
     if (views_.size() == kMaxViews) views_.erase(views_.begin() + 1);
     views_.push_back(view);
+    contenders_.clear();
     if (frame.cones.empty()) return;
     // The car is expected where it has driven to since the first frame, straight on.
     const double driven_m = first_pose_.ahead_m(frame.pose.position);
     Pose expected{{shape().start_x_m + driven_m, 0.0}, 0.0};
-    if (const auto found = known_.search(seen_.cones(), views_, frame.pose, expected, {}, deadline)) {
+    contenders_ = known_.contenders(seen_.cones(), views_, frame.pose, expected, {}, deadline);
+    if (contenders_.size() == 1) {
         end_m_ = shape().end_s_m;
-        accept(*found, frame);
+        accept(contenders_.front(), frame);
         find_lines(frame, view);
         const double x_m = registration_->to_course(frame.pose.position).x() - line_m_;
         at_m_ = progress_m_ = shape().has_place_along ? std::min(x_m, 0.0) : x_m;
         advance(frame.pose);
         supported_at_m_ = at_m_;
         views_.clear();
+        contenders_.clear();
     }
 }
 
@@ -189,10 +216,19 @@ void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) 
     registration_ = fit.registration;
     supported_s_ = frame.time_s;
     seen_ahead_m_ = fit.farthest_m;
+    settling_ = kSettlingFrames;
+    jump_frames_ = 0;
+    surplus_ = 1.0;
 }
 
-bool KnownCoursePlanner::supports(const RegistrationFit& fit) const {
-    return fit.matched >= kMinMatched && fit.matched >= fit.beside && off_route_m_ < kMaxOffRoute_m;
+bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
+    // By chance as many cones lie on boundaries as beside them; now and then more in one frame.
+    if (fit.matched + fit.beside > 0) {
+        const double surplus = static_cast<double>(fit.matched - fit.beside) / (fit.matched + fit.beside);
+        surplus_ += kSurplusGain * (surplus - surplus_);
+    }
+    return fit.matched >= kMinMatched && fit.matched >= fit.beside && surplus_ > kMinSurplus &&
+           off_route_m_ < kMaxOffRoute_m;
 }
 
 void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
@@ -200,25 +236,25 @@ void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const D
     // This frame alone: after a jump of the map, cones of earlier frames are elsewhere.
     SeenCones now;
     now.observe(frame);
-    const Registration before = *registration_;
-    Registration after = known_.refine(before, now.cones(), frame.pose.position);
-    const RegistrationFit fit = known_.fit(after, now.cones(), {&view, 1}, frame.pose);
+    const auto refined = [&](const Stiffness& stiffness) {
+        return known_.fit(known_.refine(*registration_, now.cones(), frame.pose.position, stiffness),
+                          now.cones(), {&view, 1}, frame.pose);
+    };
+    RegistrationFit fit = refined(settling_ > 0 ? kSettling : kSteady);
+    const RegistrationFit moved = refined({});
+    const bool jumped = moved.score > fit.score + std::max(kJumpGain, kJumpGainShare * fit.score);
+    jump_frames_ = jumped ? jump_frames_ + 1 : 0;
+    if (jump_frames_ >= kJumpFrames) {
+        fit = moved;
+        jump_frames_ = 0;
+        settling_ = kSettlingFrames;
+    }
     if (!supports(fit)) {
         if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view, deadline);
         return;
     }
-    const Point car = before.to_course(frame.pose.position);
-    const Point moved = after.to_map(car) - before.to_map(car);
-    const double turned_rad =
-        std::remainder(after.course.yaw_rad - before.course.yaw_rad, 2.0 * std::numbers::pi);
-    if (moved.norm() < kJump_m && std::abs(turned_rad) < kJump_rad) {
-        after.course.yaw_rad = before.course.yaw_rad + kGain * turned_rad;
-        after.widening_m = before.widening_m + kGain * (after.widening_m - before.widening_m);
-        Registration turned = after;
-        turned.course.position = Point(0.0, 0.0);
-        after.course.position = before.to_map(car) + kGain * moved - turned.to_map(car);
-    }
-    registration_ = after;
+    settling_ = std::max(settling_ - 1, 0);
+    registration_ = fit.registration;
     supported_s_ = frame.time_s;
     seen_ahead_m_ = fit.farthest_m;
 }
@@ -241,7 +277,11 @@ void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, 
     now.observe(frame);
     if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
                                          {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline)) {
-        accept(*found, frame);
+        // The next frame has to confirm it: among enough cones some registration fits one frame by chance.
+        registration_ = found->registration;
+        settling_ = kSettlingFrames;
+        jump_frames_ = 0;
+        surplus_ = kMinSurplus;
     }
 }
 
@@ -342,6 +382,36 @@ DrivableLane KnownCoursePlanner::route_ahead() const {
     return lane;
 }
 
+/// The route by the best contender, as far as all of them agree on it.
+DrivableLane KnownCoursePlanner::common_route(const Pose& car, double length_m) const {
+    DrivableLane lane;
+    if (contenders_.empty()) return lane;
+    const auto point_at = [&](const Registration& registration, double s_m) {
+        DrivablePoint point = shape().at(registration.to_course(car.position).x() + s_m);
+        point.s_m = s_m;
+        point.position = registration.to_map(point.position);
+        point.heading_rad =
+            std::remainder(point.heading_rad + registration.course.yaw_rad, 2.0 * std::numbers::pi);
+        if (point.heading_rad <= -std::numbers::pi) point.heading_rad = std::numbers::pi;
+        point.width_left_m = point.width_right_m = kKnownHalfWidth_m;
+        return point;
+    };
+    const double step_m = options_.drivable.step_m;
+    for (int i = 0; i * step_m <= length_m; ++i) {
+        const DrivablePoint point = point_at(contenders_.front().registration, i * step_m);
+        const bool all_agree = std::ranges::all_of(contenders_, [&](const RegistrationFit& other) {
+            if (other.score < kLikely * contenders_.front().score) return true;
+            return (point_at(other.registration, i * step_m).position - point.position).norm() < kAgreed_m;
+        });
+        if (!all_agree) break;
+        lane.points.push_back(point);
+        lane.length_m = point.s_m;
+    }
+    if (lane.length_m < kMinCommon_m) return {};
+    lane.trusted_m = lane.length_m;
+    return lane;
+}
+
 void KnownCoursePlanner::plan_registered(Plan& plan, const Frame& frame) {
     plan.age_s = frame.time_s - supported_s_;
     const bool old = plan.age_s > 0.0;
@@ -362,12 +432,21 @@ void KnownCoursePlanner::plan_registered(Plan& plan, const Frame& frame) {
     began_ = true;
 }
 
-void KnownCoursePlanner::plan_unregistered(Plan& plan, const Scene& scene, const DetectionLimits& limits) {
+void KnownCoursePlanner::plan_unregistered(Plan& plan, const Scene& scene, const Deadline& deadline) {
     plan.state = began_ ? PlanState::lost : PlanState::searching;
     const double driven_m = (scene.pose.position - first_pose_.position).norm();
     const double left_m = kUnregistered_m - driven_m;
     if (left_m <= 0.0 || scene.cones.size() < kMinDrawnTogether) return;
-    plan.answer = detector_->detect(scene, limits);
+    if (views_.size() >= kViewsBeforeCommon) {
+        plan.lane = common_route(scene.pose, left_m);
+        if (!plan.lane.points.empty()) {
+            plan.state = PlanState::following;
+            plan.safe_m = plan.lane.length_m;
+            began_ = true;
+            return;
+        }
+    }
+    plan.answer = detector_->detect(scene, {.time_limit_ms = std::max(deadline.remaining_ms(), 0.0)});
     DrivableLane lane = drivable(plan.answer, scene, options_.drivable);
     if (lane.points.size() < 2 || lane.closed) return;
     const DrivablePoint& first = lane.points.front();

@@ -10,13 +10,14 @@ namespace {
 
 constexpr double kReach_m = 7.0;  ///< the lines are this near to where they are expected
 constexpr double kStep_m = 0.25;
-constexpr double kAlong_m = 0.85;    ///< cones of a gate are this near to its middle
-constexpr double kInside_m = 0.5;    ///< of the boundary
-constexpr double kOutside_m = 0.8;   ///< big cones may stand farther outside
-constexpr double kColor = 0.25;      ///< of a cone: gained by orange, lost by blue or yellow
-constexpr double kKept = 0.93;       ///< from frame to frame: the map may have moved
-constexpr double kMinWeight = 1.5;   ///< two frames
-constexpr double kViewKept = 0.995;  ///< of range and bearing, from frame to frame
+constexpr double kAlong_m = 0.85;        ///< cones of a gate are this near to its middle
+constexpr double kInside_m = 0.5;        ///< of the boundary
+constexpr double kOutside_m = 0.8;       ///< big cones may stand farther outside
+constexpr double kColor = 0.25;          ///< of a cone: gained by orange, lost by blue or yellow
+constexpr double kKept = 0.93;           ///< from frame to frame: the map may have moved
+constexpr double kMinBearing_rad = 0.7;  ///< that every car sees
+constexpr double kMinWeight = 1.5;       ///< two frames
+constexpr double kViewKept = 0.995;      ///< of range and bearing, from frame to frame
 
 // Log likelihoods.
 constexpr double kStartSigma_m = 1.6;  ///< of the start line where no gate has been seen
@@ -55,7 +56,7 @@ void GateEvidence::clear() {
 
 void GateEvidence::observe(const Registration& registration, const Frame& frame, const SeenView& seen) {
     range_m_ = std::max(seen.range_m, kViewKept * range_m_);
-    bearing_rad_ = std::max(seen.bearing_rad, kViewKept * bearing_rad_);
+    bearing_rad_ = std::max({seen.bearing_rad, kViewKept * bearing_rad_, kMinBearing_rad});
     const SeenView view{seen.pose, range_m_, bearing_rad_};
     struct OnBoundary {
         double x_m;

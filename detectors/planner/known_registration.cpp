@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -32,9 +33,6 @@ constexpr std::size_t kMaxFitted = 150;  ///< cones: the nearest to the car
 
 // The fit, in units of a cone's noise.
 constexpr double kConeNoise_m = 0.15;
-constexpr double kPriorPlace_m = 0.5;
-constexpr double kPriorYaw_rad = 0.05;
-constexpr double kPriorWidening_m = 0.1;
 constexpr std::array<double, 6> kWindows_m = {1.0, 0.8, 0.6, 0.45, 0.45, 0.45};
 
 double square(double value) {
@@ -167,46 +165,59 @@ std::vector<RegistrationFit> KnownRegistration::candidates(std::span<const SeenC
     return best;
 }
 
-std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCone> all,
-                                                         std::span<const SeenView> views, const Pose& car,
-                                                         const Pose& expected, const SearchReach& reach,
-                                                         const Deadline& deadline) const {
+std::vector<RegistrationFit> KnownRegistration::contenders(std::span<const SeenCone> all,
+                                                           std::span<const SeenView> views, const Pose& car,
+                                                           const Pose& expected, const SearchReach& reach,
+                                                           const Deadline& deadline) const {
     const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxSearched);
-    if (cones.size() < static_cast<std::size_t>(kMinMatched)) return std::nullopt;
+    if (cones.size() < static_cast<std::size_t>(kMinMatched)) return {};
     std::vector<RegistrationFit> found = candidates(cones, car, expected, reach, deadline);
     for (RegistrationFit& candidate : found) {
+        if (deadline.passed()) return {};
         const Registration refined = refine(candidate.registration, cones, car.position);
-        if (deadline.passed()) return std::nullopt;
         candidate = fit(refined, cones, views, car);
         // Of two that explain the cones equally well, the one nearer to what is expected.
         const Point off = refined.to_course(car.position) - expected.position;
         candidate.score -= 0.03 * off.squaredNorm();
     }
-    if (found.empty()) return std::nullopt;
-    const auto best = std::ranges::max_element(found, {}, &RegistrationFit::score);
-    if (best->score < kMinScore || best->matched < kMinMatched || best->beside > best->matched) {
-        return std::nullopt;
+    std::ranges::stable_sort(found, std::greater{}, &RegistrationFit::score);
+    if (found.empty() || found.front().score < kMinScore || found.front().matched < kMinMatched ||
+        found.front().beside > found.front().matched) {
+        return {};
     }
-    double next = 0.0;
-    for (const RegistrationFit& other : found) {
-        Point off = other.registration.to_course(car.position) - best->registration.to_course(car.position);
+    const double least = found.front().score - std::max(kMinMargin, kMinMarginShare * found.front().score);
+    const auto are_distinct = [&](const RegistrationFit& one, const RegistrationFit& other) {
+        Point off = one.registration.to_course(car.position) - other.registration.to_course(car.position);
         if (!course_.has_place_along) off.x() = 0.0;
         const double turned_rad = std::remainder(
-            other.registration.course.yaw_rad - best->registration.course.yaw_rad, 2.0 * std::numbers::pi);
-        if (off.norm() > kDistinct_m || std::abs(turned_rad) > kDistinct_rad) {
-            next = std::max(next, other.score);
-        }
+            one.registration.course.yaw_rad - other.registration.course.yaw_rad, 2.0 * std::numbers::pi);
+        return off.norm() > kDistinct_m || std::abs(turned_rad) > kDistinct_rad;
+    };
+    std::vector<RegistrationFit> contenders;
+    for (const RegistrationFit& fit : found) {
+        if (fit.score <= least) break;
+        const bool is_new = std::ranges::all_of(
+            contenders, [&](const RegistrationFit& other) { return are_distinct(fit, other); });
+        if (is_new) contenders.push_back(fit);
     }
-    if (best->score - next < std::max(kMinMargin, kMinMarginShare * best->score)) return std::nullopt;
-    return *best;
+    return contenders;
+}
+
+std::optional<RegistrationFit> KnownRegistration::search(std::span<const SeenCone> cones,
+                                                         std::span<const SeenView> views, const Pose& car,
+                                                         const Pose& expected, const SearchReach& reach,
+                                                         const Deadline& deadline) const {
+    const std::vector<RegistrationFit> found = contenders(cones, views, car, expected, reach, deadline);
+    if (found.size() != 1) return std::nullopt;
+    return found.front();
 }
 
 Registration KnownRegistration::refine(Registration registration, std::span<const SeenCone> all,
-                                       const Point& car) const {
+                                       const Point& car, const Stiffness& stiffness) const {
     const std::vector<SeenCone> cones = nearest_to(car, all, kMaxFitted);
     using Vector = Eigen::Vector4d;  // along x, along y, yaw about the car, widening
-    const Vector prior(square(kConeNoise_m / kPriorPlace_m), square(kConeNoise_m / kPriorPlace_m),
-                       square(kConeNoise_m / kPriorYaw_rad), square(kConeNoise_m / kPriorWidening_m));
+    const Vector prior(square(kConeNoise_m / stiffness.place_m), square(kConeNoise_m / stiffness.place_m),
+                       square(kConeNoise_m / stiffness.yaw_rad), square(kConeNoise_m / stiffness.widening_m));
     Vector total = Vector::Zero();
     for (const double window_m : kWindows_m) {
         Eigen::Matrix4d normal = prior.asDiagonal();

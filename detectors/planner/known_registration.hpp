@@ -35,6 +35,13 @@ struct SearchReach {
     double yaw_rad = 0.5;
 };
 
+/// Standard deviations of how far a registration may be off.
+struct Stiffness {
+    double place_m = 0.5;
+    double yaw_rad = 0.05;
+    double widening_m = 0.1;
+};
+
 /// Finds a known course among cones.
 class KnownRegistration {
   public:
@@ -42,20 +49,25 @@ class KnownRegistration {
 
     [[nodiscard]] const KnownCourse& course() const { return course_; }
 
-    /// The registration that explains the cones best, of those that have the car within `reach` of
-    /// `expected` (course coordinates). Nothing where no registration stands out: it matches too few cones,
-    /// or a distinct one explains them nearly as well, or `deadline` passed. Where the boundaries do not tell
-    /// the place along x, that of `expected` stays. No side effects; the time is bounded by the reach,
-    /// whatever the number of cones.
+    /// The registrations that explain the cones best, of those that have the car within `reach` of `expected`
+    /// (course coordinates): the best first, then distinct ones that explain them nearly as well. Nothing
+    /// where none explains enough cones, or `deadline` passed. Where the boundaries do not tell the place
+    /// along x, that of `expected` stays. The time is bounded by the reach, whatever the number of cones.
+    [[nodiscard]] std::vector<RegistrationFit> contenders(std::span<const SeenCone> cones,
+                                                          std::span<const SeenView> views, const Pose& car,
+                                                          const Pose& expected, const SearchReach& reach = {},
+                                                          const Deadline& deadline = Deadline()) const;
+
+    /// The only one of these, where there is only one.
     [[nodiscard]] std::optional<RegistrationFit> search(std::span<const SeenCone> cones,
                                                         std::span<const SeenView> views, const Pose& car,
                                                         const Pose& expected, const SearchReach& reach = {},
                                                         const Deadline& deadline = Deadline()) const;
 
     /// Moves a registration onto the cones near the car, by at most about a meter. What the cones do not
-    /// determine stays.
+    /// determine stays; `stiffness` says against what they have to speak.
     [[nodiscard]] Registration refine(Registration registration, std::span<const SeenCone> cones,
-                                      const Point& car) const;
+                                      const Point& car, const Stiffness& stiffness = {}) const;
 
     /// What a registration explains. `views`: what they cover and no cone stands for lowers the score.
     [[nodiscard]] RegistrationFit fit(const Registration& registration, std::span<const SeenCone> cones,

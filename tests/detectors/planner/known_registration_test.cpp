@@ -86,7 +86,7 @@ TEST(KnownRegistration, FindsTheLaneOfAnAccelerationOfAnyWidth) {
         ASSERT_TRUE(found) << i;
         const Registration& registration = found->registration;
         EXPECT_NEAR(registration.widening_m, half_m - 1.5, 0.15) << i;
-        EXPECT_NEAR(registration.to_course(in_map(course, pose).position).y(), pose.position.y(), 0.2) << i;
+        EXPECT_NEAR(registration.to_course(in_map(course, pose).position).y(), pose.position.y(), 0.3) << i;
         EXPECT_LT(error_of(registration, pose, course).second, 0.03) << i;
         // The place along the lane is what was expected.
         EXPECT_NEAR(registration.to_course(in_map(course, pose).position).x(), known.course().start_x_m, 0.6);
@@ -171,9 +171,9 @@ TEST(KnownRegistration, APassedDeadlineFindsNothing) {
 
 TEST(KnownRegistration, RefiningComesBackFromHalfAMeterAndAFewDegrees) {
     const KnownRegistration known(known_course(Mission::skidpad));
-    const Pose pose{{9.125, -9.125}, -std::numbers::pi / 2.0};
+    const Pose pose{{-9.0, 0.0}, 0.0};
     const Seen seen =
-        seen_from(with_false(known_event::skidpad_cones(), 20, {9.0, -9.0}, 2), pose, {}, 0.1, 3);
+        seen_from(with_false(known_event::skidpad_cones(), 20, {1.0, 0.0}, 2), pose, {}, 0.1, 3);
     for (const Pose& wrong : {Pose{{0.5, 0.0}, 0.0}, Pose{{-0.3, 0.4}, 0.04}, Pose{{0.0, -0.5}, -0.04}}) {
         const Registration refined = known.refine({wrong, 0.1}, seen.cones, pose.position);
         const auto [off_m, turned_rad] = error_of(refined, pose, {});
@@ -217,7 +217,7 @@ TEST(GateEvidence, BothGatesTellWhereTheLinesAre) {
         // Started behind the gate.
         EXPECT_NEAR(driven(cones, off_m, 1.5, 74.0, 3).start_line_m(), off_m, 0.3);
     }
-    EXPECT_NEAR(driven(cones, 2.2, -4.0, 2.0, 4).start_line_m(), 2.2, 0.3);
+    EXPECT_NEAR(driven(cones, 2.2, -6.0, 2.0, 4).start_line_m(), 2.2, 0.3);
 }
 
 TEST(GateEvidence, FalsePositivesBesidePairsAreNoGate) {
