@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace conelane {
 namespace {
@@ -19,12 +20,14 @@ constexpr double kLastCell = 1e15;
 const Scene& DoubledCones::merge(const Scene& scene) {
     merged_.clear();
     const std::vector<Cone>& cones = scene.cones;
-    by_id_.resize(cones.size());
-    for (std::size_t i = 0; i < cones.size(); ++i) by_id_[i] = i;
-    std::ranges::sort(by_id_, {}, [&](std::size_t i) { return cones[i].id; });
+    outward_.resize(cones.size());
+    for (std::size_t i = 0; i < cones.size(); ++i) outward_[i] = i;
+    std::ranges::sort(outward_, {}, [&](std::size_t i) {
+        return std::pair((cones[i].position - scene.pose.position).norm(), cones[i].id);
+    });
     slots_.assign(std::bit_ceil(2 * cones.size() + 1), Slot{{0, 0}, kNone});
     kept_.assign(cones.size(), true);
-    for (const std::size_t cone : by_id_) {
+    for (const std::size_t cone : outward_) {
         const std::size_t into = kept_near(scene, cones[cone].position);
         if (into == kNone) {
             keep(cones[cone].position, cone);
@@ -33,6 +36,7 @@ const Scene& DoubledCones::merge(const Scene& scene) {
             merged_.push_back({cones[cone].id, cones[into].id});
         }
     }
+    std::ranges::sort(merged_, {}, &MergedCone::cone);
     if (merged_.empty()) return scene;
     once_.id = scene.id;
     once_.pose = scene.pose;

@@ -12,10 +12,11 @@ namespace conelane {
 /// Finds the cones of a scene that are held twice: those that stand at most `radius_m` apart. Keeps memory
 /// from call to call: once it is warm, nothing is allocated.
 ///
-/// Cones are looked at in the order of their ids. A cone that stands within the radius of one that was kept
-/// is merged into it, of several into the nearest, of equally near ones into the smallest id; else it is
-/// kept. So the order of the scene's cones does not count, kept cones stand farther apart than that, and what
-/// is kept is a part of the scene: the cones that are left stay as they are.
+/// Cones are looked at from the car outward, equally far ones by their ids. A cone that stands within the
+/// radius of one that was kept is merged into it, of several into the nearest, of equally near ones into the
+/// one with the smallest id; else it is kept. So neither the order nor, but for ties, the ids of the scene's
+/// cones count, kept cones stand farther apart than that, and what is kept is a part of the scene: the cones
+/// that are left stay as they are.
 class DoubledCones {
   public:
     static constexpr double kMaxRadius_m = 0.4;
@@ -27,7 +28,7 @@ class DoubledCones {
     /// The scene with each cone once: `scene` itself where no cone is doubled, else a copy without the merged
     /// ones, valid until the next call. Time n log n. Precondition: the scene is valid.
     [[nodiscard]] const Scene& merge(const Scene& scene);
-    /// The cones that the last call merged, by their ids.
+    /// The cones that the last call merged, in the order of their ids.
     [[nodiscard]] const std::vector<MergedCone>& merged() const { return merged_; }
 
   private:
@@ -50,8 +51,8 @@ class DoubledCones {
     void keep(const Point& position, std::size_t cone);
 
     double radius_m_;
-    std::vector<std::size_t> by_id_;  ///< indices of the cones
-    std::vector<Slot> slots_;         ///< open addressing, a power of two, at most half full
+    std::vector<std::size_t> outward_;  ///< indices of the cones
+    std::vector<Slot> slots_;           ///< open addressing, a power of two, at most half full
     std::vector<bool> kept_;
     std::vector<MergedCone> merged_;
     Scene once_;

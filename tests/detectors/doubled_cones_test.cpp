@@ -28,14 +28,15 @@ namespace {
 
 constexpr ConeId kDouble = 1000;  ///< id of a cone's double, less that of the cone
 
-/// Every cone of the scene again at that distance, each in another direction, ahead of all others in the
-/// list.
+/// Every cone of the scene again, each in another direction and ahead of all others in the list: that much
+/// farther from the car, which is at the origin, or nearer where it is negative.
 Scene doubled(const Scene& scene, double distance_m) {
     Scene twice = scene;
     twice.cones.clear();
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         Cone cone = scene.cones[i];
-        const double direction_rad = 2.4 * static_cast<double>(i);
+        const double direction_rad =
+            std::atan2(cone.position.y(), cone.position.x()) + std::sin(2.4 * static_cast<double>(i));
         cone.id += kDouble;
         cone.position += distance_m * Point(std::cos(direction_rad), std::sin(direction_rad));
         twice.cones.push_back(cone);
@@ -67,7 +68,7 @@ TEST_P(DoubledConesOf, UpToTenCentimetresAreOneCone) {
         SCOPED_TRACE(distance_m);
         const LaneAnswer answer = detect(doubled(once, distance_m));
         EXPECT_EQ(answer.status, LaneStatus::found) << answer.message;
-        EXPECT_EQ(answer.lane, expected.lane) << "by the smaller ids";
+        EXPECT_EQ(answer.lane, expected.lane) << "by the nearer cones";
         EXPECT_EQ(answer.confidence, expected.confidence);
         EXPECT_EQ(answer.trusted_m, expected.trusted_m);
         ASSERT_EQ(answer.merged.size(), once.cones.size());
@@ -104,8 +105,8 @@ TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
 
 class DoublesOfFront : public testing::TestWithParam<std::string> {};
 
-/// At 1, 5, 10, 20 and 30 cm, whether all cones are doubled or every third one, and whichever of the two has
-/// the smaller id.
+/// At 1, 5, 10, 20 and 30 cm, whether all cones are doubled or every third one, and whichever of the two is
+/// nearer.
 TEST_P(DoublesOfFront, TakeNoTrustAway) {
     const auto detect = [&](const Scene& scene) {
         return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);
@@ -118,25 +119,28 @@ TEST_P(DoublesOfFront, TakeNoTrustAway) {
     for (const double distance_m : {0.01, 0.05, 0.1, 0.2, 0.3}) {
         for (const std::size_t every : {std::size_t{1}, std::size_t{3}}) {
             SCOPED_TRACE(testing::Message() << distance_m << " m, every " << every);
-            Scene twice = doubled(once, distance_m);
             const std::size_t count = once.cones.size();
-            for (std::size_t i = count; i-- > 0;) {
-                if (i % every != 0) twice.cones.erase(twice.cones.begin() + static_cast<std::ptrdiff_t>(i));
-            }
-            const std::size_t doubles = twice.cones.size() - count;
-            const LaneAnswer first_kept = detect(twice);
+            const auto doubled_at = [&](double farther_m) {
+                Scene twice = doubled(once, farther_m);
+                for (std::size_t i = count; i-- > 0;) {
+                    if (i % every != 0)
+                        twice.cones.erase(twice.cones.begin() + static_cast<std::ptrdiff_t>(i));
+                }
+                return twice;
+            };
+            const std::size_t doubles = (count + every - 1) / every;
+            const LaneAnswer first_kept = detect(doubled_at(distance_m));
             EXPECT_EQ(first_kept.lane, expected.lane);
             EXPECT_EQ(first_kept.trusted_m, expected.trusted_m);
             EXPECT_EQ(first_kept.confidence, expected.confidence);
             EXPECT_EQ(first_kept.merged.size(), doubles);
-            // The double has the smaller id: it stands for the cone, off by the distance.
-            for (std::size_t i = 0; i < doubles; ++i) twice.cones[i].id -= 2 * kDouble;
-            const LaneAnswer double_kept = detect(twice);
+            // The double is nearer: it stands for the cone, off by the distance.
+            const LaneAnswer double_kept = detect(doubled_at(-distance_m));
             ASSERT_EQ(double_kept.merged.size(), doubles);
-            for (const MergedCone& merged : double_kept.merged) EXPECT_EQ(merged.into, merged.cone - kDouble);
+            for (const MergedCone& merged : double_kept.merged) EXPECT_EQ(merged.into, merged.cone + kDouble);
             Lane lane = double_kept.lane;
             for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
-                for (ConeId& id : *side) id += id < 0 ? kDouble : 0;
+                for (ConeId& id : *side) id -= id >= kDouble ? kDouble : 0;
             }
             EXPECT_EQ(lane, expected.lane);
             EXPECT_GT(double_kept.trusted_m.value_or(0.0), *expected.trusted_m - 1.0);
@@ -204,16 +208,21 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         for (const MergedCone& cone : doubles.merged()) {
             EXPECT_EQ(std::ranges::count(kept, cone.cone), 0);
             EXPECT_EQ(std::ranges::count(kept, cone.into), 1);
-            EXPECT_LT(cone.into, cone.cone);
+            EXPECT_LE(at(cone.into).norm(), at(cone.cone).norm());
             EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), radius_m);
         }
-        // The order of the list does not count.
+        // The order of the list does not count, nor do the ids.
         std::vector<MergedCone> before = doubles.merged();
         std::ranges::reverse(scene.cones);
         std::vector<ConeId> reversed = ids(doubles.merge(scene));
+        const std::vector<ConeId> reversed_in_list_order = reversed;
         std::ranges::reverse(reversed);
         EXPECT_EQ(reversed, kept);
         EXPECT_EQ(doubles.merged(), before);
+        for (Cone& cone : scene.cones) cone.id = 100 - cone.id;
+        std::vector<ConeId> renumbered = ids(doubles.merge(scene));
+        for (ConeId& id : renumbered) id = 100 - id;
+        EXPECT_EQ(renumbered, reversed_in_list_order);
     }
     EXPECT_GT(merged, 200U) << "scenes without doubles show little";
 }

@@ -56,7 +56,8 @@ inline constexpr double kDoubledCone_m = 0.12;
 /// A cone that a detector did not look at, since it stands within its doubled_cone_m of another one.
 struct MergedCone {
     ConeId cone;
-    ConeId into;  ///< the smaller id, which stands for both in the lane
+    ConeId into;  ///< stands for both in the lane: the one nearer to the car, of equally near ones the
+                  ///< smaller id
 
     bool operator==(const MergedCone&) const = default;
 };
@@ -86,8 +87,8 @@ struct DetectionLimits {
     bool keep_candidates = false;  ///< fill Enumeration::candidates
 };
 
-/// A way from a scene to a lane. It looks at each cone once: of cones that are doubled it sees the one with
-/// the smallest id, and what it says, proofs as well, is said of the scene without the others, which
+/// A way from a scene to a lane. It looks at each cone once: of cones that are doubled it sees the one
+/// nearest to the car, and what it says, proofs as well, is said of the scene without the others, which
 /// LaneAnswer::merged names. An instance may carry state from one scene of a lap to the next and serves
 /// one thread; instances are independent of each other.
 class LaneDetector {
