@@ -188,6 +188,7 @@ class PathPlanner:
         self._seen: Dict[int, Tuple[FloatArray, int]] = {}  # by id: place and colour, those seen last at the end
         self._calls = 0  # since the lane was found
         self._has_contradiction = False  # colours say that it is no lane
+        self._is_guess = False  # nothing of it is trusted
         self._end: Optional[FloatArray] = None  # where colours say that it ends
         self.path_age: Optional[int] = None
         self.plan: Optional[Plan] = None
@@ -251,6 +252,8 @@ class PathPlanner:
         if is_fresh:
             left = self._boundary(self.plan.answer.left_ids, Color.yellow, True)
             right = self._boundary(self.plan.answer.right_ids, Color.blue, False)
+            # A lane of one boundary of which nothing is trusted is a guess.
+            self._is_guess = self.plan.answer.confidence is None and self.plan.safe_m <= 0.0
         path = self._path()
         self._calls = 0 if is_fresh else self._calls + 1
         self.path_age = self._calls if len(path) else None
@@ -285,7 +288,7 @@ class PathPlanner:
 
     def _path(self) -> FloatArray:
         line = self.plan.centre_line
-        if self._has_contradiction or len(line) < 2:
+        if self._has_contradiction or self._is_guess or len(line) < 2:
             return np.zeros((0, 4))
         length = min(self._length_m, line[-1, 0])
         if self._end is not None:

@@ -5,6 +5,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "tests/detectors/planner/known_event.hpp"
+#include "tests/support/no_time_limit.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -234,15 +235,15 @@ TEST(KnownCoursePlanner, FramesTwiceAndOutOfOrderChangeNothing) {
     std::vector<Frame> frames;
     for (int i = 0; i < 60; ++i) frames.push_back(car.next());
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Plan plan = planner->update(frames[i]);
-        const Plan wanted = reference->update(frames[i]);
+        const Plan plan = planner->update(frames[i], tests::kNoTimeLimit);
+        const Plan wanted = reference->update(frames[i], tests::kNoTimeLimit);
         ASSERT_EQ(plan.lane.points.size(), wanted.lane.points.size());
         ASSERT_EQ(plan.state, wanted.state);
-        const Plan again = planner->update(frames[i]);
+        const Plan again = planner->update(frames[i], tests::kNoTimeLimit);
         EXPECT_EQ(again.state, plan.state);
         EXPECT_EQ(again.lane.points.size(), plan.lane.points.size());
         if (i > 20) {
-            EXPECT_EQ(planner->update(frames[i - 2]).state, PlanState::bridging);
+            EXPECT_EQ(planner->update(frames[i - 2], tests::kNoTimeLimit).state, PlanState::bridging);
         }
     }
 }
