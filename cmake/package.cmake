@@ -46,6 +46,28 @@ function(conelane_compile_quickly target level)
     endif()
 endfunction()
 
+# `conelane_embed(SOURCE HEADER [NAME FILE]...)`: makes the source file SOURCE of the build, which defines each std::string_view
+# NAME that HEADER declares as the bytes of FILE. Nothing is read from them here: the library parses its own files.
+function(conelane_embed source header)
+    set(definitions "")
+    while(ARGN)
+        list(POP_FRONT ARGN name file)
+        set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+        file(READ ${file} bytes HEX) # as numbers: compilers need not take strings of more than 65 536 characters
+        string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+        string(APPEND definitions "constexpr char ${name}_bytes[]{${bytes}};\n"
+                                  "constinit const std::string_view ${name}{${name}_bytes, sizeof ${name}_bytes};\n")
+    endwhile()
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${source} @ONLY CONTENT [[
+#include "@header@"
+
+namespace conelane {
+
+@definitions@
+}  // namespace conelane
+]])
+endfunction()
+
 # The headers that users see are in a folder include/conelane beside the sources.
 # `conelane_library(NAME [COMPONENT C] SOURCES... PUBLIC LIBRARIES... PRIVATE LIBRARIES...)`: target conelane_NAME, for
 # users conelane::NAME. Without a component it is not installed.

@@ -31,7 +31,6 @@ class Limits {
 
     /// To be asked before a step of so much work, in operations of a few nanoseconds.
     bool stop(const LaneGraphProblem& problem, std::size_t work) {
-        constexpr std::size_t kWorkPerClock = 20'000;
         if (deadline_ == nullptr || struck_) return struck_.has_value();
         work_ += work;
         if (work_ < kWorkPerClock) return false;
@@ -44,7 +43,7 @@ class Limits {
         return struck_.has_value();
     }
     /// As above, whatever the work since the last look.
-    bool stop(const LaneGraphProblem& problem) { return stop(problem, std::size_t{1} << 32); }
+    bool stop(const LaneGraphProblem& problem) { return stop(problem, kWorkPerClock); }
 
     /// Where all pairs of so many cones are more edges than a problem may have.
     bool stop_for_table(std::size_t cones) {
@@ -56,6 +55,8 @@ class Limits {
     [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
 
   private:
+    static constexpr std::size_t kWorkPerClock = 20'000;
+
     const Deadline* deadline_ = nullptr;
     std::size_t work_ = 0;
     std::optional<StopReason> struck_;

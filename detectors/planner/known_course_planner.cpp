@@ -277,7 +277,11 @@ void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, 
     now.observe(frame);
     if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
                                          {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline)) {
-        accept(*found, frame);
+        // The next frame has to confirm it: among enough cones some registration fits one frame by chance.
+        registration_ = found->registration;
+        settling_ = kSettlingFrames;
+        jump_frames_ = 0;
+        surplus_ = kMinSurplus;
     }
 }
 

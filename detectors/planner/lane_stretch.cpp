@@ -24,6 +24,12 @@ constexpr double kJoinBend_m = 2.0;  ///< before its beginning the line turns fr
 constexpr double kExtendOffset_m = 0.5;
 constexpr double kExtendTurn_rad = 0.35;
 constexpr double kFine_m = 0.1;
+constexpr double kSteadyShare = 0.5;   ///< of the way to the lane driven so far
+constexpr double kSteadyFull_m = 0.5;  ///< apart: up to here all of the share, at kSteadyNone_m nothing
+constexpr double kSteadyNone_m = 0.9;
+constexpr double kSteadyLength_m = 12.0;  ///< of a lane is steadied; the share fades over kSteadyFade_m
+constexpr double kSteadyFade_m = 4.0;
+constexpr double kSteadySide_m = 1.0;  ///< to a boundary: no nearer
 
 Point direction(double heading_rad) {
     return {std::cos(heading_rad), std::sin(heading_rad)};
@@ -245,6 +251,40 @@ DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, doub
     result.right_inferred = lane.right_inferred;
     result.trusted_m = lane.trusted_m;
     result.bridged = lane.bridged;
+    return result;
+}
+
+DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m) {
+    if (lane.points.size() < 3 || before.points.size() < 2) return lane;
+    std::vector<DrivablePoint> points = lane.points;
+    const auto share_at = [](double left_m, double over_m) { return std::clamp(left_m / over_m, 0.0, 1.0); };
+    std::size_t until = 0;
+    for (std::size_t i = 0; i < points.size() && points[i].s_m < kSteadyLength_m; ++i) {
+        DrivablePoint& point = points[i];
+        const Pose pose{point.position, point.heading_rad};
+        const auto foot = foot_on(before, pose, point.s_m - kSteadyFade_m, point.s_m + kSteadyFade_m);
+        if (!foot || foot->s_m <= 0.0) continue;
+        const double to_left_m = pose.left_m(point_at(before, foot->s_m).position);
+        const double share = kSteadyShare * share_at(kSteadyLength_m - point.s_m, kSteadyFade_m) *
+                             share_at(before.length_m - foot->s_m, kSteadyFade_m) *
+                             share_at(kSteadyNone_m - foot->offset_m, kSteadyNone_m - kSteadyFull_m);
+        const double by_m = share * to_left_m;
+        if ((by_m > 0.0 ? point.width_left_m - by_m : point.width_right_m + by_m) < kSteadySide_m) continue;
+        point.position += by_m * Point(-pose.heading().y(), pose.heading().x());
+        point.width_left_m -= by_m;
+        point.width_right_m += by_m;
+        until = i + 1;
+    }
+    if (until == 0) return lane;
+    derive(points, 0, std::min(points.size(), until + 1));
+    DrivableLane result = measured(std::move(points), step_m);
+    result.left_inferred = lane.left_inferred;
+    result.right_inferred = lane.right_inferred;
+    if (lane.trusted_m) result.trusted_m = std::min(*lane.trusted_m, result.length_m);
+    for (BridgedGap gap : lane.bridged) {
+        gap.to_s_m = std::min(gap.to_s_m, result.length_m);
+        if (gap.to_s_m > gap.from_s_m) result.bridged.push_back(gap);
+    }
     return result;
 }
 

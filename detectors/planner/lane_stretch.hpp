@@ -35,4 +35,9 @@ struct LaneFoot {
 /// The lane, and where it ends what `before` knows to follow, if that runs into it smoothly.
 [[nodiscard]] DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, double step_m);
 
+/// The lane, its first metres drawn halfway aside to `before`, the lane driven so far, where both run nearly
+/// the same way: what noise moves from frame to frame moves half as much. Where they are far apart, and where
+/// the lane would come near a boundary, it stays.
+[[nodiscard]] DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m);
+
 }  // namespace conelane

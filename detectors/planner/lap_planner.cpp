@@ -43,6 +43,8 @@ class LapPlanner final : public Planner {
     void move_along(const RigidShift& shift);
     [[nodiscard]] std::optional<DrivableLane> fresh_lane(const LaneAnswer& answer, const Scene& scene,
                                                          const DrivableLane& left) const;
+    [[nodiscard]] std::optional<DrivableLane> chosen_lane(const LaneAnswer& answer, const Scene& scene,
+                                                          const DrivableLane& left);
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void finish(Plan& plan) const;
 
@@ -57,8 +59,10 @@ class LapPlanner final : public Planner {
     LapCounter counter_;
     CourseMemory course_;
     std::optional<double> time_s_;
+    Pose pose_;  ///< of that time
     Plan last_;
-    bool started_ = false;  ///< a lane was driven
+    bool started_ = false;     ///< a lane was driven
+    bool off_course_ = false;  ///< what is seen has outweighed the course of the lap before
 };
 
 void LapPlanner::reset() {
@@ -71,6 +75,7 @@ void LapPlanner::reset() {
     time_s_.reset();
     last_ = {};
     started_ = false;
+    off_course_ = false;
 }
 
 void LapPlanner::move_along(const RigidShift& shift) {
@@ -83,22 +88,28 @@ void LapPlanner::move_along(const RigidShift& shift) {
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     static_cast<void>(checked_scene(frame, limits));  // refuses what is not valid
     if (time_s_ && frame.time_s <= *time_s_) {
-        // The same frame has the same answer; an older one says nothing new.
+        // The same frame has the same answer; an older one, or one of a clock that stands still, says
+        // nothing that can be trusted.
         Plan plan = last_;
-        if (frame.time_s < *time_s_ && plan.state == PlanState::following) {
-            plan.state = PlanState::bridging;
-        }
+        const bool is_same = frame.time_s == *time_s_ && frame.pose.position == pose_.position &&
+                             frame.pose.yaw_rad == pose_.yaw_rad;
+        if (!is_same && plan.state == PlanState::following) plan.state = PlanState::bridging;
         return plan;
     }
     time_s_ = frame.time_s;
+    pose_ = frame.pose;
     if (const auto shift = cones_.observe(frame)) move_along(*shift);
     const Scene scene = cones_.scene(frame.pose);
     Plan plan;
-    plan.answer = detector_->detect(scene, limits);
+    DetectionLimits with_candidates = limits;
+    with_candidates.keep_candidates = true;
+    plan.answer = detector_->detect(scene, with_candidates);
     const DrivableLane left = path_.left(frame.pose, frame.time_s);
-    std::optional<DrivableLane> fresh = fresh_lane(plan.answer, scene, left);
+    std::optional<DrivableLane> fresh = chosen_lane(plan.answer, scene, left);
+    if (plan.answer.enumeration && !limits.keep_candidates) plan.answer.enumeration->candidates.clear();
     plan.answer = named_as_given(std::move(plan.answer));
-    if (fresh && choice_.take(*fresh, left)) {
+    if (fresh) {
+        *fresh = steadied(*fresh, left, options_.drivable.step_m);
         path_.remember(*fresh, frame.time_s);
         plan.lane = std::move(*fresh);
         plan.state = PlanState::following;
@@ -130,6 +141,41 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
         lane.trusted_m = trusted_m;
     }
     return begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
+}
+
+/// The lane of a frame: that of the detector's answer where it goes on with the lane driven by or outweighs
+/// it, else that of the most probable candidate that goes on with it. Nothing where there is none. In later
+/// laps the course known from the lap before stands for the lane driven by, until it is outweighed.
+std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
+                                                    const DrivableLane& left) {
+    std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
+    if (!fresh) return std::nullopt;
+    const DrivableLane course = course_.ahead(scene.pose, choice_settings_.course_ahead_m);
+    if (off_course_ && choice_.agrees(*fresh, course)) off_course_ = false;
+    const bool by_course = !off_course_ && !left.points.empty() && !course.points.empty();
+    const DrivableLane& before = by_course ? course : left;
+    const double weight = answer.confidence.value_or(choice_settings_.unsure_weight);
+    std::optional<DrivableLane> kept;
+    double kept_weight = by_course ? choice_settings_.course_weight : 0.0;
+    if (answer.enumeration && !choice_.agrees(*fresh, before)) {
+        double best = choice_settings_.min_kept_weight;
+        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+            const double probability = candidate.confidence.value_or(0.0);
+            if (probability < best) continue;
+            LaneAnswer other;
+            other.status = LaneStatus::found;
+            other.lane = candidate.lane;
+            std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
+            if (!lane || !choice_.agrees(*lane, before)) continue;
+            kept = std::move(lane);
+            best = probability;
+        }
+        if (kept) kept_weight += best;
+    }
+    const bool agrees = choice_.agrees(*fresh, before);
+    if (!choice_.take(*fresh, before, weight, kept_weight)) return kept;
+    if (by_course && !agrees) off_course_ = true;
+    return fresh;
 }
 
 LaneAnswer LapPlanner::named_as_given(LaneAnswer answer) const {

@@ -33,11 +33,15 @@ struct ShiftSettings {
 
 /// The constants of the choice between a new lane and the last one.
 struct LaneChoiceSettings {
-    double near_m = 8.0;        ///< a jump within this arc length ahead of the car needs a second opinion
-    double jump_m = 0.9;        ///< between the lines of two frames: half the narrowest lane, less the noise
-    double max_support = 3.0;   ///< frames that speak for a lane; so many that disagree replace it
-    double min_left_m = 3.0;    ///< a lane of which less is left holds nothing back
-    double max_offset_m = 2.5;  ///< car to path: farther away it is not on it
+    double near_m = 8.0;         ///< a jump within this arc length ahead of the car needs a second opinion
+    double jump_m = 0.9;         ///< between the lines of two frames: half the narrowest lane, less the noise
+    double max_support = 6.0;    ///< weights of frames that speak for a lane: so much replaces it
+    double unsure_weight = 0.4;  ///< of a frame whose detector gives no probability
+    double min_kept_weight = 0.02;  ///< a candidate that is less probable says nothing
+    double course_weight = 0.3;     ///< of the lap before, in each frame
+    double course_ahead_m = 20.0;   ///< of it that is looked at
+    double min_left_m = 3.0;        ///< a lane of which less is left holds nothing back
+    double max_offset_m = 2.5;      ///< car to path: farther away it is not on it
 };
 
 /// The constants of the course and of laps.

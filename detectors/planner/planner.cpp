@@ -4,6 +4,8 @@
 #include "detectors/planner/known_course_planner.hpp"
 #include "detectors/planner/lap_planner.hpp"
 
+#include <string>
+
 namespace conelane {
 
 std::string_view to_string(Mission mission) {
@@ -18,6 +20,16 @@ std::string_view to_string(Mission mission) {
             return "skidpad";
     }
     return "";
+}
+
+Mission mission_named(std::string_view name) {
+    std::string all;
+    for (const Mission mission :
+         {Mission::trackdrive, Mission::autocross, Mission::acceleration, Mission::skidpad}) {
+        if (to_string(mission) == name) return mission;
+        all += (all.empty() ? "" : ", ") + std::string(to_string(mission));
+    }
+    throw InvalidInput("mission", "there is no '" + std::string(name) + "', only " + all);
 }
 
 std::string_view to_string(PlanState state) {

@@ -1,6 +1,7 @@
 #include "evaluation/files/drivable_lane_file.hpp"
 
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/drivable_lane_json.hpp"
 #include "evaluation/files/json_node.hpp"
 
 #include <utility>
@@ -19,6 +20,13 @@ ordered_json to_json(const DrivableRecord& record) {
                       {"status", to_string(record.status)},
                       {"closed", lane.closed},
                       {"length_m", lane.length_m}};
+    put_drivable_lane(json, lane);
+    return json;
+}
+
+}  // namespace
+
+void put_drivable_lane(ordered_json& json, const DrivableLane& lane) {
     if (lane.trusted_m) json["trusted_m"] = *lane.trusted_m;
     if (lane.left_inferred || lane.right_inferred) json["inferred"] = lane.left_inferred ? "left" : "right";
     ordered_json& bridged = json["bridged"] = ordered_json::array();
@@ -36,10 +44,7 @@ ordered_json to_json(const DrivableRecord& record) {
                           {"width_left_m", point.width_left_m},
                           {"width_right_m", point.width_right_m}});
     }
-    return json;
 }
-
-}  // namespace
 
 void write_drivable_lanes(const std::filesystem::path& file, std::span<const DrivableRecord> records) {
     AtomicFile output(file);

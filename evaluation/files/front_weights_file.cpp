@@ -17,14 +17,12 @@ constexpr int kVersion = 1;
 
 /// Of all networks, in the order of the file.
 Json feature_names() {
-    const auto names = [](auto table) {
-        Json list = Json::array();
-        for (const FrontFeature& feature : table) list.push_back(std::string(feature.name));
-        return list;
-    };
-    return {{"state", names(state_feature_table())}, {"extend", names(extend_feature_table())},
-            {"stop", names(stop_feature_table())},   {"start", names(start_feature_table())},
-            {"cone", names(cone_feature_table())},   {"lane", names(whole_lane_feature_table())}};
+    Json lists = Json::object();
+    for (const FrontFeatureList& list : front_feature_lists()) {
+        Json& names = lists[std::string(list.key)] = Json::array();
+        for (const FrontFeature& feature : list.features) names.push_back(std::string(feature.name));
+    }
+    return lists;
 }
 
 template <typename Weights, typename Use>

@@ -5,12 +5,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <istream>
 #include <ostream>
-#include <sstream>
-#include <unordered_map>
+#include <string>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 namespace conelane {
 namespace {
@@ -186,121 +185,6 @@ void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view 
         if (program.columns[c].integer) out << ' ' << names.columns[c] << '\n';
     }
     out << "End\n";
-}
-
-namespace {
-
-/// Lines of a solution file, for messages that name them.
-class Lines {
-  public:
-    explicit Lines(std::istream& in) : in_(in) {}
-    bool next() {
-        ++count_;
-        return static_cast<bool>(std::getline(in_, text_));
-    }
-    [[nodiscard]] const std::string& text() const { return text_; }
-    [[noreturn]] void fail(const std::string& reason) const {
-        throw InvalidInput("line " + std::to_string(count_), reason);
-    }
-
-  private:
-    std::istream& in_;
-    std::string text_;
-    std::size_t count_ = 0;
-};
-
-/// "Optimal - objective value -4.5", then "INDEX NAME VALUE REDUCED_COST", "**" before values out of bounds.
-SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
-    using Status = SolutionFile::Status;
-    SolutionFile solution;
-    const std::string& head = lines.text();
-    if (head.starts_with("Optimal")) {
-        solution.status = Status::optimal;
-    } else if (head.starts_with("Infeasible") || head.starts_with("Integer infeasible")) {
-        solution.status = Status::infeasible;
-        return solution;
-    } else if (head.starts_with("Stopped")) {
-        solution.status = Status::feasible;
-    } else {
-        lines.fail("is no first line of a solution by cbc or by glpsol --write");
-    }
-    constexpr std::string_view kObjective = "objective value";
-    const std::size_t place = head.find(kObjective);
-    if (place != std::string::npos) {
-        std::istringstream words(head.substr(place + kObjective.size()));
-        double value = 0.0;
-        if (words >> value) solution.objective = value;
-    }
-    std::unordered_map<std::string, std::size_t> column_of;
-    for (std::size_t c = 0; c < program.columns.size(); ++c) {
-        column_of.emplace(to_string(program.columns[c].label), c);
-    }
-    solution.point.assign(program.columns.size(), 0.0);
-    while (lines.next()) {
-        std::istringstream words(lines.text());
-        std::string index, name;
-        double value = 0.0;
-        if (!(words >> index)) continue;
-        if (index == "**") words >> index;
-        if (!(words >> name >> value)) lines.fail("must be INDEX NAME VALUE");
-        const auto column = column_of.find(name);
-        if (column == column_of.end()) lines.fail("the program has no column " + name);
-        solution.point[column->second] = value;
-    }
-    return solution;
-}
-
-/// Lines by their first letter: c comment, s status, i row, j column, e end.
-SolutionFile read_glpsol(Lines& lines, const BinaryProgram& program) {
-    using Status = SolutionFile::Status;
-    SolutionFile solution;
-    bool has_status = false;
-    do {
-        std::istringstream words(lines.text());
-        std::string kind;
-        if (!(words >> kind) || kind == "c" || kind == "i") continue;
-        if (kind == "e") return solution;
-        if (kind == "s") {
-            std::string method, status;
-            std::size_t rows = 0, columns = 0;
-            double objective = 0.0;
-            if (!(words >> method >> rows >> columns >> status) || method != "mip") {
-                lines.fail("must be 's mip ROWS COLUMNS STATUS OBJECTIVE'");
-            }
-            if (columns != program.columns.size()) {
-                lines.fail("has " + std::to_string(columns) + " columns, the program " +
-                           std::to_string(program.columns.size()));
-            }
-            has_status = true;
-            solution.status = status == "o"   ? Status::optimal
-                              : status == "f" ? Status::feasible
-                              : status == "n" ? Status::infeasible
-                                              : Status::unknown;
-            if (solution.status != Status::optimal && solution.status != Status::feasible) continue;
-            if (words >> objective) solution.objective = objective;
-            solution.point.assign(columns, 0.0);
-        } else if (kind == "j") {
-            std::size_t column = 0;
-            double value = 0.0;
-            if (!has_status || !(words >> column >> value) || column < 1 || column > program.columns.size()) {
-                lines.fail("must be 'j COLUMN VALUE' after the line of the status");
-            }
-            if (!solution.point.empty()) solution.point[column - 1] = value;
-        } else {
-            lines.fail("begins with none of c, s, i, j and e");
-        }
-    } while (lines.next());
-    lines.fail("the file ends before its line 'e o f'");
-}
-
-}  // namespace
-
-SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) {
-    Lines lines(in);
-    if (!lines.next()) lines.fail("the file is empty");
-    const std::string first_word = lines.text().substr(0, lines.text().find(' '));
-    const bool by_glpsol = first_word == "c" || first_word == "s";
-    return by_glpsol ? read_glpsol(lines, program) : read_cbc(lines, program);
 }
 
 }  // namespace conelane

@@ -1,6 +1,7 @@
 #include "evaluation/files/step_score_file.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "graph_search/weights/weight_files.hpp"
 
 #include <cstdint>
 
@@ -98,6 +99,10 @@ std::string step_scores_json(const StepScores& scores, std::string_view training
         comma = ",\n  ";
     }
     return text + "}\n}\n";
+}
+
+std::string_view shipped_step_score_file() {
+    return kStepScoresFile;
 }
 
 }  // namespace conelane

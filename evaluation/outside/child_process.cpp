@@ -14,8 +14,10 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -215,8 +217,11 @@ std::string ChildProcess::reap() {
     const bool by_itself = has_exited();
     ::kill(-pid_, SIGKILL);
     int status = 0;
-    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    rusage usage{};  // of the shell, and of what it has waited for
+    while (::wait4(pid_, &status, 0, &usage) < 0 && errno == EINTR) {
     }
+    constexpr std::size_t kKiB = 1024;
+    peak_bytes_ = static_cast<std::size_t>(usage.ru_maxrss) * kKiB;
     pid_ = -1;
     clearing_.reset();
     if (!by_itself) return "";
@@ -254,6 +259,22 @@ std::string ChildProcess::last_words() const {
         ++lines;
     }
     return words;
+}
+
+std::string fault_of(ChildProcess::Outcome outcome, double limit_ms) {
+    switch (outcome) {
+        case ChildProcess::Outcome::late:
+            return fmt::format("no answer within {:.0f} ms", limit_ms);
+        case ChildProcess::Outcome::too_long:
+            return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
+        case ChildProcess::Outcome::closed_input:
+            return "the program reads no more";
+        case ChildProcess::Outcome::closed_output:
+            return "the program ended";
+        case ChildProcess::Outcome::line:
+            break;
+    }
+    return "";
 }
 
 }  // namespace conelane

@@ -47,6 +47,10 @@ class ChildProcess {
     /// it ended: "exit code 3", "signal 11"; empty where it had to be killed.
     std::string end(double patience_ms);
 
+    /// The largest resident memory of any process that it consisted of, by the operating system [bytes];
+    /// known after `end`, 0 before.
+    [[nodiscard]] std::size_t peak_bytes() const { return peak_bytes_; }
+
     /// The last two lines of its standard error that are not blank, since a shell may add one of its own, cut
     /// to a length that fits a message. Complete after `end`.
     [[nodiscard]] std::string last_words() const;
@@ -65,7 +69,12 @@ class ChildProcess {
     std::string pending_;   ///< not yet written
     std::string received_;  ///< not yet a whole line
     std::string error_tail_;
+    std::size_t peak_bytes_ = 0;
     std::optional<ClearOnInterruption> clearing_;
 };
+
+/// What went wrong where there was no line, in words; empty where there was one. `limit_ms`: what was waited
+/// for.
+[[nodiscard]] std::string fault_of(ChildProcess::Outcome outcome, double limit_ms);
 
 }  // namespace conelane

@@ -16,22 +16,6 @@ namespace {
 
 constexpr const char* kReset = "{\"reset\": true}\n";
 
-std::string fault_of_outcome(ChildProcess::Outcome outcome, double limit_ms) {
-    switch (outcome) {
-        case ChildProcess::Outcome::late:
-            return fmt::format("no answer within {:.0f} ms", limit_ms);
-        case ChildProcess::Outcome::too_long:
-            return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
-        case ChildProcess::Outcome::closed_input:
-            return "the program reads no more";
-        case ChildProcess::Outcome::closed_output:
-            return "the program ended";
-        case ChildProcess::Outcome::line:
-            break;
-    }
-    return "";
-}
-
 }  // namespace
 
 OutsideProgram::OutsideProgram(std::string name, std::string command, const OutsideLimits& limits)
@@ -99,7 +83,7 @@ OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms)
     opaque.id = std::to_string(++asked_);
     const ChildProcess::Reply reply = child_->ask(scene_line(opaque) + '\n', limit_ms);
     Attempt attempt;
-    attempt.fault = fault_of_outcome(reply.outcome, limit_ms);
+    attempt.fault = fault_of(reply.outcome, limit_ms);
     if (reply.outcome == ChildProcess::Outcome::line) {
         try {
             LaneRecord record = read_foreign_lane(reply.line);

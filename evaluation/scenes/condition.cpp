@@ -3,6 +3,8 @@
 #include <array>
 #include <numbers>
 
+#include <fmt/format.h>
+
 namespace conelane {
 
 std::span<const Condition> named_conditions() {
@@ -13,6 +15,27 @@ std::span<const Condition> named_conditions() {
         {"harsh", 0.2, 0.5, 8.0 * kDegree_rad, 0.1, true},
     }};
     return conditions;
+}
+
+std::string noise_text(const Condition& condition) {
+    return fmt::format("noise_{}", condition.noise_sigma_m);
+}
+std::string pose_noise_text(const Condition& condition) {
+    return fmt::format("pose_noise_{}_{}", condition.pose_noise_lateral_m, condition.pose_noise_yaw_rad);
+}
+std::string miss_text(const Condition& condition) {
+    return fmt::format("miss_{}", condition.miss_rate);
+}
+
+std::vector<std::string> disturbances(const Condition& condition) {
+    std::vector<std::string> parts;
+    if (condition.noise_sigma_m > 0.0) parts.push_back(noise_text(condition));
+    if (condition.pose_noise_lateral_m > 0.0 || condition.pose_noise_yaw_rad > 0.0) {
+        parts.push_back(pose_noise_text(condition));
+    }
+    if (condition.miss_rate > 0.0) parts.push_back(miss_text(condition));
+    if (condition.persistent) parts.emplace_back("persist");
+    return parts;
 }
 
 }  // namespace conelane

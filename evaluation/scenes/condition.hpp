@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace conelane {
 
@@ -18,5 +19,13 @@ struct Condition {
 /// The conditions that have a name, so that tables can be compared: `paper`, where nothing is disturbed,
 /// `car` and `harsh`.
 [[nodiscard]] std::span<const Condition> named_conditions();
+
+/// How names of conditions and ids of scenes spell the disturbances: "noise_0.1", "pose_noise_0.3_0.09",
+/// "miss_0.05".
+[[nodiscard]] std::string noise_text(const Condition& condition);
+[[nodiscard]] std::string pose_noise_text(const Condition& condition);
+[[nodiscard]] std::string miss_text(const Condition& condition);
+/// The texts of those that the condition has, and "persist", in the order of ids.
+[[nodiscard]] std::vector<std::string> disturbances(const Condition& condition);
 
 }  // namespace conelane

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "evaluation/scenes/scene_generation.hpp"
+#include "evaluation/scenes/scene_options.hpp"
 
 #include <nlohmann/json.hpp>
 

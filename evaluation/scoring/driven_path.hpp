@@ -1,7 +1,7 @@
 #pragma once
 
 #include "conelane/scene.hpp"
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 
 #include <optional>
 #include <span>

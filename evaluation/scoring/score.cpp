@@ -4,7 +4,7 @@
 #include "evaluation/scenes/ground_truth.hpp"
 #include "evaluation/scoring/divergence.hpp"
 #include "evaluation/scoring/driven_path.hpp"
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 #include "model/geometry.hpp"
 
 #include <algorithm>

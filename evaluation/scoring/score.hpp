@@ -4,7 +4,7 @@
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/calibration.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "evaluation/tracks/track_boundaries.hpp"
 

@@ -149,4 +149,10 @@ Track read_run_log(const std::filesystem::path& file) {
     return run;
 }
 
+Frame read_run_frame(const JsonNode& json) {
+    Frame frame{0.0, read_pose(json), read_map(json.member("slam_cones"))};
+    for (Cone& cone : frame.cones) cone.id = kNoId;
+    return frame;
+}
+
 }  // namespace conelane

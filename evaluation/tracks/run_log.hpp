@@ -1,10 +1,13 @@
 #pragma once
 
+#include "conelane/planner.hpp"
 #include "evaluation/tracks/track.hpp"
 
 #include <filesystem>
 
 namespace conelane {
+
+class JsonNode;
 
 /// A run of ft-fsd: a JSON list of frames with `car_position` [x, y], `car_direction` [dx, dy] and
 /// `slam_cones`, the map so far as five lists of [x, y]: unknown, yellow, blue, orange, big orange. Cones of
@@ -20,5 +23,9 @@ namespace conelane {
 ///
 /// Throws InputError naming file and key where it is no such list, is empty or never has a cone.
 [[nodiscard]] Track read_run_log(const std::filesystem::path& file);
+
+/// One moment of such a run as the frame of a planner: the pose and the map, without ids and at time 0. It
+/// may have no cone. Throws InputError naming the key.
+[[nodiscard]] Frame read_run_frame(const JsonNode& json);
 
 }  // namespace conelane

@@ -121,7 +121,7 @@ Track without_doubled_cones(Track track) {
         for (const std::size_t index : boundary) {
             const Point& position = track.cones[index].position;
             for (const std::size_t earlier : kept) {
-                if ((track.cones[earlier].position - position).norm() <= kDoubledCone_m) {
+                if ((track.cones[earlier].position - position).norm() <= kDoubledTrackCone_m) {
                     doubled[index] = true;
                     break;
                 }

@@ -7,10 +7,10 @@
 namespace conelane {
 
 /// Two cones of one boundary at most this far apart [m] count as one.
-inline constexpr double kDoubledCone_m = 0.3;
+inline constexpr double kDoubledTrackCone_m = 0.3;
 
-/// The track without the cones that lie within kDoubledCone_m of an earlier cone of the same boundary: the
-/// later one leaves the boundary and the map.
+/// The track without the cones that lie within kDoubledTrackCone_m of an earlier cone of the same boundary:
+/// the later one leaves the boundary and the map.
 [[nodiscard]] Track without_doubled_cones(Track track);
 
 // All readers return the track without doubled cones, and throw InputError where a file is missing, is not

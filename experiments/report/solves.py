@@ -48,6 +48,8 @@ def read(results):
         return []
     rows = {}
     for number, row in read_lines(path):
+        if "row" in row or row.get("permutation", 0):  # measures, and the same scene in another order
+            continue
         for key, kinds in (("scene", (str,)), ("track", (str,)), ("nearest", (int,)), ("backend", (str,)),
                            ("status", (str,)), ("nodes", (int,)), ("latency_ms", (int, float))):
             require(path, number, row, key, kinds)
@@ -56,6 +58,19 @@ def read(results):
         rows.setdefault((row["nearest"], row["backend"]), []).append(row)
     return [Solves(nearest, backend, of_backend, results.origin(of_backend[0]))
             for (nearest, backend), of_backend in rows.items()]
+
+
+def measures(results, kind):
+    """The rows of one kind that the study worked out: block, summary, pair, selection or gap; each with its number."""
+    path = results.path(FILE)
+    if not os.path.exists(path):
+        return []
+    return [(number, row) for number, row in read_lines(path) if row.get("row") == kind]
+
+
+def size_name(nearest):
+    """`nearest` of a row: 0 stands for all visible cones."""
+    return str(nearest) if nearest else "all"
 
 
 def disagreements(solves):

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "conelane/formulation.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/solve_report.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scoring/solver_measures.hpp"
 #include "experiments/comparison/answer_errors.hpp"
+#include "experiments/studies/backend.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -12,38 +13,31 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace conelane::experiments {
 
 class Study;
 
-/// Every exact solver of the registry on the same cone sets.
+/// Every exact solver of the registry, and programs from outside, on the same cone sets.
 [[nodiscard]] std::unique_ptr<Study> make_backends_study();
 
-/// A solver on a formulation, from nothing or from the lane graph of the scene before.
-struct Backend {
-    std::string solver;
-    Formulation formulation = Formulation::tight;
-    bool warm_start = false;
-
-    /// "cbc/tight", "cbc/tight warm"; only the solver's name where it ignores formulations.
-    [[nodiscard]] std::string label() const;
-};
-
-/// Every exact solver of the registry, from nothing, those that use a formulation on the tight one.
-[[nodiscard]] std::vector<Backend> exact_backends();
-
-/// "SOLVER" or "SOLVER/FORMULATION", tight where none is named. Throws InvalidInput where the registry has no
-/// such exact solver, there is no such formulation, or the solver uses none.
-[[nodiscard]] Backend backend_of(std::string_view name);
+/// Stands for a size: all cones of the scene.
+inline constexpr std::size_t kAllVisible = 0;
 
 struct BackendOptions {
     std::vector<Backend> backends;
-    std::vector<std::size_t> sizes{12, 30};
+    std::vector<std::size_t> sizes{12, 30};  ///< kAllVisible among them
     RldParameters parameters;
-    double time_limit_ms = 1000.0;  ///< a solve
+    double time_limit_ms = 1000.0;     ///< a solve
+    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
+    /// So many times more each scene is solved from nothing, with its cones, and rows and columns of the
+    /// program (see BackendSolver), in other orders.
+    std::size_t permutations = 0;
+    std::uint64_t seed = 1;  ///< of the permutations
+    /// Limits below the time limit under which each scene is solved anew from nothing, ascending: what is
+    /// known by then [ms].
+    std::vector<double> gap_limits_ms;
 };
 
 /// One solve.
@@ -56,19 +50,54 @@ struct BackendRow {
     std::optional<double> objective;
     std::int64_t nodes = 0;
     double latency_ms = 0.0;
+    std::optional<double> bound{};
+    std::optional<double> engine_ms{};  ///< by the solver itself
+    int rounds = 0;                     ///< times that the program was solved
+    std::size_t size = 0;               ///< that was asked for: `cones`, or kAllVisible
+    std::size_t permutation = 0;        ///< 0: as the scene stands
+    /// A claim that the checked lane graph of another backend on the same cones contradicts: then `message`
+    /// says which. The status stays what was claimed.
+    bool refuted = false;
+    std::optional<StopReason> stopped_by{};
+    std::vector<Knowledge> steps{};  ///< by the limits for the gap, and at the end
 };
 
-/// Rows by size, backend and scene. For each size, scenes with fewer cones are left out, and so are backends
-/// whose solver takes no cone set of that size (RldSolverEntry::max_cones). Throws InvalidInput where a
-/// backend's solver is not in this build.
+/// All solves of one backend at one size.
+struct BackendBlock {
+    std::size_t size = 0;
+    std::string backend;
+    std::string version;
+    /// By how much this process grew, or the whole of a program from outside, the largest of its processes.
+    std::optional<std::size_t> peak_bytes;
+    double reference_ms = 0.0;  ///< ReferenceProblem just before
+};
+
+struct BackendResults {
+    std::vector<BackendRow> rows;  ///< by size, backend, scene and permutation
+    std::vector<BackendBlock> blocks;
+};
+
+/// For each size, scenes with fewer cones are left out, and so are backends whose solver takes no cone set of
+/// that size (RldSolverEntry::max_cones). Claims that another row refutes are marked. Throws InvalidInput
+/// where a backend's solver is not in this build.
+[[nodiscard]] BackendResults backend_results(std::span<const AnnotatedScene> scenes,
+                                             const BackendOptions& options);
+/// Its rows.
 [[nodiscard]] std::vector<BackendRow> backend_rows(std::span<const AnnotatedScene> scenes,
                                                    const BackendOptions& options);
 
-/// The answers by backend and size, and the errors among them.
+/// Marks each claim that a checked lane graph of another row of the same scene and size refutes by more than
+/// kObjectiveTolerance, relative to its size where that is above 1: an optimum or a bound above it, a proof
+/// of none. `backend_results` does it.
+void mark_refuted_claims(std::span<BackendRow> rows);
+
+/// The answers by backend and size, and the errors among them; a refuted claim is one.
 [[nodiscard]] AnswerErrors errors_among(std::span<const BackendRow> rows);
 
-/// A line per size and backend for a terminal. "differ": scenes whose proven optimum is more than
-/// kObjectiveTolerance above the lowest that any backend proved.
+/// A line per size and backend for a terminal, of the scenes as they stand.
 [[nodiscard]] std::string backend_table(std::span<const BackendRow> rows);
+
+/// "12", or "all" for kAllVisible.
+[[nodiscard]] std::string size_name(std::size_t size);
 
 }  // namespace conelane::experiments

@@ -2,7 +2,7 @@
 
 #include "evaluation/scenes/cone_index.hpp"
 #include "evaluation/scoring/divergence.hpp"
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/seeded_random.hpp"
 #include "experiments/progress/progress.hpp"

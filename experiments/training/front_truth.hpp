@@ -1,7 +1,7 @@
 #pragma once
 
 #include "evaluation/scenes/annotated_scene.hpp"
-#include "evaluation/scoring/lane_polygon.hpp"
+#include "evaluation/scoring/lane_iou.hpp"
 #include "evaluation/tracks/track_boundaries.hpp"
 #include "graph_search/front/front_map.hpp"
 

@@ -319,14 +319,6 @@ void OnlineLaneWidth::pop(Side side) {
     states_.pop_back();
 }
 
-double OnlineLaneWidth::vertex_width_m(Side side, std::size_t vertex) const {
-    return std::sqrt(rows_[side].vertex_squared[rows_[side].begins.back() + vertex]);
-}
-
-double OnlineLaneWidth::segment_width_m(Side side, std::size_t segment) const {
-    return std::sqrt(rows_[side].segment_squared[rows_[side].begins.back() + segment + 1]);
-}
-
 double OnlineLaneWidth::variance() const {
     WidthSums sums;
     double count = 0.0;

@@ -77,14 +77,12 @@ class OnlineLaneWidth {
 
     [[nodiscard]] const State& state() const { return states_.back(); }
     [[nodiscard]] const BoundaryArrays& boundary(Side side) const { return boundaries_[side]; }
-    [[nodiscard]] double vertex_width_m(Side side, std::size_t vertex) const;
-    /// Squares of all vertex_width_m of a side.
+    /// Squares of the widths at the vertices of a side.
     [[nodiscard]] std::span<const double> squared_vertex_widths_m2(Side side) const {
         return {rows_[side].vertex_squared.data() + rows_[side].begins.back(), boundaries_[side].size};
     }
     /// Variance of all widths, those of vertices and those of segments [m^2].
     [[nodiscard]] double variance() const;
-    [[nodiscard]] double segment_width_m(Side side, std::size_t segment) const;
 
   private:
     /// Widths of one side's queries, a row for each length that the other boundary has had, one after the

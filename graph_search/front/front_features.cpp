@@ -1,5 +1,9 @@
 #include "graph_search/front/front_features.hpp"
 
+#include "graph_search/front/front_extend_features.hpp"
+#include "graph_search/front/front_feature_scales.hpp"
+#include "graph_search/front/front_feature_schema.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,119 +13,175 @@
 namespace conelane {
 namespace {
 
-// The tables stand in the order in which the functions below fill the arrays.
-constexpr std::array<FrontFeature, kStateFeatures> kStateTable{{
-    {"own_segment_known", "1", "1 from the second cone on: before, the heading stands for a direction"},
-    {"own_turn_known", "1", "1 from the third cone on"},
-    {"other_segment_known", "1", "the same of the other boundary"},
-    {"other_turn_known", "1", "the same of the other boundary"},
-    {"other_stopped", "1", "a side that has to go on alone soon ends"},
-    {"own_segment", "m", "cones are about evenly spaced"},
-    {"other_segment", "m", "and on both sides alike"},
-    {"own_turn", "rad", "the bend that is being driven, positive inward"},
-    {"other_turn", "rad", "the same seen by the other boundary"},
-    {"skew", "rad", "angle from the own last segment to the other's: boundaries are parallel"},
-    {"skew_size", "rad", "its absolute value"},
-    {"ends_apart", "m", "distance of both ends"},
-    {"width", "m", "from the own end to the other boundary"},
-    {"mean_width", "m", "a lane keeps its width"},
-    {"lag", "m", "how far the own end is behind the other"},
-    {"mean_segment", "m", "mean length of all segments so far"},
-    {"density", "1", "logarithm of the number of cones around: false ones make it high"},
-    {"distance", "1", "of the end from the car, as a share of the view"},
-    {"view_left", "m", "from the end to the edge of view"},
-    {"own_cones", "1", "cones of the boundary so far, up to 8: at the beginning less is known"},
-}};
-
-constexpr std::array<FrontFeature, kExtendFeatures> kExtendTable{{
-    {"length", "m", "of the new segment: the rules ask for a cone every 5 m"},
-    {"log_ratio_own", "1", "its length over the last one's"},
-    {"log_ratio_own_size", "1", "absolute value"},
-    {"log_ratio_other", "1", "its length over the other side's last one"},
-    {"log_ratio_mean", "1", "its length over the mean so far"},
-    {"turn", "rad", "from the last segment, positive inward"},
-    {"turn_size", "rad", "absolute value: boundaries bend little"},
-    {"turn_change", "rad", "from the last turn: bends are arcs"},
-    {"turn_change_size", "rad", "absolute value"},
-    {"turn_other", "rad", "less that of the other boundary: both bend alike"},
-    {"turn_other_size", "rad", "absolute value"},
-    {"skew", "rad", "angle from the new segment to the other side's last one"},
-    {"skew_size", "rad", "absolute value: they are parallel"},
-    {"width", "m", "from the new cone to the other boundary"},
-    {"width_deviation", "m", "absolute difference to the mean so far"},
-    {"width_change", "m", "from that of the cone before"},
-    {"diagonal", "m", "from the new cone to the other's last one"},
-    {"lead", "m", "how far the new cone is before the other's last one"},
-    {"inside", "1", "cones in the triangle just swept, up to 3: a lane is empty"},
-    {"beside_inward", "1", "nearness of the nearest cone beside the segment, inside: one was skipped"},
-    {"beside_outward", "1", "the same outside"},
-    {"beside", "1", "nearness summed over all cones beside it"},
-    {"within_disc", "1", "cones in the disc about the segment, up to 4: neighbours have none between them"},
-    {"continuation", "1", "how badly the best next segment goes on: the boundary does not end here"},
-    {"partner", "m", "from the place across, a lane width off, to the nearest cone there"},
-    {"bridges", "1", "1 for a segment of more than 5.8 m: a cone was missed"},
-    {"view_left", "m", "from the new cone to the edge of view"},
-    {"crowding", "1", "nearness of the nearest cone to the new one: boundary cones stand alone"},
-}};
-
-constexpr std::array<FrontFeature, kStopFeatures> kStopTable{{
-    {"next_beyond", "m", "how far the cone that should come next, along the arc, is beyond the view"},
-    {"next_ahead", "m", "how far ahead of the car it would be: nothing is seen behind"},
-    {"ahead", "m", "how far ahead of the car the end is"},
-    {"next_off", "m", "from that place to the nearest cone: nothing there, nothing to go on to"},
-    {"next_cones", "1", "cones within 2.5 m of that place, up to 3"},
-    {"straight_beyond", "m", "next_beyond where it would go on straight"},
-    {"straight_ahead", "m", "next_ahead where it would go on straight"},
-    {"straight_off", "m", "next_off where it would go on straight"},
-    {"moves", "1", "ways to go on, up to 12"},
-    {"smoothest", "1", "turn change and change of length of the smoothest of them"},
-    {"other_next_beyond", "m", "next_beyond of the other boundary: both leave the view about together"},
-    {"other_next_ahead", "m", "next_ahead of the other boundary"},
-    {"bearing", "1", "cosine of the direction in which the car sees the end: 0 is the edge of the half disc"},
-}};
-
-constexpr std::array<FrontFeature, kStartFeatures> kStartTable{{
-    {"own_ahead", "m", "the first cones are near"},
-    {"own_outward", "m", "and a few metres to their side"},
-    {"other_ahead", "m", "the same of the other cone"},
-    {"other_outward", "m", "the same of the other cone"},
-    {"width", "m", "distance of both"},
-    {"lead", "m", "how far the own cone is ahead of the other"},
-    {"lead_size", "m", "absolute value: they stand about level"},
-    {"middle_outward", "m", "the car drives about the middle, but for the pose error"},
-    {"middle_outward_size", "m", "absolute value"},
-    {"own_distance", "m", "from the car"},
-    {"own_behind", "1", "cones in the strip behind it, up to 3: one of them may be the first"},
-    {"other_behind", "1", "the same of the other cone"},
-    {"inside", "1", "cones in the triangle of car and pair, up to 3: a lane is empty"},
-    {"own_continuation", "1", "how badly a segment goes on from it along the heading"},
-    {"other_continuation", "1", "the same of the other cone"},
-    {"own_predecessor", "1", "how badly a segment leads to it: a low one means it is not the first"},
-    {"other_predecessor", "1", "the same of the other cone"},
-    {"own_density", "1", "logarithm of the number of cones around"},
-    {"other_density", "1", "the same of the other cone"},
-    {"own_crosses", "m", "how far it is on the other side of the heading"},
-    {"other_crosses", "m", "the same of the other cone"},
-    {"slant", "1", "sine of the angle by which the pair is off square"},
-    {"own_passed", "1", "1 where it is behind the car, by the pose error or noise"},
-    {"other_passed", "1", "the same of the other cone"},
-}};
-
-// What a value is divided by so that it is about 1, and what it is cut at: nothing is told by more.
-constexpr double kLength_m = 4.0;
-constexpr double kView_m = 10.0;
-constexpr double kFarBeyond = 2.0;
-constexpr double kPartnerReach_m = 3.0;
 constexpr double kPlaceReach_m = 2.5;
 constexpr double kFarOff_m = 6.0;
-constexpr double kDefaultWidth = 0.9;
 constexpr double kStrip_m = 1.5;
 constexpr double kRounding_m = 1e-3;  // lengths of edges are float
-constexpr float kMaxCounted = 3.0F;
 
-float scaled(double value, double unit, double most = 4.0) {
-    return static_cast<float>(std::clamp(value / unit, -most, most));
-}
+/// What the features of a state are found from.
+struct StateSeen {
+    const FrontEnd& own;
+    const FrontEnd& other;
+    const StateMeasures& measures;
+    double in;        ///< +1 where a turn to the left is inward, else -1
+    double skew_rad;  ///< inward, from the own last segment to the other's
+    double ends_apart_m;
+    double lag_m;
+    double distance_m;  ///< of the end from the car
+    double view_m;
+    float density;
+};
+
+constexpr std::array<FrontFeatureOf<StateSeen>, kStateFeatures> kStateSchema{{
+    {"own_segment_known", "1", "1 from the second cone on: before, the heading stands for a direction",
+     [](const StateSeen& s) { return s.own.count > 1 ? 1.0F : 0.0F; }},
+    {"own_turn_known", "1", "1 from the third cone on",
+     [](const StateSeen& s) { return s.own.count > 2 ? 1.0F : 0.0F; }},
+    {"other_segment_known", "1", "the same of the other boundary",
+     [](const StateSeen& s) { return s.other.count > 1 ? 1.0F : 0.0F; }},
+    {"other_turn_known", "1", "the same of the other boundary",
+     [](const StateSeen& s) { return s.other.count > 2 ? 1.0F : 0.0F; }},
+    {"other_stopped", "1", "a side that has to go on alone soon ends",
+     [](const StateSeen& s) { return s.other.stopped ? 1.0F : 0.0F; }},
+    {"own_segment", "m", "cones are about evenly spaced",
+     [](const StateSeen& s) { return scaled(s.own.segment_m, kLengthScale_m); }},
+    {"other_segment", "m", "and on both sides alike",
+     [](const StateSeen& s) { return scaled(s.other.segment_m, kLengthScale_m); }},
+    {"own_turn", "rad", "the bend that is being driven, positive inward",
+     [](const StateSeen& s) { return static_cast<float>(s.in) * s.own.turn_rad; }},
+    {"other_turn", "rad", "the same seen by the other boundary",
+     [](const StateSeen& s) { return static_cast<float>(s.in) * s.other.turn_rad; }},
+    {"skew", "rad", "angle from the own last segment to the other's: boundaries are parallel",
+     [](const StateSeen& s) { return static_cast<float>(s.skew_rad); }},
+    {"skew_size", "rad", "its absolute value",
+     [](const StateSeen& s) { return static_cast<float>(std::abs(s.skew_rad)); }},
+    {"ends_apart", "m", "distance of both ends",
+     [](const StateSeen& s) { return scaled(s.ends_apart_m, kLengthScale_m); }},
+    {"width", "m", "from the own end to the other boundary",
+     [](const StateSeen& s) { return scaled(s.measures.width_m, kLengthScale_m); }},
+    {"mean_width", "m", "a lane keeps its width",
+     [](const StateSeen& s) {
+         return scaled(s.measures.mean_width_m, kLengthScale_m) - static_cast<float>(kDefaultWidth);
+     }},
+    {"lag", "m", "how far the own end is behind the other",
+     [](const StateSeen& s) { return scaled(s.lag_m, kLengthScale_m, 2.0); }},
+    {"mean_segment", "m", "mean length of all segments so far",
+     [](const StateSeen& s) { return scaled(s.measures.mean_segment_m, kLengthScale_m); }},
+    {"density", "1", "logarithm of the number of cones around: false ones make it high",
+     [](const StateSeen& s) { return s.density; }},
+    {"distance", "1", "of the end from the car, as a share of the view",
+     [](const StateSeen& s) { return scaled(s.distance_m, std::max(s.view_m, 1.0)); }},
+    {"view_left", "m", "from the end to the edge of view",
+     [](const StateSeen& s) { return scaled(s.view_m - s.distance_m, kViewScale_m, kFarBeyond); }},
+    {"own_cones", "1", "cones of the boundary so far, up to 8: at the beginning less is known",
+     [](const StateSeen& s) { return static_cast<float>(std::min<std::size_t>(s.own.count, 8)) / 8.0F; }},
+}};
+
+/// What the features of a stop are found from.
+struct StopSeen {
+    const Point& at;
+    double distance_m;  ///< of `at` from the car
+    double view_m;
+    const Point& next;      ///< where the next cone would stand on the arc
+    const Point& straight;  ///< and where straight on
+    const Point& other_next;
+    double next_off_m;
+    float next_cones;
+    double straight_off_m;
+    std::size_t moves;
+    float smoothest;
+};
+
+constexpr std::array<FrontFeatureOf<StopSeen>, kStopFeatures> kStopSchema{{
+    {"next_beyond", "m", "how far the cone that should come next, along the arc, is beyond the view",
+     [](const StopSeen& s) { return scaled(s.next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+    {"next_ahead", "m", "how far ahead of the car it would be: nothing is seen behind",
+     [](const StopSeen& s) { return scaled(s.next.x(), kLengthScale_m, kFarBeyond); }},
+    {"ahead", "m", "how far ahead of the car the end is",
+     [](const StopSeen& s) { return scaled(s.at.x(), kViewScale_m, kFarBeyond); }},
+    {"next_off", "m", "from that place to the nearest cone: nothing there, nothing to go on to",
+     [](const StopSeen& s) { return scaled(s.next_off_m, kLengthScale_m); }},
+    {"next_cones", "1", "cones within 2.5 m of that place, up to 3",
+     [](const StopSeen& s) { return s.next_cones; }},
+    {"straight_beyond", "m", "next_beyond where it would go on straight",
+     [](const StopSeen& s) { return scaled(s.straight.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+    {"straight_ahead", "m", "next_ahead where it would go on straight",
+     [](const StopSeen& s) { return scaled(s.straight.x(), kLengthScale_m, kFarBeyond); }},
+    {"straight_off", "m", "next_off where it would go on straight",
+     [](const StopSeen& s) { return scaled(s.straight_off_m, kLengthScale_m); }},
+    {"moves", "1", "ways to go on, up to 12",
+     [](const StopSeen& s) { return static_cast<float>(std::min<std::size_t>(s.moves, 12)) / 12.0F; }},
+    {"smoothest", "1", "turn change and change of length of the smoothest of them",
+     [](const StopSeen& s) { return s.smoothest; }},
+    {"other_next_beyond", "m", "next_beyond of the other boundary: both leave the view about together",
+     [](const StopSeen& s) { return scaled(s.other_next.norm() - s.view_m, kLengthScale_m, kFarBeyond); }},
+    {"other_next_ahead", "m", "next_ahead of the other boundary",
+     [](const StopSeen& s) { return scaled(s.other_next.x(), kLengthScale_m, kFarBeyond); }},
+    {"bearing", "1", "cosine of the direction in which the car sees the end: 0 is the edge of the half disc",
+     [](const StopSeen& s) {
+         return s.distance_m > 0.0 ? static_cast<float>(s.at.x() / s.distance_m) : 0.0F;
+     }},
+}};
+
+/// What the features of a start are found from.
+struct StartSeen {
+    const StartCone& own;
+    const StartCone& other;
+    const Point& a;    ///< the own cone
+    const Point& b;    ///< the other one
+    double own_out_m;  ///< how far it is to its side of the heading
+    double other_out_m;
+    double width_m;
+    double lead_m;
+    double middle_m;  ///< outward
+    float inside;
+};
+
+constexpr std::array<FrontFeatureOf<StartSeen>, kStartFeatures> kStartSchema{{
+    {"own_ahead", "m", "the first cones are near", [](const StartSeen& s) { return scaled(s.a.x(), 5.0); }},
+    {"own_outward", "m", "and a few metres to their side",
+     [](const StartSeen& s) { return scaled(s.own_out_m, 3.0); }},
+    {"other_ahead", "m", "the same of the other cone",
+     [](const StartSeen& s) { return scaled(s.b.x(), 5.0); }},
+    {"other_outward", "m", "the same of the other cone",
+     [](const StartSeen& s) { return scaled(s.other_out_m, 3.0); }},
+    {"width", "m", "distance of both", [](const StartSeen& s) { return scaled(s.width_m, kLengthScale_m); }},
+    {"lead", "m", "how far the own cone is ahead of the other",
+     [](const StartSeen& s) { return scaled(s.lead_m, kLengthScale_m); }},
+    {"lead_size", "m", "absolute value: they stand about level",
+     [](const StartSeen& s) { return scaled(std::abs(s.lead_m), kLengthScale_m); }},
+    {"middle_outward", "m", "the car drives about the middle, but for the pose error",
+     [](const StartSeen& s) { return scaled(s.middle_m, 2.0); }},
+    {"middle_outward_size", "m", "absolute value",
+     [](const StartSeen& s) { return scaled(std::abs(s.middle_m), 2.0); }},
+    {"own_distance", "m", "from the car", [](const StartSeen& s) { return scaled(s.a.norm(), 5.0); }},
+    {"own_behind", "1", "cones in the strip behind it, up to 3: one of them may be the first",
+     [](const StartSeen& s) { return s.own.behind; }},
+    {"other_behind", "1", "the same of the other cone", [](const StartSeen& s) { return s.other.behind; }},
+    {"inside", "1", "cones in the triangle of car and pair, up to 3: a lane is empty",
+     [](const StartSeen& s) { return s.inside; }},
+    {"own_continuation", "1", "how badly a segment goes on from it along the heading",
+     [](const StartSeen& s) { return s.own.continuation; }},
+    {"other_continuation", "1", "the same of the other cone",
+     [](const StartSeen& s) { return s.other.continuation; }},
+    {"own_predecessor", "1", "how badly a segment leads to it: a low one means it is not the first",
+     [](const StartSeen& s) { return s.own.predecessor; }},
+    {"other_predecessor", "1", "the same of the other cone",
+     [](const StartSeen& s) { return s.other.predecessor; }},
+    {"own_density", "1", "logarithm of the number of cones around",
+     [](const StartSeen& s) { return s.own.density; }},
+    {"other_density", "1", "the same of the other cone", [](const StartSeen& s) { return s.other.density; }},
+    {"own_crosses", "m", "how far it is on the other side of the heading",
+     [](const StartSeen& s) { return scaled(std::max(0.0, -s.own_out_m), 1.0); }},
+    {"other_crosses", "m", "the same of the other cone",
+     [](const StartSeen& s) { return scaled(std::max(0.0, -s.other_out_m), 1.0); }},
+    {"slant", "1", "sine of the angle by which the pair is off square",
+     [](const StartSeen& s) { return scaled(s.lead_m, std::max(s.width_m, 1.0)); }},
+    {"own_passed", "1", "1 where it is behind the car, by the pose error or noise",
+     [](const StartSeen& s) { return s.a.x() < 0.0 ? 1.0F : 0.0F; }},
+    {"other_passed", "1", "the same of the other cone",
+     [](const StartSeen& s) { return s.b.x() < 0.0 ? 1.0F : 0.0F; }},
+}};
 
 /// +1 where a turn to the left is inward, -1 where it is outward.
 double inward(Side side) {
@@ -212,16 +272,20 @@ std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const Fr
 }  // namespace
 
 std::span<const FrontFeature, kStateFeatures> state_feature_table() {
-    return kStateTable;
+    static constexpr auto kTable = table_of(kStateSchema);
+    return kTable;
 }
 std::span<const FrontFeature, kExtendFeatures> extend_feature_table() {
-    return kExtendTable;
+    static constexpr auto kTable = table_of(kExtendSchema);
+    return kTable;
 }
 std::span<const FrontFeature, kStopFeatures> stop_feature_table() {
-    return kStopTable;
+    static constexpr auto kTable = table_of(kStopSchema);
+    return kTable;
 }
 std::span<const FrontFeature, kStartFeatures> start_feature_table() {
-    return kStartTable;
+    static constexpr auto kTable = table_of(kStartSchema);
+    return kTable;
 }
 
 StateMeasures measure(FrontMap& map, const FrontState& state, Side side) {
@@ -260,26 +324,8 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
     const double along_norm = along.norm();
     const double lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0;
     const double distance_m = at.norm();
-    return {own.count > 1 ? 1.0F : 0.0F,
-            own.count > 2 ? 1.0F : 0.0F,
-            other.count > 1 ? 1.0F : 0.0F,
-            other.count > 2 ? 1.0F : 0.0F,
-            other.stopped ? 1.0F : 0.0F,
-            scaled(own.segment_m, kLength_m),
-            scaled(other.segment_m, kLength_m),
-            static_cast<float>(in) * own.turn_rad,
-            static_cast<float>(in) * other.turn_rad,
-            static_cast<float>(skew_rad),
-            static_cast<float>(std::abs(skew_rad)),
-            scaled((facing - at).norm(), kLength_m),
-            scaled(measures.width_m, kLength_m),
-            scaled(measures.mean_width_m, kLength_m) - static_cast<float>(kDefaultWidth),
-            scaled(lag_m, kLength_m, 2.0),
-            scaled(measures.mean_segment_m, kLength_m),
-            map.density(own.cones[0]),
-            scaled(distance_m, std::max(map.view_radius_m(), 1.0)),
-            scaled(map.view_radius_m() - distance_m, kView_m, kFarBeyond),
-            static_cast<float>(std::min<std::size_t>(own.count, 8)) / 8.0F};
+    return values_of<kStateSchema>(StateSeen{own, other, measures, in, skew_rad, (facing - at).norm(), lag_m,
+                                             distance_m, map.view_radius_m(), map.density(own.cones[0])});
 }
 
 ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
@@ -318,34 +364,10 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
         partner_m2 = off_m2;
         break_m = farthest_m();
     }
-    return {scaled(length_m, kLength_m),
-            log_own,
-            std::abs(log_own),
-            log_other,
-            edge.log_length - measures.log_mean_segment,
-            static_cast<float>(turn_rad),
-            static_cast<float>(std::abs(turn_rad)),
-            static_cast<float>(change_rad),
-            static_cast<float>(std::abs(change_rad)),
-            static_cast<float>(turn_other_rad),
-            static_cast<float>(std::abs(turn_other_rad)),
-            static_cast<float>(skew_rad),
-            static_cast<float>(std::abs(skew_rad)),
-            scaled(width_m, kLength_m) - static_cast<float>(kDefaultWidth),
-            scaled(std::abs(width_m - mean_width_m), 1.0),
-            scaled(width_m - measures.width_m, kLength_m),
-            scaled((facing - at).norm(), kLength_m),
-            scaled((at - facing).dot(other.direction), kLength_m, kFarBeyond),
-            inside_triangle(map, from, at, facing, move.to, other.cones[0], measures),
-            about.nearest_beside[side == kRight ? kLeft : kRight],
-            about.nearest_beside[side],
-            std::min(about.beside, kMaxCounted),
-            std::min(about.within_disc, 4.0F) / 2.0F,
-            about.continuation,
-            scaled(std::sqrt(partner_m2), kPartnerReach_m, 1.0),
-            length_m > kShortSegment_m ? 1.0F : 0.0F,
-            scaled(map.view_radius_m() - at.norm(), kView_m, kFarBeyond),
-            about.crowding};
+    const float inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures);
+    return values_of<kExtendSchema>(ExtendSeen{
+        measures, about, edge, other, side, at, facing, length_m, turn_rad, change_rad, turn_other_rad,
+        skew_rad, width_m, mean_width_m, map.view_radius_m(), partner_m2, log_own, log_other, inside});
 }
 
 StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
@@ -362,27 +384,16 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const Point other_next = next_place(map, other, other.turn_rad, length_of(other));
     const auto [next_off_m, next_cones] = nearest_to(map, own, other, next);
     const double straight_off_m = nearest_to(map, own, other, straight).first;
+    constexpr std::size_t kTurnChangeSize = place_of(kExtendSchema, "turn_change_size");
+    constexpr std::size_t kLogRatioOwnSize = place_of(kExtendSchema, "log_ratio_own_size");
     const std::size_t moves = extensions.size() / kExtendFeatures;
     float smoothest = 2.0F;
     for (std::size_t i = 0; i < moves; ++i) {
         const float* const extension = extensions.data() + i * kExtendFeatures;
-        smoothest = std::min(
-            smoothest, extension[ExtendPlace::kTurnChangeSize] + extension[ExtendPlace::kLogRatioOwnSize]);
+        smoothest = std::min(smoothest, extension[kTurnChangeSize] + extension[kLogRatioOwnSize]);
     }
-    const double distance_m = at.norm();
-    return {scaled(next.norm() - view_m, kLength_m, kFarBeyond),
-            scaled(next.x(), kLength_m, kFarBeyond),
-            scaled(at.x(), kView_m, kFarBeyond),
-            scaled(next_off_m, kLength_m),
-            next_cones,
-            scaled(straight.norm() - view_m, kLength_m, kFarBeyond),
-            scaled(straight.x(), kLength_m, kFarBeyond),
-            scaled(straight_off_m, kLength_m),
-            static_cast<float>(std::min<std::size_t>(moves, 12)) / 12.0F,
-            smoothest,
-            scaled(other_next.norm() - view_m, kLength_m, kFarBeyond),
-            scaled(other_next.x(), kLength_m, kFarBeyond),
-            distance_m > 0.0 ? static_cast<float>(at.x() / distance_m) : 0.0F};
+    return values_of<kStopSchema>(StopSeen{at, at.norm(), view_m, next, straight, other_next, next_off_m,
+                                           next_cones, straight_off_m, moves, smoothest});
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
@@ -422,30 +433,8 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
             inside = std::min(inside + 1.0F, kMaxCounted);
         }
     }
-    return {scaled(a.x(), 5.0),
-            scaled(own_out_m, 3.0),
-            scaled(b.x(), 5.0),
-            scaled(other_out_m, 3.0),
-            scaled(width_m, kLength_m),
-            scaled(lead_m, kLength_m),
-            scaled(std::abs(lead_m), kLength_m),
-            scaled(middle_m, 2.0),
-            scaled(std::abs(middle_m), 2.0),
-            scaled(a.norm(), 5.0),
-            own.behind,
-            other.behind,
-            inside,
-            own.continuation,
-            other.continuation,
-            own.predecessor,
-            other.predecessor,
-            own.density,
-            other.density,
-            scaled(std::max(0.0, -own_out_m), 1.0),
-            scaled(std::max(0.0, -other_out_m), 1.0),
-            scaled(lead_m, std::max(width_m, 1.0)),
-            a.x() < 0.0 ? 1.0F : 0.0F,
-            b.x() < 0.0 ? 1.0F : 0.0F};
+    return values_of<kStartSchema>(
+        StartSeen{own, other, a, b, own_out_m, other_out_m, width_m, lead_m, middle_m, inside});
 }
 
 }  // namespace conelane

@@ -1,23 +1,15 @@
 #pragma once
 
+#include "graph_search/front/front_feature_schema.hpp"
 #include "graph_search/front/front_state.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace conelane {
-
-/// An input of a network. Turns and sides are seen from the boundary that moves, with inward, towards the
-/// other boundary, as positive: so a scene and its mirror image are judged alike.
-struct FrontFeature {
-    std::string_view name;
-    std::string_view unit;    ///< of what is measured, before it is scaled to about 1
-    std::string_view reason;  ///< what it tells, with what a high value means
-};
 
 // The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
 inline constexpr std::size_t kStateFeatures = 20;
@@ -26,21 +18,6 @@ inline constexpr std::size_t kStopFeatures = 13;
 inline constexpr std::size_t kStartFeatures = 24;
 inline constexpr std::size_t kExtendInputs = kStateFeatures + kExtendFeatures;
 inline constexpr std::size_t kStopInputs = kStateFeatures + kStopFeatures;
-
-/// Where ExtendFeatures has what others look up.
-struct ExtendPlace {
-    static constexpr std::size_t kLength = 0;
-    static constexpr std::size_t kLogRatioOwnSize = 2;
-    static constexpr std::size_t kTurnSize = 6;
-    static constexpr std::size_t kTurnChangeSize = 8;
-    static constexpr std::size_t kWidth = 13;
-    static constexpr std::size_t kWidthDeviation = 14;
-    static constexpr std::size_t kInside = 18;
-    static constexpr std::size_t kBesideInward = 19;
-    static constexpr std::size_t kBesideOutward = 20;
-    static constexpr std::size_t kBridges = 25;
-    static constexpr std::size_t kViewLeft = 26;
-};
 
 [[nodiscard]] std::span<const FrontFeature, kStateFeatures> state_feature_table();
 [[nodiscard]] std::span<const FrontFeature, kExtendFeatures> extend_feature_table();

@@ -1,5 +1,8 @@
 #include "graph_search/front/front_judge.hpp"
 
+#include "graph_search/front/front_extend_features.hpp"
+#include "graph_search/front/front_feature_schema.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,50 +14,6 @@ namespace {
 
 constexpr std::size_t kNone = FrontSearch::kNone;
 
-constexpr std::array<FrontFeature, kConeFeatures> kConeTable{{
-    {"is_first", "1", "1 for the first pair"},
-    {"move_score", "1", "of the move alone"},
-    {"move_margin", "1", "score over that of the best other move"},
-    {"share", "1", "probability of the contenders that have the same segment"},
-    {"least_share", "1", "least of this and those before it"},
-    {"lead", "1", "score of the best contender with this segment over the best one without"},
-    {"lane_lead", "1", "score of the best contender over the second"},
-    {"probability", "1", "of the contender that is the best with this segment"},
-}};
-
-constexpr std::array<FrontFeature, kWholeLaneFeatures> kWholeLaneTable{{
-    {"behind", "1", "how far its score is behind the best one"},
-    {"probability", "1", "by its score"},
-    {"precision", "1", "share of its length that others have too, weighed by their probability"},
-    {"recall", "1", "the same as a share of the length that is expected"},
-    {"least_lead", "1", "least lead of its segments over contenders without them"},
-    {"least_share", "1", "least share of its segments"},
-    {"mean_score", "1", "of its moves"},
-    {"least_score", "1", "of its moves: where it hangs by a thread"},
-    {"least_margin", "1", "the same of the margins over other moves"},
-    {"right_near", "1", "probability that all cones of the first 20 m are right"},
-    {"right", "1", "probability that all its cones are right"},
-    {"length", "1", "as a share of the view"},
-    {"length_expected", "1", "logarithm of its length over the length expected"},
-    {"sides", "1", "shorter boundary over longer one"},
-    {"cones", "1", "of both boundaries"},
-    {"bridges", "1", "segments of more than 5.8 m, up to 4"},
-    {"longest", "m", "segment"},
-    {"inside", "1", "cones inside, up to 4: a lane is empty"},
-    {"beside_inward", "1", "mean nearness of cones inside, beside its segments"},
-    {"beside_outward", "1", "the same outside"},
-    {"narrowest", "m", "width at a cone"},
-    {"widest", "m", "width at a cone"},
-    {"width_deviation", "m", "mean over its cones"},
-    {"turn_change", "rad", "mean over its cones: bends are arcs"},
-    {"largest_turn", "rad", "at a cone"},
-    {"log_ratio", "1", "mean change of the logarithm of its segments' lengths"},
-    {"view_left", "m", "of the end that is farther from the edge of view"},
-    {"stop_score", "1", "of the worse of both stops"},
-    {"start_score", "1", "of the first pair"},
-    {"cones_off", "1", "logarithm of the cones of the scene over those of the lane"},
-}};
-
 constexpr double kNear_m = 20.0;
 constexpr double kTrustMargin_m = 0.5;
 constexpr float kScore = 4.0F;
@@ -63,6 +22,34 @@ constexpr float kMax = 2.0F;
 float score_input(double score) {
     return std::clamp(static_cast<float>(score) / kScore, -kMax, kMax);
 }
+
+/// What the features of a cone of a lane are found from.
+struct ConeSeen {
+    bool is_first;     ///< it is of the first pair
+    double own_score;  ///< of the move that added it
+    double margin;     ///< of that over the best other move
+    double share;      ///< probability of the contenders with this segment
+    float min_share;
+    double lead;  ///< score of the best contender with this segment over the best one without
+    double lane_lead;
+    double probability;  ///< of the best contender with this segment
+};
+
+constexpr std::array<FrontFeatureOf<ConeSeen>, kConeFeatures> kConeSchema{{
+    {"is_first", "1", "1 for the first pair", [](const ConeSeen& s) { return s.is_first ? 1.0F : 0.0F; }},
+    {"move_score", "1", "of the move alone", [](const ConeSeen& s) { return score_input(s.own_score); }},
+    {"move_margin", "1", "score over that of the best other move",
+     [](const ConeSeen& s) { return score_input(s.margin); }},
+    {"share", "1", "probability of the contenders that have the same segment",
+     [](const ConeSeen& s) { return static_cast<float>(s.share); }},
+    {"least_share", "1", "least of this and those before it", [](const ConeSeen& s) { return s.min_share; }},
+    {"lead", "1", "score of the best contender with this segment over the best one without",
+     [](const ConeSeen& s) { return score_input(s.lead); }},
+    {"lane_lead", "1", "score of the best contender over the second",
+     [](const ConeSeen& s) { return score_input(s.lane_lead); }},
+    {"probability", "1", "of the contender that is the best with this segment",
+     [](const ConeSeen& s) { return static_cast<float>(s.probability); }},
+}};
 
 /// Without what the search adds for FrontEvidence.
 double plain(const FrontSearch::Node& node) {
@@ -97,32 +84,110 @@ struct Tally {
     std::array<float, 2> view_left{1.0F, 1.0F};
 
     void add(const FrontJudge::Step& step, const FrontSearch::Node& node) {
+        constexpr std::size_t kShare = place_of(kConeSchema, "share");
         const auto& cone = step.inputs;
-        least_score = std::min(least_score, cone[1]);
-        least_margin = std::min(least_margin, cone[2]);
-        least_share = std::min(least_share, cone[3]);
-        least_lead = std::min(least_lead, cone[5]);
+        least_score = std::min(least_score, cone[place_of(kConeSchema, "move_score")]);
+        least_margin = std::min(least_margin, cone[place_of(kConeSchema, "move_margin")]);
+        least_share = std::min(least_share, cone[kShare]);
+        least_lead = std::min(least_lead, cone[place_of(kConeSchema, "lead")]);
         right *= step.right;
         if (std::min(length_m[kLeft], length_m[kRight]) < kNear_m) right_near = right;
         if (node.parent == FrontSearch::kNone) return;
         const float* const move = cone.data() + kConeFeatures + kStateFeatures;
         const auto segment_m = static_cast<double>(node.state.ends[node.side].segment_m);
         length_m[node.side] += segment_m;
-        shared_m += static_cast<double>(cone[3]) * segment_m;
-        longest = std::max(longest, move[ExtendPlace::kLength]);
-        bridges += move[ExtendPlace::kBridges];
-        inside += move[ExtendPlace::kInside];
-        inward += move[ExtendPlace::kBesideInward];
-        outward += move[ExtendPlace::kBesideOutward];
-        narrowest = std::min(narrowest, move[ExtendPlace::kWidth]);
-        widest = std::max(widest, move[ExtendPlace::kWidth]);
-        deviation += move[ExtendPlace::kWidthDeviation];
-        turn_change += move[ExtendPlace::kTurnChangeSize];
-        largest_turn = std::max(largest_turn, move[ExtendPlace::kTurnSize]);
-        log_ratio += move[ExtendPlace::kLogRatioOwnSize];
-        view_left[node.side] = move[ExtendPlace::kViewLeft];
+        shared_m += static_cast<double>(cone[kShare]) * segment_m;
+        longest = std::max(longest, move[place_of(kExtendSchema, "length")]);
+        bridges += move[place_of(kExtendSchema, "bridges")];
+        inside += move[place_of(kExtendSchema, "inside")];
+        inward += move[place_of(kExtendSchema, "beside_inward")];
+        outward += move[place_of(kExtendSchema, "beside_outward")];
+        narrowest = std::min(narrowest, move[place_of(kExtendSchema, "width")]);
+        widest = std::max(widest, move[place_of(kExtendSchema, "width")]);
+        deviation += move[place_of(kExtendSchema, "width_deviation")];
+        turn_change += move[place_of(kExtendSchema, "turn_change_size")];
+        largest_turn = std::max(largest_turn, move[place_of(kExtendSchema, "turn_size")]);
+        log_ratio += move[place_of(kExtendSchema, "log_ratio_own_size")];
+        view_left[node.side] = move[place_of(kExtendSchema, "view_left")];
     }
 };
+
+/// What the features of a whole lane are found from.
+struct WholeLaneSeen {
+    const Tally& all;
+    double behind;  ///< its score, behind the best one
+    double probability;
+    double mean_score;  ///< of its moves
+    double worst_stop;
+    float start_score;
+    double both_m;      ///< lengths of both boundaries
+    double expected_m;  ///< of all contenders by their probabilities
+    float moves;
+    double view_m;
+    float log_cones_off;
+};
+
+constexpr std::array<FrontFeatureOf<WholeLaneSeen>, kWholeLaneFeatures> kWholeLaneSchema{{
+    {"behind", "1", "how far its score is behind the best one",
+     [](const WholeLaneSeen& s) { return score_input(s.behind); }},
+    {"probability", "1", "by its score",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.probability); }},
+    {"precision", "1", "share of its length that others have too, weighed by their probability",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.shared_m / s.both_m); }},
+    {"recall", "1", "the same as a share of the length that is expected",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.shared_m / s.expected_m); }},
+    {"least_lead", "1", "least lead of its segments over contenders without them",
+     [](const WholeLaneSeen& s) { return s.all.least_lead; }},
+    {"least_share", "1", "least share of its segments",
+     [](const WholeLaneSeen& s) { return s.all.least_share; }},
+    {"mean_score", "1", "of its moves", [](const WholeLaneSeen& s) { return score_input(s.mean_score); }},
+    {"least_score", "1", "of its moves: that of the least certain cone",
+     [](const WholeLaneSeen& s) { return s.all.least_score; }},
+    {"least_margin", "1", "the same of the margins over other moves",
+     [](const WholeLaneSeen& s) { return s.all.least_margin; }},
+    {"right_near", "1", "probability that all cones of the first 20 m are right",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.right_near); }},
+    {"right", "1", "probability that all its cones are right",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.all.right); }},
+    {"length", "1", "as a share of the view",
+     [](const WholeLaneSeen& s) { return static_cast<float>(s.both_m / 2.0 / s.view_m); }},
+    {"length_expected", "1", "logarithm of its length over the length expected",
+     [](const WholeLaneSeen& s) {
+         return std::clamp(static_cast<float>(std::log(s.both_m / s.expected_m)), -kMax, kMax);
+     }},
+    {"sides", "1", "shorter boundary over longer one",
+     [](const WholeLaneSeen& s) {
+         return static_cast<float>(std::min(s.all.length_m[kLeft], s.all.length_m[kRight]) /
+                                   std::max(s.all.length_m[kLeft], s.all.length_m[kRight]));
+     }},
+    {"cones", "1", "of both boundaries",
+     [](const WholeLaneSeen& s) { return std::min(s.moves / 20.0F, kMax); }},
+    {"bridges", "1", "segments of more than 5.8 m, up to 4",
+     [](const WholeLaneSeen& s) { return std::min(s.all.bridges, 4.0F) / 2.0F; }},
+    {"longest", "m", "segment", [](const WholeLaneSeen& s) { return s.all.longest; }},
+    {"inside", "1", "cones inside, up to 4: a lane is empty",
+     [](const WholeLaneSeen& s) { return std::min(s.all.inside, 4.0F) / 2.0F; }},
+    {"beside_inward", "1", "mean nearness of cones inside, beside its segments",
+     [](const WholeLaneSeen& s) { return s.all.inward / s.moves; }},
+    {"beside_outward", "1", "the same outside",
+     [](const WholeLaneSeen& s) { return s.all.outward / s.moves; }},
+    {"narrowest", "m", "width at a cone", [](const WholeLaneSeen& s) { return s.all.narrowest; }},
+    {"widest", "m", "width at a cone", [](const WholeLaneSeen& s) { return s.all.widest; }},
+    {"width_deviation", "m", "mean over its cones",
+     [](const WholeLaneSeen& s) { return s.all.deviation / s.moves; }},
+    {"turn_change", "rad", "mean over its cones: bends are arcs",
+     [](const WholeLaneSeen& s) { return s.all.turn_change / s.moves; }},
+    {"largest_turn", "rad", "at a cone", [](const WholeLaneSeen& s) { return s.all.largest_turn; }},
+    {"log_ratio", "1", "mean change of the logarithm of its segments' lengths",
+     [](const WholeLaneSeen& s) { return s.all.log_ratio / s.moves; }},
+    {"view_left", "m", "of the end that is farther from the edge of view",
+     [](const WholeLaneSeen& s) { return std::max(s.all.view_left[kLeft], s.all.view_left[kRight]); }},
+    {"stop_score", "1", "of the worse of both stops",
+     [](const WholeLaneSeen& s) { return score_input(s.worst_stop); }},
+    {"start_score", "1", "of the first pair", [](const WholeLaneSeen& s) { return s.start_score; }},
+    {"cones_off", "1", "logarithm of the cones of the scene over those of the lane",
+     [](const WholeLaneSeen& s) { return s.log_cones_off; }},
+}};
 
 /// The lowest score of a stop. Of both the last one is no state of its own.
 double worst_stop(const FrontSearch& search, const FrontJudge::Contender& lane) {
@@ -143,10 +208,21 @@ const FrontWeights& valid(const FrontWeights& weights) {
 }  // namespace
 
 std::span<const FrontFeature, kConeFeatures> cone_feature_table() {
-    return kConeTable;
+    static constexpr auto kTable = table_of(kConeSchema);
+    return kTable;
 }
 std::span<const FrontFeature, kWholeLaneFeatures> whole_lane_feature_table() {
-    return kWholeLaneTable;
+    static constexpr auto kTable = table_of(kWholeLaneSchema);
+    return kTable;
+}
+
+std::array<FrontFeatureList, 6> front_feature_lists() {
+    return {{{"state", state_feature_table()},
+             {"extend", extend_feature_table()},
+             {"stop", stop_feature_table()},
+             {"start", start_feature_table()},
+             {"cone", cone_feature_table()},
+             {"lane", whole_lane_feature_table()}}};
 }
 
 FrontJudge::FrontJudge(const FrontWeights& weights)
@@ -256,14 +332,11 @@ void FrontJudge::see_cones(FrontSearch& search) {
             rival < scores_.size() ? scores_[best] - scores_[rival] : static_cast<double>(kMax * kScore);
         min_share_[i] = std::min(static_cast<float>(share), is_first ? 1.0F : min_share_[step.parent]);
         const double own_score = is_first ? plain(node) : plain(node) - plain(search.node(node.parent));
-        step.inputs = {is_first ? 1.0F : 0.0F,
-                       score_input(own_score),
-                       score_input(static_cast<double>(node.margin)),
-                       static_cast<float>(share),
-                       min_share_[i],
-                       score_input(lead),
-                       score_input(lane_lead),
-                       static_cast<float>(probability_[best])};
+        const std::array<float, kConeFeatures> of_cone =
+            values_of<kConeSchema>(ConeSeen{is_first, own_score, static_cast<double>(node.margin), share,
+                                            min_share_[i], lead, lane_lead, probability_[best]});
+        step.inputs = {};
+        std::ranges::copy(of_cone, step.inputs.begin());
         if (!is_first) {
             const FrontState& before = search.node(node.parent).state;
             const StateMeasures measures = measure(search.map(), before, node.side);
@@ -284,38 +357,12 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
     const double both_m = all.length_m[kLeft] + all.length_m[kRight];
     const auto moves = static_cast<float>(path.size());
     const double view_m = std::max(search.map().view_radius_m(), 1.0);
-    features_[contender] = {score_input(scores_.front() - scores_[contender]),
-                            static_cast<float>(probability_[contender]),
-                            static_cast<float>(all.shared_m / both_m),
-                            static_cast<float>(all.shared_m / expected_m_),
-                            all.least_lead,
-                            all.least_share,
-                            score_input(scores_[contender] / static_cast<double>(moves)),
-                            all.least_score,
-                            all.least_margin,
-                            static_cast<float>(all.right_near),
-                            static_cast<float>(all.right),
-                            static_cast<float>(both_m / 2.0 / view_m),
-                            std::clamp(static_cast<float>(std::log(both_m / expected_m_)), -kMax, kMax),
-                            static_cast<float>(std::min(all.length_m[kLeft], all.length_m[kRight]) /
-                                               std::max(all.length_m[kLeft], all.length_m[kRight])),
-                            std::min(moves / 20.0F, kMax),
-                            std::min(all.bridges, 4.0F) / 2.0F,
-                            all.longest,
-                            std::min(all.inside, 4.0F) / 2.0F,
-                            all.inward / moves,
-                            all.outward / moves,
-                            all.narrowest,
-                            all.widest,
-                            all.deviation / moves,
-                            all.turn_change / moves,
-                            all.largest_turn,
-                            all.log_ratio / moves,
-                            std::max(all.view_left[kLeft], all.view_left[kRight]),
-                            score_input(worst_stop(search, lane)),
-                            steps_[path.front()].inputs[1],
-                            static_cast<float>(std::log(static_cast<double>(search.map().size()) /
-                                                        static_cast<double>(path.size() + 1)))};
+    const double cones_off = static_cast<double>(search.map().size()) / static_cast<double>(path.size() + 1);
+    features_[contender] = values_of<kWholeLaneSchema>(
+        WholeLaneSeen{all, scores_.front() - scores_[contender], probability_[contender],
+                      scores_[contender] / static_cast<double>(moves), worst_stop(search, lane),
+                      steps_[path.front()].inputs[place_of(kConeSchema, "move_score")], both_m, expected_m_,
+                      moves, view_m, static_cast<float>(std::log(cones_off))});
 }
 
 double FrontJudge::confidence(std::size_t contender) const {

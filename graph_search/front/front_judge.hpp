@@ -13,7 +13,7 @@
 namespace conelane {
 
 /// Looks at the best lanes of a search as wholes, side by side: which of them is the best, how sure that is,
-/// and how far. What a beam cannot see, it sees: the cone where a lane hangs by a thread, cones inside it
+/// and how far. What a beam cannot see, it sees: the least certain cone of a lane, cones inside it
 /// altogether, and where the lanes part. Keeps memory from call to call.
 class FrontJudge {
   public:

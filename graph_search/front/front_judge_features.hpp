@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string_view>
 
 namespace conelane {
 
@@ -19,6 +20,13 @@ inline constexpr std::size_t kRightInputs = kConeFeatures + kExtendInputs;
 
 [[nodiscard]] std::span<const FrontFeature, kConeFeatures> cone_feature_table();
 [[nodiscard]] std::span<const FrontFeature, kWholeLaneFeatures> whole_lane_feature_table();
+
+/// All tables under the keys that files of weights have for them, in the order of those files.
+struct FrontFeatureList {
+    std::string_view key;
+    std::span<const FrontFeature> features;
+};
+[[nodiscard]] std::array<FrontFeatureList, 6> front_feature_lists();
 
 using RightInputs = std::array<float, kRightInputs>;
 using WholeLaneFeatures = std::array<float, kWholeLaneFeatures>;

@@ -2,11 +2,14 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/clc/lane_features.hpp"
-#include "graph_search/front/front_judge_features.hpp"
-#include "graph_search/weights/shipped_weight_tables.hpp"
+#include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/shared/json_reader.hpp"
+#include "graph_search/weights/weight_files.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,8 +18,24 @@
 namespace conelane {
 namespace {
 
+constexpr double kVersion = 1.0;
+
 void require(bool valid, const std::string& key, const char* reason) {
     if (!valid) throw InvalidInput(key, reason);
+}
+
+void append_numbers(JsonReader& json, std::vector<double>& numbers) {
+    json.array([&] { numbers.push_back(json.number()); });
+}
+
+std::vector<double> numbers_of(JsonReader& json) {
+    std::vector<double> numbers;
+    append_numbers(json, numbers);
+    return numbers;
+}
+
+Eigen::VectorXd vector(std::span<const double> numbers) {
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 
 /// Row by row; empty where the numbers do not fill whole rows, which make_rank_net refuses.
@@ -31,87 +50,127 @@ Eigen::MatrixXf matrix(std::span<const double> numbers, std::size_t columns) {
     return result;
 }
 
-Eigen::VectorXd vector(std::span<const double> numbers) {
-    return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
-}
-
-RankNetWeights weights(const RankNetTable& table) {
-    const std::span<const std::string_view> known = lane_feature_names();
-    require(table.features.size() <= known.size() &&
-                std::ranges::equal(table.features, known.first(table.features.size())),
-            "features", "are not those of the library");
-    require(table.features.size() == table.mean.size(), "mean", "must have one entry a feature");
+/// make_rank_net says what else is wrong with it.
+RankNetWeights rank_net_weights(std::string_view file) {
     RankNetWeights result;
-    result.mean = vector(table.mean);
-    result.deviation = vector(table.deviation);
-    result.hidden = matrix(table.hidden, table.mean.size());
-    result.hidden_bias = vector(table.hidden_bias).cast<float>();
-    result.output = vector(table.output).cast<float>();
-    result.output_bias = static_cast<float>(table.output_bias);
+    double version = 0.0;
+    std::vector<std::string> features;
+    std::vector<double> hidden;
+    JsonReader json(file, "weights");
+    json.object([&](const std::string& key) {
+        if (key == "version") {
+            version = json.number();
+        } else if (key == "features") {
+            json.array([&] { features.push_back(json.string()); });
+        } else if (key == "mean") {
+            result.mean = vector(numbers_of(json));
+        } else if (key == "deviation") {
+            result.deviation = vector(numbers_of(json));
+        } else if (key == "hidden") {
+            json.array([&] { append_numbers(json, hidden); });
+        } else if (key == "hidden_bias") {
+            result.hidden_bias = vector(numbers_of(json)).cast<float>();
+        } else if (key == "output") {
+            result.output = vector(numbers_of(json)).cast<float>();
+        } else if (key == "output_bias") {
+            result.output_bias = static_cast<float>(json.number());
+        } else {
+            json.skip();
+        }
+    });
+    json.require_end();
+    require(version == kVersion, "version", "must be 1");
+    const std::span<const std::string_view> known = lane_feature_names();
+    require(features.size() <= known.size() && std::ranges::equal(features, known.first(features.size())),
+            "features", "are not those of the library");
+    require(features.size() == static_cast<std::size_t>(result.mean.size()), "mean",
+            "must have one entry a feature");
+    result.hidden = matrix(hidden, features.size());
     return result;
 }
 
-FrontNetworkWeights weights(const FrontNetworkTable& table) {
-    const auto floats = [](std::span<const double> numbers) {
-        std::vector<float> result;
-        for (const double number : numbers) result.push_back(static_cast<float>(number));
-        return result;
-    };
-    require(table.output_bias.size() == 1, "output_bias", "must be one number");
-    return {table.linear.size(),  floats(table.hidden), floats(table.hidden_bias),
-            floats(table.output), floats(table.linear), floats(table.output_bias).front()};
+struct StepScoreTable {
+    double first = std::numeric_limits<double>::quiet_NaN();
+    double spacing = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> scores;
+};
+
+StepScoreTable step_score_table(JsonReader& json) {
+    StepScoreTable table;
+    json.object([&](const std::string& key) {
+        if (key == "first") {
+            table.first = json.number();
+        } else if (key == "spacing") {
+            table.spacing = json.number();
+        } else if (key == "scores") {
+            table.scores = numbers_of(json);
+        } else {
+            json.skip();
+        }
+    });
+    return table;
+}
+
+StepScores step_scores(std::string_view file) {
+    double version = 0.0;
+    std::map<std::string, StepScoreTable, std::less<>> tables;
+    JsonReader json(file, "scores");
+    json.object([&](const std::string& key) {
+        if (key == "version") {
+            version = json.number();
+        } else if (key == "measures") {
+            json.object([&](const std::string& measure) { tables[measure] = step_score_table(json); });
+        } else {
+            json.skip();
+        }
+    });
+    json.require_end();
+    require(version == kVersion, "version", "must be 1");
+    StepScores scores;
+    for (const StepMeasure& measure : step_measures()) {
+        const std::string key(measure.name);
+        const auto table = tables.find(key);
+        require(table != tables.end(), key, "is missing");
+        const StepScoreTable& found = table->second;
+        require(found.first == measure.first && found.spacing == measure.spacing &&
+                    found.scores.size() == measure.scores,
+                key, "does not stand where the library has it");
+        scores.values.insert(scores.values.end(), found.scores.begin(), found.scores.end());
+    }
+    validate(scores);
+    return scores;
 }
 
 }  // namespace
 
+// Each file is read once, by the first who asks.
+
 RankNetWeights paper_rank_net_weights() {
-    return weights(kPaperRankNet);
+    return rank_net_weights(kRankNetPaperFile);
 }
 
 RankNetWeights extended_rank_net_weights() {
-    return weights(kExtendedRankNet);
+    return rank_net_weights(kRankNetExtendedFile);
 }
 
 std::shared_ptr<const LaneRanking> paper_rank_net() {
-    return make_rank_net(paper_rank_net_weights());
+    static const std::shared_ptr<const LaneRanking> net = make_rank_net(paper_rank_net_weights());
+    return net;
 }
 
 std::shared_ptr<const LaneRanking> extended_rank_net() {
-    return make_rank_net(extended_rank_net_weights());
+    static const std::shared_ptr<const LaneRanking> net = make_rank_net(extended_rank_net_weights());
+    return net;
 }
 
 std::shared_ptr<const StepScores> shipped_step_scores() {
-    auto scores = std::make_shared<StepScores>();
-    for (const StepMeasure& measure : step_measures()) {
-        const std::string key(measure.name);
-        const auto table = std::ranges::find(kStepScores, measure.name, &StepScoreTable::measure);
-        require(table != kStepScores.end(), key, "is missing");
-        require(table->first == measure.first && table->spacing == measure.spacing &&
-                    table->scores.size() == measure.scores,
-                key, "does not stand where the library has it");
-        scores->values.insert(scores->values.end(), table->scores.begin(), table->scores.end());
-    }
-    validate(*scores);
+    static const auto scores = std::make_shared<const StepScores>(step_scores(kStepScoresFile));
     return scores;
 }
 
 FrontWeights shipped_front_weights() {
-    std::vector<std::string_view> known;
-    const auto add = [&](auto table) {
-        for (const FrontFeature& feature : table) known.push_back(feature.name);
-    };
-    add(state_feature_table());
-    add(extend_feature_table());
-    add(stop_feature_table());
-    add(start_feature_table());
-    add(cone_feature_table());
-    add(whole_lane_feature_table());
-    require(std::ranges::equal(kFront.features, known), "features", "are not those of the library");
-    FrontWeights result{weights(kFront.extend), weights(kFront.stop),   weights(kFront.start),
-                        weights(kFront.rank),   weights(kFront.usable), weights(kFront.right),
-                        kFront.least_trust};
-    validate(result);
-    return result;
+    static const FrontWeights weights = parse_front_weights(kFrontFile);
+    return weights;
 }
 
 }  // namespace conelane

@@ -7,6 +7,7 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/follow_frames.hpp"
 #include "program/commands/unanswered.hpp"
 
 #include <memory>
@@ -14,6 +15,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,6 +31,7 @@ struct Options {
     std::optional<std::string> id;
     std::optional<std::string> method;
     DrivableOptions drivable;
+    FollowOptions follow;  ///< what it shares with the others is set from those
 };
 
 std::vector<LaneRecord> chosen_lanes(const Options& options) {
@@ -72,7 +75,20 @@ AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
     return errors;
 }
 
+void follow(const Options& options) {
+    FollowOptions wanted = options.follow;
+    if (options.method) wanted.detector = *options.method;
+    wanted.format = options.format;
+    wanted.out = options.out;
+    wanted.drivable = options.drivable;
+    follow_frames(wanted);
+}
+
 void drive_all(const Options& options) {
+    for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
+        if (value->empty()) throw InvalidInput(name, "is required, or --follow");
+    }
+    if (options.out == "-") throw InvalidInput("--out", "is standard output with --follow only");
     const std::vector<LaneRecord> records = chosen_lanes(options);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::unordered_map<std::string_view, const Scene*> scene_of;
@@ -108,24 +124,54 @@ void drive_all(const Options& options) {
 
 }  // namespace
 
+/// The options that only --follow has.
+void add_follow_options(CLI::App& command, FollowOptions& options) {
+    CLI::Option* const follow = command.add_option(
+        "--follow", options.frames,
+        "frames of a run, one plan a line: *.frames.jsonl, a run of ft-fsd (JSON), - for standard input");
+    for (const char* const other : {"--lanes", "--scenes", "--id"}) follow->excludes(other);
+    command.add_option("--mission", options.mission, "trackdrive, autocross, acceleration, skidpad")
+        ->needs(follow)
+        ->check(CLI::IsMember({"trackdrive", "autocross", "acceleration", "skidpad"}))
+        ->capture_default_str();
+    command.add_option("--laps", options.laps, "of trackdrive (10) and autocross (1)")
+        ->needs(follow)
+        ->check(CLI::Range(1, 1'000'000));
+    command.add_option("--weights", options.weights, "of front and front-warm, see detect")->needs(follow);
+    command.add_option("--interval", options.interval_s, "between frames that have no time [s]")
+        ->needs(follow)
+        ->check(CLI::Range(0.001, 10.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
+        ->capture_default_str();
+    add_time_limit_option(command, options.time_limit_ms);
+    command.get_option("--time-limit")->needs(follow);
+}
+
 void add_drive_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("drive", "centre lines of lanes, with curvature and widths");
+    CLI::App& command =
+        *program.add_subcommand("drive",
+                                "centre lines of lanes, with curvature and widths; with --follow "
+                                "the plans of a run, frame by frame");
     auto options = std::make_shared<Options>();
-    command.add_option("--lanes", options->lanes, "*.lanes.jsonl")->required();
-    command.add_option("--scenes", options->scenes, "*.scenes.jsonl, the scenes of the lanes")->required();
+    command.add_option("--lanes", options->lanes, "*.lanes.jsonl");
+    command.add_option("--scenes", options->scenes, "*.scenes.jsonl, the scenes of the lanes");
     command
         .add_option("--format", options->format,
                     "json: a line for each lane; tum: x_m,y_m,w_tr_right_m,w_tr_left_m; "
-                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane")
+                    "ftfsd: s_m,x_m,y_m,curvature_1pm; the last two hold one lane, with --follow the course")
         ->check(CLI::IsMember({"json", "tum", "ftfsd"}))
         ->capture_default_str();
-    add_output_option(command, "--out", options->out, "the file to write")->required();
+    add_output_option(command, "--out", options->out,
+                      "the file to write; with --follow - writes each line to standard output at once", true)
+        ->required();
     command.add_option("--id", options->id, "only lanes of this scene");
-    command.add_option("--method", options->method, "only lanes of this method");
+    command.add_option("--method", options->method,
+                       "only lanes of this method; with --follow the detector, front-warm "
+                       "where not given");
     command.add_option("--step", options->drivable.step_m, "from point to point [m], in [0.01, 100]")
         ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
-    command.callback([options] { drive_all(*options); });
+    add_follow_options(command, options->follow);
+    command.callback([options] { options->follow.frames.empty() ? drive_all(*options) : follow(*options); });
 }
 
 }  // namespace conelane::experiments

@@ -2,7 +2,9 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/program_files.hpp"
+#include "evaluation/files/program_solution.hpp"
 #include "evaluation/files/solution_file.hpp"
+#include "evaluation/outside/connecting_flow.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "model/lane_graph_model.hpp"
@@ -20,8 +22,8 @@
 #include <fmt/format.h>
 
 // Both commands speak of the program of one scene. Rows that a solve adds on demand, (5) and the pairing, are
-// too many for a file, so an optimum of the file is a bound for the scene, and its optimum where it is a lane
-// graph.
+// too many to be written one by one: without --all-rows an optimum of the file is a bound for the scene, and
+// its optimum where it is a lane graph.
 namespace conelane::experiments {
 namespace {
 
@@ -32,6 +34,7 @@ struct ProgramSource {
     std::string formulation = "tight";
     std::optional<std::size_t> nearest;
     ParameterSource parameters;
+    bool all_rows = false;
 };
 
 void add_program_options(CLI::App& command, ProgramSource& source) {
@@ -42,6 +45,10 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
+    command.add_flag(
+        "--all-rows", source.all_rows,
+        "with no cycles and the pairing, as columns and rows of a flow: the optimum of the file is "
+        "that of the scene");
 }
 
 Scene load_scene(const ProgramSource& source) {
@@ -62,7 +69,8 @@ class SceneProgram {
           formulation(source.formulation == "paper" ? Formulation::paper : Formulation::tight),
           parameters(source.parameters.load()),
           problem(make_problem(scene, parameters, parts(formulation).extent)),
-          model(problem, formulation) {}
+          model(problem, formulation),
+          program(whole(source.all_rows)) {}
     SceneProgram(const SceneProgram&) = delete;
     SceneProgram& operator=(const SceneProgram&) = delete;
 
@@ -71,6 +79,14 @@ class SceneProgram {
     const RldParameters parameters;
     const LaneGraphProblem problem;
     const LaneGraphModel model;
+    const BinaryProgram program;  ///< the model's, with all rows where asked for
+
+  private:
+    [[nodiscard]] BinaryProgram whole(bool all_rows) const {
+        BinaryProgram made = model.program();
+        if (all_rows) add_connecting_flow(made, problem);
+        return made;
+    }
 };
 
 struct ExportOptions {
@@ -82,18 +98,18 @@ void export_program(const ExportOptions& options) {
     const std::string ending = std::filesystem::path(options.out).extension().string();
     if (ending != ".mps" && ending != ".lp")
         throw InvalidInput("--out", "'" + options.out + "' does not end in .mps or .lp");
-    const SceneProgram program(options.source);
+    const SceneProgram scene_program(options.source);
+    const BinaryProgram& program = scene_program.program;
     AtomicFile file(options.out);
     // The name is one word in these formats.
     const std::string name = "conelane_" + options.source.formulation;
     if (ending == ".mps") {
-        write_mps(file.stream(), program.model.program(), name);
+        write_mps(file.stream(), program, name);
     } else {
-        write_lp(file.stream(), program.model.program(), name);
+        write_lp(file.stream(), program, name);
     }
     file.commit();
-    fmt::print("{} columns and {} rows in {}\n", program.model.program().columns.size(),
-               program.model.program().rows.size(), options.out);
+    fmt::print("{} columns and {} rows in {}\n", program.columns.size(), program.rows.size(), options.out);
 }
 
 struct ImportOptions {
@@ -124,10 +140,12 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
     record.formulation = options.source.formulation;
     record.nearest = options.source.nearest;
     record.parameters = tag_of(options.source.parameters.name, program.parameters);
-    if (solution.status == Status::optimal) record.bound = solution.objective;
+    record.bound = solution.bound;
+    if (!record.bound && solution.status == Status::optimal) record.bound = solution.objective;
     if (solution.point.empty()) {
         record.status = solution.status == Status::infeasible ? "infeasible" : "error";
         if (solution.status != Status::infeasible) record.message = "the file holds no solution";
+        if (solution.status == Status::infeasible) record.bound.reset();
         return record;
     }
     const LaneGraph graph = program.model.decode(solution.point);
@@ -150,7 +168,7 @@ SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& progr
 
 void import_solution(const ImportOptions& options) {
     const SceneProgram program(options.source);
-    const SolutionFile solution = read_solution(options.solution, program.model.program());
+    const SolutionFile solution = read_solution(options.solution, program.program);
     const SolutionRecord record = to_record(solution, program, options);
     write_solutions(options.out, std::array{record});
     fmt::print("{}{}\n", record.status, record.message.empty() ? "" : ": " + record.message);
@@ -160,9 +178,9 @@ void import_solution(const ImportOptions& options) {
 
 void add_exchange_commands(CLI::App& program) {
     CLI::App& exporting = *program.add_subcommand("export",
-                                                  "the program of a scene as MPS or LP file. Not in it are "
-                                                  "the rows that solvers here add on demand: no "
-                                                  "cycles (5), and the pairing near_far");
+                                                  "the program of a scene as MPS or LP file. Without "
+                                                  "--all-rows the rows that solvers here add on demand are "
+                                                  "not in it: no cycles (5), and the pairing near_far");
     auto exports = std::make_shared<ExportOptions>();
     add_program_options(exporting, exports->source);
     add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
@@ -172,12 +190,13 @@ void add_exchange_commands(CLI::App& program) {
                                                   "what another program found for an exported file, as a "
                                                   "solution for `conelane check`; the options must "
                                                   "be those of the export. A solution with a cycle or "
-                                                  "against the pairing is an error: those rows are not "
-                                                  "in the file");
+                                                  "against the pairing is an error: those rows are in the "
+                                                  "file with --all-rows only");
     auto imports = std::make_shared<ImportOptions>();
     add_program_options(importing, imports->source);
     importing
-        .add_option("--sol", imports->solution, "of `cbc FILE solve solution SOL` or `glpsol --write SOL`")
+        .add_option("--sol", imports->solution,
+                    "a solution file of CBC, GLPK, HiGHS, SCIP or Gurobi, or MIPLIB's")
         ->required();
     importing.add_option("--solver", imports->solver, "whose solution it is, a name for the records")
         ->capture_default_str();

@@ -1,6 +1,7 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
 #include "evaluation/files/solution_file.hpp"
+#include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
@@ -30,7 +31,31 @@ struct Options {
     ParameterSource parameters;
     SolveLimits limits;
     bool warm_start = false;
+    bool all_rows = false;
 };
+
+/// A solver, and what records call it.
+struct ChosenSolver {
+    std::unique_ptr<RldSolver> solver;
+    std::string name;
+    std::string formulation;
+};
+
+ChosenSolver choose(const Options& options) {
+    const Formulation formulation = options.formulation == "paper" ? Formulation::paper : Formulation::tight;
+    if (const auto outside = parse_outside_solver(options.solver)) {
+        const OutsideSolverOptions how{outside->formulation.value_or(formulation), options.all_rows};
+        return {std::make_unique<OutsideSolver>(outside->method, how), outside->method.name,
+                std::string(to_string(how.formulation))};
+    }
+    if (options.all_rows)
+        throw InvalidInput("--all-rows", "is for programs from outside: --solver exec:NAME=COMMAND");
+    const RldSolverEntry* entry = find_rld_solver(options.solver);
+    if (entry == nullptr) {
+        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
+    }
+    return {entry->make(formulation), options.solver, options.formulation};
+}
 
 /// How many scenes have which status, in the order in which these are met.
 std::string status_counts(const std::vector<SolutionRecord>& records) {
@@ -50,19 +75,14 @@ std::string status_counts(const std::vector<SolutionRecord>& records) {
 }
 
 void solve_all(const Options& options) {
-    const RldSolverEntry* entry = find_rld_solver(options.solver);
-    if (entry == nullptr) {
-        throw InvalidInput("--solver", "there is no solver '" + options.solver + "', see `conelane solvers`");
-    }
     const RldParameters parameters = options.parameters.load();
     const ParameterTag tag = tag_of(options.parameters.name, parameters);
-    const std::unique_ptr<RldSolver> solver =
-        entry->make(options.formulation == "paper" ? Formulation::paper : Formulation::tight);
+    const auto [solver, name, formulation] = choose(options);
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<SolutionRecord> records;
     records.reserve(scenes.size());
     std::optional<std::pair<Scene, LaneGraph>> previous;
-    Progress progress(options.solver, scenes.size());
+    Progress progress(name, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
         const Scene scene =
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
@@ -70,20 +90,13 @@ void solve_all(const Options& options) {
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
         const RldReport report =
             solve_scene(*solver, scene, parameters, options.limits, start ? &*start : nullptr).report;
-        SolutionRecord record{scene.id,
-                              options.solver,
-                              options.formulation,
-                              std::string(to_string(report.status)),
-                              report.message,
-                              {},
-                              report.objective,
-                              report.bound,
-                              report.nodes,
-                              report.build_ms,
-                              report.solve_ms,
-                              report.stopped_by,
-                              options.nearest,
-                              tag};
+        SolutionRecord record{scene.id,         name,
+                              formulation,      std::string(to_string(report.status)),
+                              report.message,   {},
+                              report.objective, report.bound,
+                              report.nodes,     report.build_ms,
+                              report.solve_ms,  report.stopped_by,
+                              options.nearest,  tag};
         if (report.lane_graph) {
             for (const Edge& edge : report.lane_graph->edges) {
                 record.edges.emplace_back(scene.cones[edge.i].id, scene.cones[edge.j].id);
@@ -121,7 +134,15 @@ void add_solve_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("solve", "RLD solutions of scenes: the lane graph of least cost");
     auto options = std::make_shared<Options>();
-    command.add_option("--solver", options->solver, "see `conelane solvers`")->capture_default_str();
+    command
+        .add_option("--solver", options->solver,
+                    "see `conelane solvers`; or exec:NAME=COMMAND, a program that solves MPS or LP files "
+                    "(docs/solvers-from-outside.md)")
+        ->capture_default_str();
+    command.add_flag(
+        "--all-rows", options->all_rows,
+        "a program from outside gets one file with all rows, no cycles and the pairing as a flow, "
+        "and is asked once; without, rows that it violates are added and it is asked again");
     command.add_option("--formulation", options->formulation)
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();

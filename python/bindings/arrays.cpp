@@ -246,6 +246,17 @@ py::array_t<double> array(const Pose& pose) {
     return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
+py::array_t<double> array(const DrivableLane& lane) {
+    py::array_t<double> rows({static_cast<py::ssize_t>(lane.points.size()), py::ssize_t{7}});
+    double* out = rows.mutable_data();
+    for (const DrivablePoint& point : lane.points) {
+        for (const double value : {point.s_m, point.position.x(), point.position.y(), point.heading_rad,
+                                   point.curvature_1pm, point.width_left_m, point.width_right_m})
+            *out++ = value;
+    }
+    return rows;
+}
+
 Indices array(std::span<const std::int64_t> values) {
     return Indices(static_cast<py::ssize_t>(values.size()), values.data());
 }

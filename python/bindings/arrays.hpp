@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conelane/drivable_lane.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
 
@@ -43,6 +44,8 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] py::array_t<double> array(std::span<const Point> points);
 [[nodiscard]] py::array_t<double> array(const Pose& pose);
 [[nodiscard]] Indices array(std::span<const std::int64_t> values);
+/// (N, 7): s, x, y, heading, curvature, width to the left and to the right.
+[[nodiscard]] py::array_t<double> array(const DrivableLane& lane);
 [[nodiscard]] py::array_t<double> positions(std::span<const Cone> cones);
 [[nodiscard]] Indices ids(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<std::uint8_t> colors(std::span<const Cone> cones);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "conelane/detectors.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
 
 #include <memory>
+#include <string>
 
 #include <pybind11/pybind11.h>
 
@@ -22,9 +24,14 @@ struct LaneObject {
     std::shared_ptr<const Scene> scene;
 };
 
+/// What Python gives a detector of that name beside it. Throws InvalidInput where the detector does not use
+/// an option. That there is no such detector is left to make_detector.
+[[nodiscard]] DetectorOptions detector_options(const std::string& name, const py::kwargs& given);
+
 void add_scenes(py::module_& module);
 void add_lanes(py::module_& module);
 void add_detector(py::module_& module);
+void add_planner(py::module_& module);
 void add_rld(py::module_& module);
 void add_scoring(py::module_& module);
 

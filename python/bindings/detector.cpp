@@ -67,6 +67,14 @@ DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given
     return options;
 }
 
+}  // namespace
+
+DetectorOptions detector_options(const std::string& name, const py::kwargs& given) {
+    return options_of(find_recipe(name), given);
+}
+
+namespace {
+
 /// A detector that may be called from any thread: calls of one instance wait for each other.
 class DetectorObject {
   public:

@@ -60,14 +60,7 @@ py::array_t<double> centre_line(const LaneObject& lane, const DrivableOptions& o
             line = drivable(lane.record.answer, *lane.scene, options);
         }
     }
-    py::array_t<double> rows({static_cast<py::ssize_t>(line.points.size()), py::ssize_t{7}});
-    double* out = rows.mutable_data();
-    for (const DrivablePoint& point : line.points) {
-        for (const double value : {point.s_m, point.position.x(), point.position.y(), point.heading_rad,
-                                   point.curvature_1pm, point.width_left_m, point.width_right_m})
-            *out++ = value;
-    }
-    return rows;
+    return array(line);
 }
 
 std::vector<LaneObject> read_lanes(const std::filesystem::path& file,

@@ -12,9 +12,12 @@ input is a `ValueError`.
 from enum import IntEnum
 
 from ._core import (
+    Answer,
     Boundaries,
     Detector,
     Lane,
+    Plan,
+    Planner,
     RldSolution,
     Scene,
     Score,
@@ -36,6 +39,8 @@ from ._core import (
 
 __version__ = version
 
+NO_ID = -(2**63)  # of a cone that has none, among ids of `Planner.update`
+
 
 class Color(IntEnum):
     """Codes of cone colours; blue cones stand left of a lane, yellow ones right."""
@@ -46,17 +51,21 @@ class Color(IntEnum):
     orange = 3
 
 
-for _public in (Boundaries, Detector, Lane, RldSolution, Scene, Score, Track, generate_scenes, load_tracks, methods,
-                read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld, write_boundaries,
-                write_lanes, write_scenes):
+for _public in (Answer, Boundaries, Detector, Lane, Plan, Planner, RldSolution, Scene, Score, Track, generate_scenes,
+                load_tracks, methods, read_boundaries, read_lanes, read_scenes, rld_parameters, score, solve_rld,
+                write_boundaries, write_lanes, write_scenes):
     _public.__module__ = "conelane"
 del _public
 
 __all__ = [
+    "Answer",
     "Boundaries",
     "Color",
     "Detector",
     "Lane",
+    "NO_ID",
+    "Plan",
+    "Planner",
     "RldSolution",
     "Scene",
     "Score",

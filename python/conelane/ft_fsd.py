@@ -9,12 +9,12 @@ says `from conelane.ft_fsd import ...` instead and stays as it is otherwise. Wha
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import Color, Detector, Lane
+from . import Color, Plan, Planner
 
 __all__ = ["ConeTypes", "MissionTypes", "PathPlanner"]
 
@@ -49,12 +49,15 @@ _COLOR_OF = {
     ConeTypes.ORANGE_SMALL: Color.orange,
     ConeTypes.ORANGE_BIG: Color.orange,
 }
+_MISSION_OF = {
+    MissionTypes.acceleration: "acceleration",
+    MissionTypes.skidpad: "skidpad",
+    MissionTypes.autocross: "autocross",
+}  # all others drive laps
+_WITHOUT_END = 1_000_000_000  # laps of what is no dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
-_FARTHEST_START_M = 3.0  # a lane is wider than twice this nowhere, so the car is not in it
-_STEP_M = 0.1  # of the line that a path is read off
+_MOST_CONES = 5000  # whose places are kept
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
-_SHORTEST_REST_M = 1.0  # less of an old path is no path
-_SLACK_M = 2.0  # how much farther than the car has moved its place on an old path may be
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -86,36 +89,41 @@ class _ConeMemory:
 
 
 class PathPlanner:
-    """Path from cones, call by call, with the interface of ft-fsd-path-planning.
+    """Path from cones, call by call, with the interface of ft-fsd-path-planning: a thin face of `conelane.Planner`.
 
     Parameters
     ----------
     mission : MissionTypes
-        Skidpad is not supported; all others are planned alike.
+        acceleration, skidpad, autocross and trackdrive are driven to their stop; all others as laps without end.
     experimental_performance_improvements : bool
         Without effect.
-    methods : sequence of str
-        Detectors, out of `conelane.methods()`. The first one whose lane has both boundaries and the colours that
-        belong there is taken; else the first that has one boundary alone.
+    detector : str
+        Out of `conelane.methods()`.
+    laps : int, optional
+        Of trackdrive, by default 10, and of autocross, by default 1.
     path_length_m : float
         The path ends there [m], or where the lane does.
     points : int
         M, rows of the path.
     time_limit_ms : float
-        Of each call, all detectors together [ms].
+        Of each call [ms].
     max_path_age : int
         Calls in a row without a lane of their own in which the last path is still returned; 0 for none.
+    interval_s : float
+        From call to call, where they are not told their time [s].
 
     Attributes
     ----------
     path_age : int or None
         Of the path returned last: 0 where it is of that call's cones, n where its lane was found n calls before; None
         where there was no path.
+    plan : Plan or None
+        Of the last call: its state, `stop`, `lap`, `phase` and how far it is safe.
 
     Raises
     ------
     ValueError
-        For the mission skidpad, for an unknown method and for none.
+        For an unknown detector, for `laps` of a mission that has none, and for values out of range.
 
     Notes
     -----
@@ -125,11 +133,13 @@ class PathPlanner:
       `max_path_age` calls, or where nothing of the last path lies ahead of the car. A controller brakes then.
     - A path of an earlier call is flagged by `path_age`. It is what is left of it: it begins beside the car, and goes no
       farther than it did.
+    - `plan.stop` says that the last line is crossed. The path ends where the car has to be at rest.
     - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
       ahead of it.
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
       where no cone is. The path ends too where a cone of a side has the colour of the other one.
-    - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones.
+    - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
+      skidpad the path is that of the rules, laid onto the cones, and the sorted arrays are empty.
 
     Examples
     --------
@@ -142,6 +152,8 @@ class PathPlanner:
     >>> path = planner.calculate_path_in_global_frame(cones, np.array([0.0, 0.0]), np.array([1.0, 0.0]))
     >>> path.shape
     (40, 4)
+    >>> planner.plan.state
+    'following'
     """
 
     def __init__(
@@ -149,28 +161,36 @@ class PathPlanner:
         mission: MissionTypes,
         experimental_performance_improvements: bool = False,
         *,
-        methods: Sequence[str] = ("front-warm", "front", "clc"),
+        detector: str = "front-warm",
+        laps: Optional[int] = None,
         path_length_m: float = 20.0,
         points: int = 40,
         time_limit_ms: float = 50.0,
         max_path_age: int = 5,
+        interval_s: float = 0.1,
     ) -> None:
-        if mission == MissionTypes.skidpad:
-            raise ValueError("mission: skidpad is not supported: its circles cross, which is no lane")
-        if not path_length_m > 0.0 or points < 2 or not methods:
-            raise ValueError("path_length_m must be above 0, points at least 2, methods at least 1")
+        if not path_length_m > 0.0 or points < 2 or not interval_s > 0.0:
+            raise ValueError("path_length_m and interval_s must be above 0, points at least 2")
         if max_path_age < 0:
             raise ValueError("max_path_age: must not be below 0")
         self.mission = MissionTypes(mission)
-        self._detectors = [Detector(method) for method in methods]
+        if self.mission not in (*_MISSION_OF, MissionTypes.trackdrive):
+            laps = _WITHOUT_END if laps is None else laps
+        # Half a call more: sums of intervals are not exact.
+        self._planner = Planner(_MISSION_OF.get(self.mission, "trackdrive"), detector, laps,
+                                max_age_s=(max_path_age + 0.5) * interval_s if max_path_age else 0.0)
         self._length_m = path_length_m
         self._points = points
         self._time_limit_ms = time_limit_ms
+        self._interval_s = interval_s
+        self._time_s: Optional[float] = None
         self._memory = _ConeMemory()
-        self._max_path_age = max_path_age
+        self._seen: Dict[int, Tuple[FloatArray, int]] = {}  # by id: place and colour, those seen last at the end
+        self._calls = 0  # since the lane was found
+        self._has_contradiction = False  # colours say that it is no lane
+        self._end: Optional[FloatArray] = None  # where colours say that it ends
         self.path_age: Optional[int] = None
-        self._last_path = np.zeros((0, 4))  # what is left of it
-        self._last_place = np.zeros(2)  # of the car, where it was cut
+        self.plan: Optional[Plan] = None
 
     def calculate_path_in_global_frame(
         self,
@@ -178,6 +198,8 @@ class PathPlanner:
         vehicle_position: FloatArray,
         vehicle_direction: Union[FloatArray, float],
         return_intermediate_results: bool = False,
+        *,
+        time_s: Optional[float] = None,
     ) -> Union[FloatArray, Intermediate]:
         """Path ahead of the car.
 
@@ -191,14 +213,16 @@ class PathPlanner:
             Along the car, of any length above 0; or its yaw [rad].
         return_intermediate_results : bool
             Return all seven results instead of the path alone.
+        time_s : float, optional
+            When the cones were seen, by any clock that never goes back [s]. By default `interval_s` after the last call.
 
         Returns
         -------
         path : (M, 4) ndarray of float
-            s [m], x, y [m], curvature [1/m]. Where no lane is found, or none within 3 m of the car: what is left of the
-            last path, see `path_age`; of shape (0, 4) where there is no path.
+            s [m], x, y [m], curvature [1/m]. Where no lane is found: what is left of the last path, see `path_age`; of
+            shape (0, 4) where there is no path.
         sorted_left, sorted_right : (L, 2), (R, 2) ndarray of float
-            Boundaries from the car outward [m]; empty where no lane is found.
+            Boundaries of this call's lane from the car outward [m]; empty where no lane is found.
         left_with_virtual, right_with_virtual : (L, 2), (R, 2) ndarray of float
             The same, since no virtual cones are made up.
         left_to_right, right_to_left : (L,), (R,) ndarray of int
@@ -207,75 +231,69 @@ class PathPlanner:
         Raises
         ------
         ValueError
-            For wrong shapes and for numbers that are not finite.
+            For wrong shapes and for numbers that are not finite; the planner is then as it was before.
         """
         places, colors = _merge(cones)
         pose = _pose(vehicle_position, vehicle_direction)
-        planned = self._plan(places, colors, pose)
-        if planned is None:
-            path = self._rest_of_last_path(pose)
-            left = right = np.zeros((0, 2))
-        else:
-            path, lane = planned
-            left, right = lane.left_points, lane.right_points
-            self.path_age = 0
-        self._last_path, self._last_place = path, np.array(pose[:2])
-        path = path.copy()
+        if not np.isfinite(pose).all():
+            raise ValueError("vehicle_position, vehicle_direction: must be finite numbers")
+        if time_s is None:
+            time_s = 0.0 if self._time_s is None else self._time_s + self._interval_s
+        if not np.isfinite(time_s):
+            raise ValueError("time_s: must be a finite number")
+        ids = self._memory.ids_of(places)
+        self._remember(ids, places, colors)
+        self.plan = self._planner.update(places, pose, time_s, ids=ids, colors=colors,
+                                         time_limit_ms=self._time_limit_ms)
+        self._time_s = time_s if self._time_s is None else max(time_s, self._time_s)
+        is_fresh = self.plan.state in ("following", "finished") and self.plan.age_s == 0.0
+        left = right = np.zeros((0, 2))
+        if is_fresh:
+            left = self._boundary(self.plan.answer.left_ids, Color.yellow, True)
+            right = self._boundary(self.plan.answer.right_ids, Color.blue, False)
+        path = self._path()
+        self._calls = 0 if is_fresh else self._calls + 1
+        self.path_age = self._calls if len(path) else None
         if not return_intermediate_results:
             return path
         return path, left, right, left.copy(), right.copy(), _nearest(left, right), _nearest(right, left)
 
-    def _plan(self, places: FloatArray, colors: IntArray,
-              pose: Tuple[float, float, float]) -> Optional[Tuple[FloatArray, Lane]]:
-        """The path to be driven and its lane."""
-        ids = self._memory.ids_of(places)
-        left_ms = self._time_limit_ms
-        of_one_boundary = None
-        for detector in self._detectors:
-            lane = detector.detect(places, pose, ids=ids, colors=colors, time_limit_ms=left_ms)
-            left_ms -= lane.latency_ms
-            path = self._path_of(lane)
-            if path is None:
-                continue
-            if len(lane.left) and len(lane.right):
-                return path, lane
-            of_one_boundary = of_one_boundary or (path, lane)
-        return of_one_boundary
+    def _remember(self, ids: IntArray, places: FloatArray, colors: IntArray) -> None:
+        for cone, place, color in zip(ids.tolist(), places, colors.tolist()):
+            self._seen.pop(cone, None)
+            self._seen[cone] = (place, color)
+        while len(self._seen) > _MOST_CONES:
+            del self._seen[next(iter(self._seen))]
 
-    def _path_of(self, lane: Lane) -> Optional[FloatArray]:
-        line = _as_coloured(lane.centre_line(step_m=_STEP_M), lane)
-        if len(line) < 2:
-            return None
-        rows = np.vstack([_way_to(line[0], lane.pose), line[:, [0, 1, 2, 4]]])  # s, x, y, curvature
-        rows[:, 0] = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows[:, 1:3], axis=0), axis=1))])
-        if np.linalg.norm(rows[0, 1:3] - lane.pose[:2]) > _FARTHEST_START_M:
-            return None
-        s = np.linspace(0.0, min(self._length_m, rows[-1, 0]), self._points)
-        return np.column_stack([s] + [np.interp(s, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
+    def _boundary(self, ids: IntArray, other: Color, is_first: bool) -> FloatArray:
+        """Places of a boundary. Notes where it contradicts the lane by a cone of the other side's colour: there is no
+        lane where that is the first or the second cone, and else it ends beside the last cone before."""
+        known = [self._seen[cone] for cone in ids.tolist() if cone in self._seen]
+        places = np.array([place for place, _ in known]).reshape(-1, 2)
+        if is_first:
+            self._has_contradiction, self._end = False, None
+        wrong = [i for i, (_, color) in enumerate(known) if color == other]
+        if wrong and wrong[0] < 2:
+            self._has_contradiction = True
+        elif wrong:
+            line, last = self.plan.centre_line[:, 1:3], places[wrong[0] - 1]
+            end = line[np.linalg.norm(line - last, axis=1).argmin()] if len(line) else last
+            # Of both sides the one that ends first.
+            if self._end is None or _along(line, end) < _along(line, self._end):
+                self._end = end
+        return places
 
-    def _rest_of_last_path(self, pose: Tuple[float, float, float]) -> FloatArray:
-        """The last path from the car on, a call older; no rows where it is too old or nothing of it lies ahead."""
-        age = None if self.path_age is None else self.path_age + 1
-        self.path_age = None
-        if age is None or age > self._max_path_age:
+    def _path(self) -> FloatArray:
+        line = self.plan.centre_line
+        if self._has_contradiction or len(line) < 2:
             return np.zeros((0, 4))
-        path, place = self._last_path, np.array(pose[:2])
-        along = np.array([np.cos(pose[2]), np.sin(pose[2])])
-        s = np.unique(np.append(np.arange(0.0, path[-1, 0], _STEP_M), path[-1, 0]))
-        line = np.column_stack([np.interp(s, path[:, 0], path[:, column]) for column in (1, 2, 3)])
-        # The car is not far along from where it was: the other leg of a hairpin may be nearer to it.
-        near = s <= np.linalg.norm(place - self._last_place) + _SLACK_M
-        distance = np.linalg.norm(line[:, :2] - place, axis=1)
-        foot = int(distance[near].argmin())
-        while foot + 1 < len(s) and (line[foot, :2] - place) @ along < 0.0:
-            foot += 1
-        if distance[foot] > _FARTHEST_START_M or s[-1] - s[foot] < _SHORTEST_REST_M:
-            return np.zeros((0, 4))
-        if (line[foot + 1, :2] - line[foot, :2]) @ along < 0.0:  # the car drives against it
-            return np.zeros((0, 4))
-        self.path_age = age
-        rest = np.linspace(s[foot], s[-1], self._points)
-        return np.column_stack([rest - rest[0]] + [np.interp(rest, s, line[:, column]) for column in range(3)])
+        length = min(self._length_m, line[-1, 0])
+        if self._end is not None:
+            length = min(length, line[_along(line[:, 1:3], self._end), 0])
+            if not length > 0.0:
+                return np.zeros((0, 4))
+        s = np.linspace(0.0, length, self._points)
+        return np.column_stack([s] + [np.interp(s, line[:, 0], line[:, column]) for column in (1, 2, 4)])
 
 
 def _merge(cones: Sequence[FloatArray]) -> Tuple[FloatArray, IntArray]:
@@ -306,41 +324,9 @@ def _pose(position: FloatArray, direction: Union[FloatArray, float]) -> Tuple[fl
     return float(place[0]), float(place[1]), float(np.arctan2(along[1], along[0]))
 
 
-def _as_coloured(line: FloatArray, lane: Lane) -> FloatArray:
-    """A centre line as far as colours bear it out, since detectors do not look at them.
-
-    It ends beside the last cone of a side before the first one of the other side's colour; there is none where that is
-    the first or the second cone.
-    """
-    colors, places = lane.colors, lane.cones
-    for side, other in ((lane.left, Color.yellow), (lane.right, Color.blue)):
-        wrong = np.flatnonzero(colors[side] == other)
-        if len(wrong) and wrong[0] < 2:
-            return line[:0]
-        if len(wrong) and len(line):
-            last = places[side[wrong[0] - 1]]
-            line = line[: np.linalg.norm(line[:, 1:3] - last, axis=1).argmin() + 1]
-    return line
-
-
-def _way_to(start: FloatArray, pose: FloatArray) -> FloatArray:
-    """Rows from the car up to the first row of a centre line that begins ahead of it; none where it does not.
-
-    A cubic that leaves along the car and arrives along the lane.
-    """
-    along = np.array([np.cos(pose[2]), np.sin(pose[2])])
-    gap = start[1:3] - pose[:2]
-    if gap @ along < _STEP_M:
-        return np.zeros((0, 4))
-    distance = np.linalg.norm(gap)
-    leaving, arriving = distance * along, distance * np.array([np.cos(start[3]), np.sin(start[3])])
-    bend = 3.0 * gap - 2.0 * leaving - arriving  # p(t) = pose + leaving t + bend t^2 + twist t^3
-    twist = leaving + arriving - 2.0 * gap
-    t = np.linspace(0.0, 1.0, int(np.ceil(distance / _STEP_M)), endpoint=False)[:, None]
-    places = pose[:2] + leaving * t + bend * t**2 + twist * t**3
-    (dx, dy), (ddx, ddy) = (leaving + 2.0 * bend * t + 3.0 * twist * t**2).T, (2.0 * bend + 6.0 * twist * t).T
-    curvature = (dx * ddy - dy * ddx) / np.hypot(dx, dy) ** 3
-    return np.column_stack([np.zeros(len(t)), places, curvature])
+def _along(line: FloatArray, place: FloatArray) -> int:
+    """Index of the point of a line that is nearest to a place."""
+    return int(np.linalg.norm(line - place, axis=1).argmin()) if len(line) else 0
 
 
 def _nearest(of: FloatArray, among: FloatArray) -> IntArray:

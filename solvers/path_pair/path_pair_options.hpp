@@ -1,8 +1,10 @@
 #pragma once
 
+#include "solvers/path_pair/search_tuning.hpp"
+
 namespace conelane {
 
-/// Stages of `path-pair`. The answer is the same with each of them off; it takes longer.
+/// Stages of `path-pair`, and its numbers. The answer is the same with each stage off; it takes longer.
 struct PathPairOptions {
     bool fix_arcs = true;            ///< drop arcs whose reduced-cost bound reaches the incumbent
     bool clique_multipliers = true;  ///< multipliers on cliques of incompatible edges, not on cones alone
@@ -12,6 +14,7 @@ struct PathPairOptions {
     bool drop_dominated_edges = true;  ///< there, drop what every way up to a front, or on, excludes
     int root_steps = 150;              ///< most ascent steps at the root
     int node_steps = 30;               ///< and at each other node
+    SearchTuning tuning = {};
 };
 
 }  // namespace conelane

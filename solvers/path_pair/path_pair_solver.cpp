@@ -27,13 +27,13 @@ class PathPairSolver : public RldSolver {
         : options_(options), search_(graph_, incumbent_, options_) {}
 
     BoundCertificate certify(const LaneGraphProblem& problem, double time_limit_ms) {
-        const Deadline deadline(time_limit_ms);
+        SearchClock clock{Deadline(time_limit_ms)};
         SearchClock no_limit;  // a certificate needs a graph
         graph_.build(problem, no_limit);
         incumbent_.reset(graph_, 0.0);
         near_to_far(problem);
         BoundCertificate certificate;
-        certificate.bound = search_.run_root(system_, kMinGap, [&deadline] { return deadline.passed(); });
+        certificate.bound = search_.run_root(system_, kMinGap, clock);
         const Multipliers& multipliers = search_.root_multipliers();
         certificate.cone_multiplier = multipliers.cone;
         certificate.heading_multiplier = multipliers.heading;
@@ -73,7 +73,7 @@ class PathPairSolver : public RldSolver {
         const Deadline deadline(limits.time_limit_ms);
         const Stopwatch build_watch;
         report.status = SolveStatus::stopped;
-        SearchClock clock([&deadline] { return deadline.passed(); });
+        SearchClock clock(deadline);
         if (is_too_large(problem)) {
             report.stopped_by = StopReason::memory;
         } else if (clock.out_of_time() || !graph_.build(problem, clock)) {
@@ -181,7 +181,8 @@ class PathPairSolver : public RldSolver {
     Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
         Outcome outcome{std::numeric_limits<double>::infinity(), true};
         for_each_system(problem, [&](const std::optional<std::size_t>&) {
-            const Outcome part = search_.run(system_, tolerance, [&deadline] { return deadline.passed(); });
+            SearchClock clock(deadline);  // whose total of work is that of one search
+            const Outcome part = search_.run(system_, tolerance, clock);
             outcome.bound = std::min(outcome.bound, part.bound);
             outcome.complete = outcome.complete && part.complete;
         });
@@ -199,8 +200,8 @@ class PathPairSolver : public RldSolver {
         const double cutoff = std::min(bound, most);
         // Drops nothing here that exact arithmetic does not drop.
         incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));
-        const std::vector<Multipliers> stages =
-            search_.run_root_in_stages(system_, kUnit, [&deadline] { return deadline.passed(); });
+        SearchClock clock(deadline);
+        const std::vector<Multipliers> stages = search_.run_root_in_stages(system_, kUnit, clock);
         const auto units = [](double multiplier) {
             constexpr auto kMax = static_cast<double>(SearchCertificate::kMaxUnits);
             return std::llround(std::min(multiplier / kUnit, kMax));

@@ -1,40 +1,49 @@
 #pragma once
 
+#include "model/deadline.hpp"
+
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <utility>
 
 namespace conelane::path_pair {
 
-/// The deadline as the parts of the search see it: they count their work, and the clock is looked at once in
-/// a while. Once it has struck it stays so, and what a part was working on is of no use.
+/// The deadline of a search, shared by all its parts. They count their work in steps of about a nanosecond,
+/// and the deadline is looked at after every 50 000 of them. Expiry is sticky, and what a part was working on
+/// is then of no use.
 class SearchClock {
   public:
-    /// Never strikes.
-    SearchClock() = default;
-    explicit SearchClock(std::function<bool()> stopped) : stopped_(std::move(stopped)) {}
+    /// Without a deadline it never strikes.
+    explicit SearchClock(const Deadline& deadline = Deadline()) : deadline_(deadline) {}
+    virtual ~SearchClock() = default;
+    SearchClock(const SearchClock&) = delete;
+    SearchClock& operator=(const SearchClock&) = delete;
 
-    /// Counts `work` steps of about a nanosecond.
+    /// Counts `work` steps, in the total as well.
     bool out_of_time(std::size_t work) {
-        constexpr std::size_t kWorkPerClock = 50'000;
-        work_ += work;
         total_work_ += static_cast<std::int64_t>(work);
-        if (work_ < kWorkPerClock) return struck_;
-        return out_of_time();
+        return tick(work);
     }
-    /// Looks at the clock now.
+    /// Counts `work` steps until the next look at the deadline, but not in the total.
+    bool tick(std::size_t work) {
+        constexpr std::size_t kWorkPerLook = 50'000;
+        work_ += work;
+        return work_ < kWorkPerLook ? struck_ : out_of_time();
+    }
+    /// Looks at the deadline now.
     bool out_of_time() {
         work_ = 0;
-        struck_ = struck_ || (stopped_ && stopped_());
+        struck_ = struck_ || has_passed();
         return struck_;
     }
     [[nodiscard]] bool struck() const { return struck_; }
-    /// All that was counted, on any machine the same.
+    /// What was counted: the same on every machine.
     [[nodiscard]] std::int64_t total_work() const { return total_work_; }
 
   private:
-    std::function<bool()> stopped_;
+    /// A test strikes when it wants to.
+    [[nodiscard]] virtual bool has_passed() { return deadline_.passed(); }
+
+    Deadline deadline_;
     std::size_t work_ = 0;
     std::int64_t total_work_ = 0;
     bool struck_ = false;

@@ -1,8 +1,10 @@
-// The lane between six cones and a stray one, and its centre line, by the calls that the README shows.
+// The lane between six cones and a stray one, its centre line, and the plan of a frame, by the calls that the
+// README shows.
 #include <cmath>
 #include <iostream>
 
 #include <conelane/detectors.hpp>
+#include <conelane/planner.hpp>
 
 int main() {
     conelane::Scene scene{.id = "now", .pose = {{0.0, 0.0}, 0.0}, .cones = {}};
@@ -20,4 +22,8 @@ int main() {
         for (const auto& point : lane.points) straight = straight && std::abs(point.position.y()) < 1e-6;
         std::cout << (straight ? " straight\n" : " crooked\n");
     }
+    auto planner = conelane::make_planner({.mission = conelane::Mission::autocross});
+    const conelane::Frame frame{.time_s = 0.0, .pose = scene.pose, .cones = scene.cones};
+    const conelane::Plan plan = planner->update(frame, {.time_limit_ms = 5000.0});
+    std::cout << conelane::to_string(plan.state) << ' ' << plan.lane.points.empty() << '\n';
 }

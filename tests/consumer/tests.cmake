@@ -7,7 +7,7 @@ set_tests_properties(consumer.clean PROPERTIES FIXTURES_SETUP consumer_clean)
 
 find_program(CONELANE_GCC g++)
 find_program(CONELANE_CLANG NAMES clang++-16 clang++)
-set(consumer_output "1 3 5 [|] 2 4 6 straight\n1 3 5 [|] 2 4 6 straight\n1 3 5 [|] 2 4 6 straight")
+set(consumer_output "1 3 5 [|] 2 4 6 straight\n1 3 5 [|] 2 4 6 straight\n1 3 5 [|] 2 4 6 straight\nfollowing 0")
 
 # `consumer_test(NAME COMPILER NEEDED FIXTURE ARGUMENTS...)`
 function(consumer_test name compiler needed)

@@ -4,6 +4,7 @@
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
 #include "tests/support/file_test.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <cstddef>
 #include <string>
@@ -70,8 +71,7 @@ class OwnWeights : public FileTest {
         return refusal("front", {.weights = WeightsBytes{std::move(bytes)}});
     }
 
-    const std::string shipped_ =
-        text_of(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/front.json");
+    const std::string shipped_ = text_of(source_directory() / "graph_search" / "weights" / "front.json");
 };
 
 Scene straight() {

@@ -5,6 +5,7 @@
 #include "evaluation/files/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/small_disk.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -47,8 +48,8 @@ class LongRun : public ProgramFixture {
     };
 
     Started start(const std::string& arguments, const std::string& errors = "stderr") {
-        const std::string command =
-            "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + arguments + " >stdout 2>" + errors;
+        const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
+                                    arguments + " >stdout 2>" + errors;
         Started started{::fork(), path(errors)};
         if (started.process == 0) {
             ::setpgid(0, 0);
@@ -378,7 +379,7 @@ TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
 
 /// A method from outside that dies, hangs, or prints what is no answer; it is killed with the run, too.
 TEST_F(LongRun, MethodsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
-    const std::string child = CONELANE_OUTSIDE_CHILD;
+    const std::string child = outside_child();
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     for (const char* fault : {"crash", "hang", "nonsense", "half-a-line", "endless-line"}) {
         SCOPED_TRACE(fault);

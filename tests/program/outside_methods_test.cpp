@@ -4,6 +4,7 @@
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_fixture.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +35,7 @@ constexpr const char* kLaps =
     "compare --tracks generated:circle generated:kidney --every 20 --fp 0,0.3 --out ";
 
 std::string child(const std::string& arguments) {
-    return std::string(CONELANE_OUTSIDE_CHILD) + " " + arguments;
+    return outside_child() + " " + arguments;
 }
 
 class OutsideMethods : public ProgramFixture {
@@ -237,9 +238,9 @@ TEST_F(OutsideMethods, AProgramThatIsNotThereGivesErrorsAtOnce) {
 }
 
 TEST_F(OutsideMethods, ASignalEndsTheProgramToo) {
-    const std::string command = "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + kCompare +
-                                "r --methods 'exec:bad=OUTSIDE_PID=pid " + child("ids hang 3 marker") +
-                                "' >stdout 2>stderr";
+    const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
+                                kCompare + "r --methods 'exec:bad=OUTSIDE_PID=pid " +
+                                child("ids hang 3 marker") + "' >stdout 2>stderr";
     const pid_t program = ::fork();
     if (program == 0) {
         ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
@@ -449,7 +450,7 @@ TEST_F(OutsideMethods, DetectAndSweepTakeThemToo) {
 
 /// The two programs that stand in docs/methods-from-outside.md.
 TEST_F(OutsideMethods, TheExampleInCppAnswersAsClc) {
-    run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + CONELANE_EXAMPLE);
+    run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + clc_stream());
     EXPECT_EQ(only_lanes(lanes("r/clc-stream")), only_lanes(lanes("r/clc")));
 }
 
@@ -458,7 +459,7 @@ TEST_F(OutsideMethods, TheExampleInPythonFindsStraightLanes) {
     const std::string table = run_well(
         "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
         "'exec:pairs=python3 " +
-        std::string(CONELANE_SOURCE_DIR) + "/experiments/examples/nearest_pairs.py'");
+        source_directory().string() + "/experiments/examples/nearest_pairs.py'");
     EXPECT_THAT(table, HasSubstr("nearest pairs, an example; "));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
@@ -508,7 +509,7 @@ TEST_F(OutsideMethods, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
     std::filesystem::create_directory(path("fsd_path_planning"));
     file_with(kStandIn, "fsd_path_planning/__init__.py");
     const std::string adapter = "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=. " + python + " " +
-                                CONELANE_SOURCE_DIR + "/experiments/examples/ft_fsd_adapter.py";
+                                source_directory().string() + "/experiments/examples/ft_fsd_adapter.py";
     const std::string table = run_well(
         "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
         "'exec:ft-fsd=" +

@@ -3,6 +3,7 @@
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -76,7 +77,7 @@ TEST_F(Program, OptionsThatAMethodDoesNotUseAreRefused) {
 
 TEST_F(Program, DetectsByWeightsOfOnesOwn) {
     make_scenes("--fp 0");
-    const std::string shipped = CONELANE_SOURCE_DIR "/graph_search/weights/front.json";
+    const std::string shipped = (source_directory() / "graph_search/weights/front.json").string();
     const auto lanes = [&](const std::string& options) {
         const std::string out = " --time-limit inf --scenes s.scenes.jsonl --out l.lanes.jsonl";
         EXPECT_EQ(run("detect --method front " + options + out).exit_code, 0);
@@ -130,8 +131,8 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     const std::string in = path("in").string();
     const std::string out = path("out").string();
     ASSERT_EQ(std::system(("mkfifo " + in + " " + out).c_str()), 0);
-    ASSERT_EQ(std::system(("(timeout 60 " CONELANE_PROGRAM " detect --method clc --scenes - --out - <" + in +
-                           " >" + out + "; echo $? >" + path("code").string() + ") &")
+    ASSERT_EQ(std::system(("(timeout 60 " + conelane_program() + " detect --method clc --scenes - --out - <" +
+                           in + " >" + out + "; echo $? >" + path("code").string() + ") &")
                               .c_str()),
               0);
     std::ofstream scenes(in);

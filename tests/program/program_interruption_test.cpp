@@ -1,6 +1,7 @@
 // The program ended by a signal while it works.
 
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -42,8 +43,8 @@ class Interruption : public Program {
     /// Runs the program until `begun` says so, then ends it by the signal. Its temporary files go to `tmp`.
     void interrupt(const std::string& arguments, int signal, const std::function<bool()>& begun) {
         std::filesystem::create_directories(path("tmp"));
-        const std::string command = "cd " + path("").string() + " && TMPDIR=tmp exec " CONELANE_PROGRAM " " +
-                                    arguments + " >stdout 2>stderr";
+        const std::string command = "cd " + path("").string() + " && TMPDIR=tmp exec " + conelane_program() +
+                                    " " + arguments + " >stdout 2>stderr";
         const pid_t child = ::fork();
         if (child == 0) {
             ::setpgid(0, 0);

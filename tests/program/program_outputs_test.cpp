@@ -3,6 +3,7 @@
 
 #include "evaluation/files/parameter_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <chrono>
 #include <cstdlib>
@@ -99,8 +100,8 @@ TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
     make_scenes("--fp 0.2");
     ASSERT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl").exit_code, 0);
     const auto exit_code = [&](const std::string& arguments) {
-        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
-                                    " 2>" + path("stderr").string();
+        const std::string command = "cd " + path("").string() + " && " + conelane_program() + " " +
+                                    arguments + " 2>" + path("stderr").string();
         return WEXITSTATUS(std::system(command.c_str()));
     };
     for (const char* command :

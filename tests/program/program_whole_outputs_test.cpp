@@ -4,6 +4,7 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/small_disk.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,8 +42,8 @@ class WholeOutputs : public Program {
     /// Starts the program and ends it by the signal once a file whose name holds `part` is in the folder.
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {
-        const std::string command =
-            "cd " + path("").string() + " && exec " CONELANE_PROGRAM " " + arguments + " >stdout 2>stderr";
+        const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
+                                    arguments + " >stdout 2>stderr";
         const pid_t child = ::fork();
         if (child == 0) {
             ::setpgid(0, 0);

@@ -119,7 +119,8 @@ class Pages(unittest.TestCase):
     def test_readme(self):
         names, blocks = self.run_page("README.md")
         self.assertEqual(blocks, 1)
-        self.assertEqual(names["lane"].left.tolist(), [1, 3, 5])
+        self.assertEqual((names["plan"].state, names["plan"].stop), ("following", False))
+        self.assertEqual(names["plan"].answer.status, "found")
 
     def test_messages_page(self):
         _, blocks = self.run_page("docs/messages.md")

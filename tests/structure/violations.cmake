@@ -31,7 +31,8 @@ foreach(direction IN ITEMS "model;solvers" "model;graph_search" "model;experimen
                            "graph_search;solvers" "solvers;detectors" "graph_search;detectors"
                            "detectors;evaluation" "solvers;evaluation" "graph_search;evaluation" "evaluation;experiments"
                            "experiments;program" "evaluation;program" "python;experiments" "experiments;tests"
-                           "experiments;python" "detectors;python" "python;tests")
+                           "experiments;python" "detectors;python" "python;tests"
+                           "evaluation;playground" "playground;experiments" "playground;python")
     list(GET direction 0 from)
     list(GET direction 1 to)
     expect("${from}/a.hpp may not include ${to}/b.hpp" includes ${from}/a.hpp "#pragma once\n#include \"${to}/b.hpp\"")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/support/file_test.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +16,7 @@
 
 namespace conelane {
 
-/// Runs the program `conelane` in the folder of a test. CONELANE_PROGRAM is its path.
+/// Runs the program `conelane` in the folder of a test. conelane_program() is its path.
 class ProgramFixture : public FileTest {
   protected:
     struct Outcome {
@@ -26,8 +27,9 @@ class ProgramFixture : public FileTest {
 
     /// Runs `conelane ARGUMENTS` in the test's folder.
     Outcome run(const std::string& arguments) {
-        const std::string command = "cd " + path("").string() + " && " CONELANE_PROGRAM " " + arguments +
-                                    " >" + path("stdout").string() + " 2>" + path("stderr").string();
+        const std::string command = "cd " + path("").string() + " && " + conelane_program() + " " +
+                                    arguments + " >" + path("stdout").string() + " 2>" +
+                                    path("stderr").string();
         const int status = std::system(command.c_str());
         Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(path("stdout")),
                         text_of(path("stderr"))};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "evaluation/tracks/track_spec.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,7 +16,7 @@ namespace conelane {
 inline std::filesystem::path recorded_data() {
     const char* const given = std::getenv("CONELANE_DATA");
     if (given != nullptr) return given;
-    return std::filesystem::path(CONELANE_SOURCE_DIR).parent_path() / "shared" / "data";
+    return source_directory().parent_path() / "shared" / "data";
 }
 
 /// All recorded courses. None where there is no data.

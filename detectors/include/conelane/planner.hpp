@@ -24,6 +24,8 @@ namespace conelane {
 /// The dynamic events of Formula Student.
 enum class Mission { trackdrive, autocross, acceleration, skidpad };
 [[nodiscard]] std::string_view to_string(Mission mission);
+/// The mission that `to_string` spells so. Throws InvalidInput naming `mission` and listing all.
+[[nodiscard]] Mission mission_named(std::string_view name);
 
 enum class PlanState {
     searching,  ///< no lane has been found yet
@@ -37,11 +39,11 @@ enum class PlanState {
 /// Id of a cone that has none: the planner recognises it by its place.
 inline constexpr ConeId kNoId = std::numeric_limits<ConeId>::min();
 
-/// What the car sees or its map holds at one moment.
+/// What the car sees or its map holds at one moment. Pose and cones are in one frame of reference, the map's.
 struct Frame {
-    double time_s = 0.0;
+    double time_s = 0.0;  ///< of any clock that never goes back
     Pose pose;
-    std::vector<Cone> cones;  ///< ids distinct where they are not kNoId
+    std::vector<Cone> cones;  ///< in any order; ids distinct where they are not kNoId
 };
 
 /// What to drive.
@@ -75,7 +77,9 @@ class Planner {
     Planner& operator=(const Planner&) = delete;
     virtual ~Planner();
 
-    /// Throws InvalidInput where the frame is not valid; the planner is then as it was before.
+    /// Throws InvalidInput where the frame is not valid, or the limit is NaN; the planner is then as it was
+    /// before. A frame without cones is valid. One that is not later than the last one changes nothing: it
+    /// has the last plan again, and where it is older than that, as bridging instead of following.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
     /// The whole course, closed, once a lap is known; absent before, and in missions whose course is not a
@@ -86,7 +90,8 @@ class Planner {
     virtual void reset() = 0;
 };
 
-/// Throws InvalidInput naming the option that is out of range, and as make_detector does.
+/// Throws InvalidInput naming the option that is out of range or that the mission does not use, and as
+/// make_detector does.
 [[nodiscard]] std::unique_ptr<Planner> make_planner(const PlannerOptions& options = {});
 
 }  // namespace conelane

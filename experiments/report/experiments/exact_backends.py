@@ -22,7 +22,7 @@ from .performance_profiles import profile_figure
 def _rows(of_size):
     rows = []
     for one in of_size:
-        rows.append([Cell(str(one.nearest), one.nearest), text(one.backend), Cell(str(len(one)), len(one)),
+        rows.append([Cell(solves.size_name(one.nearest), one.nearest), text(one.backend), Cell(str(len(one)), len(one)),
                      percent(one.is_decided.mean()),
                      Cell(str(int(np.sum(one.status == "error"))), int(np.sum(one.status == "error"))),
                      milliseconds(float(np.median(one.latency)),
@@ -44,7 +44,7 @@ def html(results, published):
         of_size = [one for one in cold if one.nearest == size]
         rows += _rows(of_size)
         apart, shared = solves.disagreements(of_size)
-        agreement.append(f"n = {size}: {apart} of {shared} scenes")
+        agreement.append(f"n = {solves.size_name(size)}: {apart} of {shared} scenes")
         scenes = sorted(set.intersection(*(set(one.scene) for one in of_size)))
         if len(of_size) < 2 or not scenes:
             continue
@@ -55,7 +55,7 @@ def html(results, published):
         figure = profile_figure([one.backend for one in of_size], [series_style(i) for i in range(len(of_size))],
                                 np.array(columns).T)
         figures.append(drawn(f"backends-profile-{size}", f"The upper left curve is the fastest on most scenes. {len(scenes)} scenes; what is proven, an optimum or that "
-                             "there is none, within a multiple of the fastest backend's time.", figure, f"n = {size}"))
+                             "there is none, within a multiple of the fastest backend's time.", figure, f"n = {solves.size_name(size)}"))
     columns = [Column("n"), Column("backend", "text"), Column("scenes"), Column("proven %"), Column("errors"),
                Column("median ms"), Column("mean ms"), Column("standard deviation ms"), Column("geometric mean ms"),
                Column("p95 ms"), Column("p99 ms"), Column("max ms"), Column("nodes")]

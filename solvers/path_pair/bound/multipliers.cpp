@@ -46,7 +46,7 @@ void Ascent::restart(const Multipliers& multipliers) {
     direction_.assign(multipliers.cone.size() + multipliers.clique.size() + 1, 0.0);
 }
 
-void Ascent::step(Multipliers& multipliers, const Usage& usage, std::span<const int> required, double gap,
+bool Ascent::step(Multipliers& multipliers, const Usage& usage, std::span<const int> required, double gap,
                   double scale) {
     const std::size_t cones = multipliers.cone.size();
     const std::size_t cliques = multipliers.clique.size();
@@ -76,7 +76,7 @@ void Ascent::step(Multipliers& multipliers, const Usage& usage, std::span<const 
         direction_[k] = violation_[k] + theta * direction_[k];
         squared += direction_[k] * direction_[k];
     }
-    if (squared == 0.0) return;
+    if (squared == 0.0) return false;
     const double length = scale * gap / squared;
     multipliers.heading = std::max(0.0, multipliers.heading + length * direction_[0]);
     for (std::size_t v = 0; v < cones; ++v) {
@@ -86,6 +86,7 @@ void Ascent::step(Multipliers& multipliers, const Usage& usage, std::span<const 
     for (std::size_t q = 0; q < cliques; ++q) {
         multipliers.clique[q] = std::max(0.0, multipliers.clique[q] + length * direction_[1 + cones + q]);
     }
+    return true;
 }
 
 }  // namespace conelane::path_pair

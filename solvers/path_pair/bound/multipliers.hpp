@@ -61,9 +61,11 @@ void reduce(const ArcGraph& graph, const CliquePool& cliques, const Multipliers&
 /// and theta keeps d from pointing back along d_before.
 class Ascent {
   public:
+    /// The next step goes along its own violation alone.
     void restart(const Multipliers& multipliers);
-    /// `required` by cone: above 0, the multiplier may have any sign.
-    void step(Multipliers& multipliers, const Usage& usage, std::span<const int> required, double gap,
+    /// `required` by cone: above 0, the multiplier may have any sign. False, and no step, where there is no
+    /// row to follow: none is violated, or has a multiplier that may fall.
+    bool step(Multipliers& multipliers, const Usage& usage, std::span<const int> required, double gap,
               double scale);
 
   private:

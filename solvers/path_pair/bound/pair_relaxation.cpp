@@ -12,12 +12,11 @@ void Decisions::reset(const ArcGraph& graph) {
     always_ = 0;
 }
 
-void Decisions::require_edge(const ArcGraph& graph, int which, bool required) {
-    edge_[static_cast<std::size_t>(which)] = required ? 1 : 0;
-    const int step = required ? 1 : -1;
-    for (const int cone : {graph.tail(2 * which), graph.head(2 * which)}) {
-        edges_at_[static_cast<std::size_t>(cone)] += step;
-        visited_[static_cast<std::size_t>(cone)] += step;
+void Decisions::require_edge(const ArcGraph& graph, int edge) {
+    edge_[static_cast<std::size_t>(edge)] = 1;
+    for (const int cone : {graph.tail(2 * edge), graph.head(2 * edge)}) {
+        ++edges_at_[static_cast<std::size_t>(cone)];
+        ++visited_[static_cast<std::size_t>(cone)];
     }
 }
 

@@ -28,8 +28,8 @@ class Decisions {
   public:
     void reset(const ArcGraph& graph);
 
-    /// Demands an edge, or takes the demand back.
-    void require_edge(const ArcGraph& graph, int which, bool required);
+    /// Precondition: it is not required yet.
+    void require_edge(const ArcGraph& graph, int edge);
     [[nodiscard]] bool edge_required(int edge) const { return edge_[static_cast<std::size_t>(edge)] != 0; }
 
     /// Whether a far cone ends a leg.
@@ -92,10 +92,6 @@ class PairRelaxation {
     [[nodiscard]] std::span<const double> backward(int kind) const { return legs_[to_index(kind)].backward; }
     /// By arc: h of its head, kUnreachable where a leg must not end with it.
     [[nodiscard]] std::span<const double> end(int kind) const { return legs_[to_index(kind)].end; }
-    /// F by cone.
-    [[nodiscard]] double best(int kind, int cone) const {
-        return legs_[to_index(kind)].best[static_cast<std::size_t>(cone)];
-    }
     [[nodiscard]] bool ends_fit(int cone, int other) const {
         return !system_->ends_are_partners ||
                (graph_->are_partners(cone, other) && decisions_->ends_fit(cone, other));

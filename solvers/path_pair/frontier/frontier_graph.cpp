@@ -11,11 +11,13 @@ namespace {
 constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
-constexpr int kFrontsPerClock = 256;
 /// To extend a front takes as long as to look at so many.
-constexpr int kFrontsPerExtension = 4;
-/// So many values are written or copied between two looks at the clock.
-constexpr std::size_t kValuesPerClock = 16384;
+constexpr std::size_t kFrontsPerExtension = 4;
+/// So many values are written or copied at once.
+constexpr std::size_t kValuesAtOnce = 16384;
+// Steps of the clock.
+constexpr std::size_t kWorkPerFront = 200;
+constexpr std::size_t kWorkPerValue = 3;
 /// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
 /// nothing.
 constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
@@ -50,12 +52,8 @@ void FrontierGraph::Arrays::reserve(std::size_t count) {
     onward.reserve(count);
 }
 
-bool FrontierGraph::out_of_time(int fronts) {
-    if ((until_clock_ -= fronts) < 0) {
-        until_clock_ = kFrontsPerClock;
-        is_stopped_ = is_stopped_ || (*stopped_)();
-    }
-    return is_stopped_;
+bool FrontierGraph::out_of_time(std::size_t fronts) {
+    return clock_->tick(kWorkPerFront * fronts);
 }
 
 template <typename T>
@@ -63,10 +61,9 @@ bool FrontierGraph::fill(std::vector<T>& values, std::size_t count, T value) {
     values.clear();
     values.reserve(count);
     while (values.size() < count) {
-        // Most graphs are small: then this call takes less time than a look at the clock.
-        is_stopped_ = is_stopped_ || (count > kFewSlots && (*stopped_)());
-        if (is_stopped_) return false;
-        values.resize(std::min(count, values.size() + kValuesPerClock), value);
+        const std::size_t more = std::min(count - values.size(), kValuesAtOnce);
+        if (clock_->tick(kWorkPerValue * more)) return false;
+        values.resize(values.size() + more, value);
     }
     return true;
 }
@@ -77,10 +74,9 @@ bool FrontierGraph::make_room(std::vector<T>& values, std::size_t more) {
     std::vector<T> grown;
     grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
     while (grown.size() < values.size()) {
-        is_stopped_ = is_stopped_ || (*stopped_)();
-        if (is_stopped_) return false;
+        const std::size_t count = std::min(values.size() - grown.size(), kValuesAtOnce);
+        if (clock_->tick(kWorkPerValue * count)) return false;
         const auto begin = values.begin() + static_cast<std::ptrdiff_t>(grown.size());
-        const std::size_t count = std::min(values.size() - grown.size(), kValuesPerClock);
         grown.insert(grown.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
     }
     values = std::move(grown);
@@ -218,6 +214,7 @@ void FrontierGraph::add_steps(int f, double limit) {
 
 bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                           std::size_t max_fronts, const EdgeSets* edges) {
+    if (clock_->out_of_time()) return false;
     residual_ = &residual;
     edges_ = edges;
     dominated_.reset(edges_ == nullptr ? 0 : edges_->words());
@@ -236,10 +233,8 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
     open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
     moving_ = 0;
     table_.assign(kFewSlots, -1);
-    until_clock_ = 0;
-    is_stopped_ = false;
     begin(limit);
-    if (is_stopped_ || now_.fronts.size() > kMaxFirstFronts) {
+    if (clock_->struck() || now_.fronts.size() > kMaxFirstFronts) {
         stack_.clear();
         return false;
     }
@@ -259,7 +254,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
         }
     }
     order();
-    return !is_stopped_;
+    return !clock_->struck();
 }
 
 void FrontierGraph::open(int f) {

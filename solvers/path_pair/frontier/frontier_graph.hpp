@@ -6,11 +6,11 @@
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/graph/to_index.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -39,16 +39,17 @@ class FrontierGraph {
         double turn;  ///< cost of the turn into it
     };
 
-    /// Once `stopped` says so, everything below ends early and what it found is of no use; where the fronts
-    /// were being renumbered, none is left.
-    void bind(PairRelaxation& relaxation, const std::function<bool()>& stopped) {
+    /// Once the clock has struck, everything below ends early and what it found is of no use; where the
+    /// fronts were being renumbered, none is left.
+    void bind(PairRelaxation& relaxation, SearchClock& clock) {
         relaxation_ = &relaxation;
-        stopped_ = &stopped;
+        clock_ = &clock;
     }
 
     /// All fronts that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
     /// forward(f). With `edges`, steps by edges that every walk up to their front has lost are left out on
-    /// the way. False where there are more than `max_fronts`, or stopped. Precondition: the relaxation was
+    /// the way. False where there are more than `max_fronts`, or no
+    /// time is left. Precondition: the relaxation was
     /// evaluated on the residual graph. `limit`: with offset, here and below.
     bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                std::size_t max_fronts, const EdgeSets* edges = nullptr);
@@ -92,8 +93,8 @@ class FrontierGraph {
         void reserve(std::size_t count);  ///< Precondition: cleared.
     };
     static std::uint64_t key(const Front& front);
-    /// `fronts`: how many are looked at until the next call.
-    bool out_of_time(int fronts = 1);
+    /// To be asked before so many fronts are looked at.
+    bool out_of_time(std::size_t fronts = 1);
     /// So many times the value; false, and fewer, where the time is up.
     template <typename T>
     bool fill(std::vector<T>& values, std::size_t count, T value);
@@ -119,9 +120,7 @@ class FrontierGraph {
     void keep(std::span<const int> order);
 
     PairRelaxation* relaxation_ = nullptr;
-    const std::function<bool()>* stopped_ = nullptr;
-    int until_clock_ = 0;
-    bool is_stopped_ = false;
+    SearchClock* clock_ = nullptr;
     const ResidualGraph* residual_ = nullptr;
     const DominatedEdges* dominated_of_arcs_ = nullptr;
     const EdgeSets* edges_ = nullptr;                ///< of the build, if it looks for dominated edges

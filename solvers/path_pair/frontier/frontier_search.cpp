@@ -9,29 +9,25 @@
 namespace conelane::path_pair {
 namespace {
 
-// Sets of edges that are looked at between two looks at the clock.
-constexpr std::size_t kWorkPerClock = 10000;
-constexpr std::size_t kWorkPerLabel = 20;  ///< its detours, along its arcs
+constexpr std::size_t kWorkPerSet = 5;     ///< of edges, in steps of the clock
+constexpr std::size_t kSetsPerLabel = 20;  ///< its detours, along its arcs, take as long as so many
 
 }  // namespace
 
-void FrontierSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent) {
+void FrontierSearch::bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent,
+                          SearchClock& clock) {
     graph_ = &graph;
     relaxation_ = &relaxation;
     incumbent_ = &incumbent;
+    clock_ = &clock;
 }
 
 double FrontierSearch::limit() const {
     return incumbent_->cutoff() - limits_.tolerance + relaxation_->offset();
 }
 
-bool FrontierSearch::out_of_time(std::size_t work) {
-    work_ += work;
-    if (work_ >= kWorkPerClock) {
-        work_ = 0;
-        is_stopped_ = is_stopped_ || (*stopped_)();
-    }
-    return is_stopped_;
+bool FrontierSearch::out_of_time(std::size_t sets) {
+    return clock_->tick(kWorkPerSet * sets);
 }
 
 void FrontierSearch::take(int arc, Label& label, std::uint64_t* lost) const {
@@ -64,8 +60,8 @@ void FrontierSearch::begin() {
 }
 
 FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const EdgeSets& edges,
-                                            const OnwardTables& tables, const Limits& limits,
-                                            const std::function<bool()>& stopped) {
+                                            const OnwardTables& tables, const Limits& limits) {
+    if (clock_->out_of_time()) return Outcome::stopped;
     fronts_ = &fronts;
     edges_ = &edges;
     tables_ = &tables;
@@ -76,12 +72,9 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
     waiting_.assign(to_index(fronts.size()), -1);
     open_.assign((to_index(fronts.size()) + 63) / 64, 0);
     wanted_.resize(words_);
-    stopped_ = &stopped;
-    work_ = kWorkPerClock;
-    is_stopped_ = false;
     is_narrow_ = false;
     begin();
-    if (is_stopped_) return Outcome::stopped;
+    if (clock_->struck()) return Outcome::stopped;
     again_ = true;
     while (again_) {
         again_ = false;
@@ -90,7 +83,7 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
                 const int f = static_cast<int>(word * 64) + std::countr_zero(open_[word]);
                 open_[word] &= open_[word] - 1;
                 settle(f);
-                if (is_stopped_) return Outcome::stopped;
+                if (clock_->struck()) return Outcome::stopped;
                 if (labels_.size() > limits.max_labels) return Outcome::stopped;
             }
         }
@@ -109,7 +102,7 @@ void FrontierSearch::settle(int f) {
     for (const int l : here_) {
         const Label& label = label_at(l);
         if (!(label.reduced + fronts_->onward(f) < limit())) continue;
-        if (out_of_time(kWorkPerLabel + kept_along_heading_.size())) return;
+        if (out_of_time(kSetsPerLabel + kept_along_heading_.size())) return;
         const int most = tables_->quanta_below(limit() - label.reduced - fronts_->onward(f));
         if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
         if (dominated(label, lost(l), most)) continue;

@@ -5,11 +5,11 @@
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -32,7 +32,7 @@ class FrontierSearch {
     };
     static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
 
-    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent);
+    void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);
 
     struct Limits {
         double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
@@ -42,7 +42,7 @@ class FrontierSearch {
     /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
     /// the tables are theirs.
     Outcome run(const FrontierGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
-                const Limits& limits, const std::function<bool()>& stopped);
+                const Limits& limits);
 
   private:
     struct Label {
@@ -58,7 +58,8 @@ class FrontierSearch {
     void begin();
     void take(int arc, Label& label, std::uint64_t* lost) const;
     void wait(Label label);
-    [[nodiscard]] bool out_of_time(std::size_t work);
+    /// To be asked before so many sets of edges are looked at.
+    [[nodiscard]] bool out_of_time(std::size_t sets);
     void settle(int f);
     [[nodiscard]] bool detour_reaches_limit(int label, int most) const;
     [[nodiscard]] bool dominated(const Label& label, const std::uint64_t* lost, int most);
@@ -75,13 +76,11 @@ class FrontierSearch {
     const ArcGraph* graph_ = nullptr;
     PairRelaxation* relaxation_ = nullptr;
     Incumbent* incumbent_ = nullptr;
+    SearchClock* clock_ = nullptr;
     const FrontierGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     const OnwardTables* tables_ = nullptr;
     Limits limits_{};
-    const std::function<bool()>* stopped_ = nullptr;
-    std::size_t work_ = 0;  ///< since the clock was looked at
-    bool is_stopped_ = false;
     bool is_narrow_ = false;  ///< the width left a label out
 
     std::size_t words_ = 0;

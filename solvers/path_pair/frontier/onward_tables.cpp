@@ -9,7 +9,8 @@ namespace conelane::path_pair {
 namespace {
 
 constexpr std::size_t kBlock = 16;
-constexpr std::size_t kWorkPerClock = 200'000;  ///< bytes of rows between two looks at the clock
+constexpr std::size_t kBytesPerStep = 4;       ///< of the clock
+constexpr std::size_t kBytesAtOnce = 200'000;  ///< that a table grows by
 constexpr double kMinQuantum = 1e-9;
 constexpr double kRounding = 0.01;  ///< of a quantum: more than sums of costs are off by
 
@@ -27,13 +28,8 @@ bool lower(Quanta* mine, const Quanta* theirs, const Quanta* excluded, Quanta mo
 
 }  // namespace
 
-bool OnwardTables::out_of_time(std::size_t work) {
-    work_ += work;
-    if (work_ >= kWorkPerClock) {
-        work_ = 0;
-        is_stopped_ = is_stopped_ || (*stopped_)();
-    }
-    return is_stopped_;
+bool OnwardTables::out_of_time(std::size_t bytes) {
+    return clock_->tick(bytes / kBytesPerStep);
 }
 
 /// So many times kTooMany; false, and fewer, where the time is up.
@@ -41,8 +37,9 @@ bool OnwardTables::fill(std::vector<Quanta>& table, std::size_t count) {
     table.clear();
     table.reserve(count);
     while (table.size() < count) {
-        if (out_of_time(kWorkPerClock)) return false;
-        table.resize(std::min(count, table.size() + kWorkPerClock), kTooMany);
+        const std::size_t more = std::min(count - table.size(), kBytesAtOnce);
+        if (out_of_time(more)) return false;
+        table.resize(table.size() + more, kTooMany);
     }
     return true;
 }
@@ -65,18 +62,16 @@ std::size_t OnwardTables::row_bytes(const ResidualGraph& residual) {
 }
 
 void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
-                        const std::function<bool()>& stopped) {
+                        SearchClock& clock) {
     fronts_ = &fronts;
     edges_ = &edges;
-    stopped_ = &stopped;
-    work_ = 0;
-    is_stopped_ = false;
+    clock_ = &clock;
     double bound = kUnreachable;
     for (const int f : fronts.starts()) bound = std::min(bound, fronts.start_cost(f) + fronts.onward(f));
     quantum_ = std::max((limit - bound) / (kTooMany - 1), kMinQuantum);
     edge_count_ = edges.words() * 64;
     find_regrets();
-    have_detours_ = with_detours && !is_stopped_;
+    have_detours_ = with_detours && !clock.struck();
     if (!have_detours_) return;
     number_arcs();
     find_excluded();

@@ -2,11 +2,11 @@
 
 #include "solvers/path_pair/frontier/frontier_graph.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
+#include "solvers/path_pair/search_clock.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,9 +25,10 @@ inline constexpr Quanta kTooMany = 127;  ///< more than the gap
 /// excludes; the detours of a beginning's arcs can.
 class OnwardTables {
   public:
-    /// Precondition: the onward costs of the fronts are found. `limit`: with offset. Of no use if stopped.
+    /// Precondition: the onward costs of the fronts are found. `limit`: with offset. Of no use once the
+    /// clock has struck.
     void find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
-              const std::function<bool()>& stopped);
+              SearchClock& clock);
 
     [[nodiscard]] bool have_detours() const { return have_detours_; }
     /// By number of the edge, in EdgeSets.
@@ -45,7 +46,8 @@ class OnwardTables {
   private:
     [[nodiscard]] Quanta more(int front, const FrontierGraph::Step& step) const;
     [[nodiscard]] Quanta to_quanta(double cost) const;
-    bool out_of_time(std::size_t work);
+    /// To be asked before so many bytes of rows are written.
+    bool out_of_time(std::size_t bytes);
     bool fill(std::vector<Quanta>& table, std::size_t count);
     void find_regrets();
     void number_arcs();
@@ -54,9 +56,7 @@ class OnwardTables {
 
     const FrontierGraph* fronts_ = nullptr;
     const EdgeSets* edges_ = nullptr;
-    const std::function<bool()>* stopped_ = nullptr;
-    std::size_t work_ = 0;
-    bool is_stopped_ = false;
+    SearchClock* clock_ = nullptr;
     bool have_detours_ = false;
     double quantum_ = 1.0;
     std::size_t edge_count_ = 0;       ///< in whole words

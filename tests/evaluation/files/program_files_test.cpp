@@ -3,6 +3,7 @@
 #include "evaluation/files/program_files.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/program_solution.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_solver.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -122,6 +123,84 @@ TEST(SolutionFiles, ByGlpsol) {
     EXPECT_EQ(read("s mip 2 3 n 0\ne o f\n").status, SolutionFile::Status::infeasible);
 }
 
+/// What follows such a head is the relaxation's point, no incumbent.
+TEST(SolutionFiles, ByCbcWithoutAnIncumbent) {
+    const SolutionFile solution =
+        read("Stopped on time (no integer solution - continuous used) - objective value -2.5\n 0 x 0.5 1\n");
+    EXPECT_EQ(solution.status, SolutionFile::Status::unknown);
+    EXPECT_TRUE(solution.point.empty());
+    EXPECT_EQ(read("Stopped on time - objective value -2\n 1 y_1 1 -2\n").status,
+              SolutionFile::Status::feasible);
+}
+
+TEST(SolutionFiles, ByHighs) {
+    const SolutionFile solution = read(
+        "Model status\nOptimal\n\n# Primal solution values\nFeasible\nObjective -2\n# Columns 3\nx 0\ny_1 1\n"
+        "z_1_2 0.5\n# Rows 2\none_of 1\nclose_0 0.5\n\n# Dual solution values\nNone\n\n# Basis\nHiGHS "
+        "v1\nNone\n");
+    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
+    EXPECT_EQ(*solution.objective, -2.0);
+    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
+    const SolutionFile none =
+        read("Model status\nInfeasible\n\n# Primal solution values\nNone\n\n# Dual solution values\nNone\n");
+    EXPECT_EQ(none.status, SolutionFile::Status::infeasible);
+    EXPECT_TRUE(none.point.empty());
+    const char* const stopped =
+        "Model status\nTime limit reached\n\n# Primal solution values\nFeasible\nObjective 0\n# Columns 3\nx "
+        "0\n";
+    EXPECT_EQ(read(stopped).status, SolutionFile::Status::feasible);
+    EXPECT_EQ(read("Model status\nTime limit reached\n\n# Primal solution values\nNone\n").status,
+              SolutionFile::Status::unknown);
+}
+
+TEST(SolutionFiles, ByScip) {
+    const SolutionFile solution = read(
+        "solution status: optimal solution found\nobjective value:                 -2\n"
+        "y_1                      1 \t(obj:-2)\nz_1_2                  0.5 \t(obj:0)\n");
+    EXPECT_EQ(solution.status, SolutionFile::Status::optimal);
+    EXPECT_EQ(*solution.objective, -2.0);
+    EXPECT_EQ(solution.point, (std::vector<double>{0.0, 1.0, 0.5}));
+    EXPECT_EQ(read("solution status: infeasible\nno solution available\n").status,
+              SolutionFile::Status::infeasible);
+    EXPECT_EQ(read("solution status: time limit reached\nno solution available\n").status,
+              SolutionFile::Status::unknown);
+    EXPECT_EQ(read("solution status: time limit reached\nobjective value: 0\n").status,
+              SolutionFile::Status::feasible);
+}
+
+TEST(SolutionFiles, OfMiplibAndGurobi) {
+    const SolutionFile miplib = read("=obj= -2\ny_1 1\nz_1_2 0.5\n");
+    EXPECT_EQ(miplib.status, SolutionFile::Status::feasible);
+    EXPECT_EQ(*miplib.objective, -2.0);
+    EXPECT_EQ(miplib.point, (std::vector<double>{0.0, 1.0, 0.5}));
+    EXPECT_EQ(read("y_1 1\nz_1_2 0.5\n").point, miplib.point);
+    EXPECT_EQ(read("=infeas=\n").status, SolutionFile::Status::infeasible);
+    EXPECT_EQ(read("=obj= 0\n").point, (std::vector<double>(3, 0.0)));
+    const SolutionFile gurobi =
+        read("# Solution for model small\r\n# Objective value = -2\r\nx 0\r\ny_1 1\r\nz_1_2 0.5\r\n");
+    EXPECT_EQ(gurobi.status, SolutionFile::Status::feasible);
+    EXPECT_EQ(*gurobi.objective, -2.0);
+    EXPECT_EQ(gurobi.point, miplib.point);
+}
+
+/// What a format cannot say stands in lines of any format, also behind its end.
+TEST(SolutionFiles, RemarksTellTheRest) {
+    const SolutionFile gurobi = read(
+        "# Objective value = -2\ny_1 1\nz_1_2 0.5\n=status= optimal\n=bound= -2.25\n"
+        "=nodes= 12\n=ms= 3.5\n=solver= Gurobi 11.0\n");
+    EXPECT_EQ(gurobi.status, SolutionFile::Status::optimal);
+    EXPECT_EQ(*gurobi.bound, -2.25);
+    EXPECT_EQ(*gurobi.nodes, 12);
+    EXPECT_EQ(*gurobi.engine_ms, 3.5);
+    EXPECT_EQ(gurobi.solver, "Gurobi 11.0");
+    const SolutionFile glpsol =
+        read("=solver= GLPK 5.0\ns mip 2 3 f -2\nj 2 1\nj 3 0.5\ne o f\n=bound= -3\n");
+    EXPECT_EQ(glpsol.status, SolutionFile::Status::feasible);
+    EXPECT_EQ(*glpsol.bound, -3.0);
+    EXPECT_EQ(glpsol.solver, "GLPK 5.0");
+    EXPECT_EQ(read("=status= unknown\n=bound= -3\n").bound, -3.0);
+}
+
 TEST(SolutionFiles, BadOnesNameTheirLine) {
     const auto complaint = [](const std::string& text) -> std::string {
         try {
@@ -138,6 +217,18 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
     EXPECT_EQ(complaint("s mip 2 3 o 1\nj 4 1\n"),
               "line 2: must be 'j COLUMN VALUE' after the line of the status");
     EXPECT_EQ(complaint("s mip 2 3 o 1\nj 1 1\n"), "line 3: the file ends before its line 'e o f'");
+    EXPECT_EQ(complaint("=obj= -2\ny_1 1\ny_1 1\n"), "line 3: column y_1 is there twice");
+    EXPECT_EQ(complaint("=obj= -2\ny_1 1e999\n"), "line 2: must be NAME VALUE");
+    EXPECT_EQ(complaint("=obj= nothing\n"), "line 1: must be =obj= VALUE");
+    EXPECT_EQ(complaint("=objective= 3\n"), "line 1: is no line of a solution: =objective=");
+    EXPECT_EQ(complaint("=status= optimal\n"), "line 2: there is no point with this status");
+    EXPECT_EQ(complaint("=status= good\nx 1\n"),
+              "line 1: =status= must be optimal, feasible, infeasible or unknown");
+    EXPECT_EQ(complaint("Model status\nOptimal\n# Primal solution values\nNone\n"),
+              "line 5: there is no point with status Optimal");
+    EXPECT_EQ(complaint("solution status: optimal\nx 1\n"), "line 2: must be 'objective value: VALUE'");
+    EXPECT_EQ(complaint("<?xml version = \"1.0\"?>\n"),
+              "line 1: is no first line of a solution by CBC, GLPK, HiGHS or SCIP, nor of a MIPLIB .sol");
 }
 
 struct RoundTrip {

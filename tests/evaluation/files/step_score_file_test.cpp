@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <bit>
 #include <cstddef>
@@ -70,8 +71,7 @@ TEST(StepScoreFile, ErrorsNameTheirKey) {
 }
 
 std::string shipped_file(const std::string& name) {
-    std::ifstream stream(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/" + name,
-                         std::ios::binary);
+    std::ifstream stream(source_directory() / "graph_search" / "weights" / name, std::ios::binary);
     EXPECT_TRUE(stream) << name;
     std::ostringstream text;
     text << stream.rdbuf();

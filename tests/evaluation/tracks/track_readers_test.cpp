@@ -508,7 +508,7 @@ TEST(RecordedTracks, HavePlausibleBoundariesWithTheLeftOneOnTheLeft) {
         for (const auto* const boundary : {&both.left, &both.right}) {
             EXPECT_TRUE(is_simple(*boundary, track.closed));
             for (const Segment& segment : segments(*boundary, track.closed)) {
-                EXPECT_GT((segment.to - segment.from).norm(), kDoubledCone_m);
+                EXPECT_GT((segment.to - segment.from).norm(), kDoubledTrackCone_m);
                 EXPECT_LT((segment.to - segment.from).norm(), 6.5);
             }
         }

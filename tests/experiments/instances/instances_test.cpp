@@ -7,6 +7,7 @@
 #include "tests/support/contestants.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/slowness.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <array>
 #include <cmath>
@@ -69,7 +70,7 @@ std::string unpacked(const std::filesystem::path& file) {
     return text;
 }
 
-const std::filesystem::path kStored = CONELANE_SOURCE_DIR "/tests/experiments/instances/library";
+const std::filesystem::path kStored = source_directory() / "tests/experiments/instances/library";
 
 /// The options that tests/experiments/instances/library/ were made with, see README.md there, but for the
 /// slice of it.

@@ -190,13 +190,16 @@ addEventListener("load", async () => {
 
 
 def with_uncertain_answers(text):
-    """The page, but in the first scenes of the circle one method knows one boundary alone, and one trusts 10 m."""
+    """The page, but in the first scenes of the circle one method knows one boundary alone, and one trusts 10 m, alone."""
     data = re.search(r'(<script[^>]*id="scene-data"[^>]*>)(.*?)(</script>)', text, flags=re.S)
     scenes = json.loads(data[2])
     for lap in scenes["laps"]:
         if lap["track"] != "circle":
             continue
-        alone, trusted = scenes["frames"][lap["scenes"][0]]["a"][:2]
+        answers = scenes["frames"][lap["scenes"][0]]["a"]
+        for answer in answers:
+            answer[10] = None
+        alone, trusted = answers[:2]
         alone[1] = []
         trusted[10] = 10.0
     return text[:data.start(2)] + json.dumps(scenes) + text[data.end(2):]

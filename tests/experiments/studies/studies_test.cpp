@@ -116,6 +116,7 @@ TEST(Backends, OneThatAnswersNoSceneOfASizeIsNamed) {
         rows[k].scene = &scene;
         rows[k].backend = backend_of("cbc");
         rows[k].cones = k < 2 ? 6 : 8;
+        rows[k].size = rows[k].cones;
         rows[k].status = k == 3 ? SolveStatus::error : SolveStatus::optimal;
     }
     rows[3].message = "out of paper";

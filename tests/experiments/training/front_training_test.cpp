@@ -12,6 +12,7 @@
 #include "experiments/training/front_training_run.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
 #include "tests/support/front_fixture.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -364,7 +365,7 @@ TEST(FrontWeightsFile, GivesTheSameWeightsBack) {
 }
 
 TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
-    std::ifstream file(std::string(CONELANE_SOURCE_DIR) + "/graph_search/weights/front.json");
+    std::ifstream file(source_directory() / "graph_search" / "weights" / "front.json");
     std::ostringstream text;
     text << file.rdbuf();
     EXPECT_TRUE(parse_front_weights(text.str()) == shipped_front_weights());

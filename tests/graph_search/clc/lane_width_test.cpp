@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -45,6 +46,24 @@ TEST(LaneWidths, OfAClosedLaneIncludeTheClosingSegments) {
     EXPECT_THAT(widths.of_segment_m[kRight], ElementsAre(3, 3, 3, 3));
 }
 
+double vertex_width_m(const OnlineLaneWidth& width, Side side, std::size_t vertex) {
+    return std::sqrt(width.squared_vertex_widths_m2(side)[vertex]);
+}
+
+/// Of the widths of all vertices and segments, by definition.
+double variance_of(const LaneWidths& widths) {
+    std::vector<double> all_m;
+    for (const Side side : {kLeft, kRight}) {
+        all_m.insert(all_m.end(), widths.of_vertex_m[side].begin(), widths.of_vertex_m[side].end());
+        all_m.insert(all_m.end(), widths.of_segment_m[side].begin(), widths.of_segment_m[side].end());
+    }
+    const double mean_m =
+        std::accumulate(all_m.begin(), all_m.end(), 0.0) / static_cast<double>(all_m.size());
+    double sum_m2 = 0.0;
+    for (const double width_m : all_m) sum_m2 += (width_m - mean_m) * (width_m - mean_m);
+    return sum_m2 / static_cast<double>(all_m.size());
+}
+
 // Algorithm 3 would call the matching between the first points fixed after two points a side: it comes before
 // the first one that meets an end. The third right point is nearer to the first left one all the same.
 TEST(OnlineLaneWidth, SeesWhatComesNearerAfterAMatchingWouldHaveBeenFixed) {
@@ -52,13 +71,16 @@ TEST(OnlineLaneWidth, SeesWhatComesNearerAfterAMatchingWouldHaveBeenFixed) {
     width.reset({0, 0}, {0, -6}, kWMax_m);
     width.push(kLeft, {4, 0});
     width.push(kRight, {3, -6});
-    EXPECT_DOUBLE_EQ(width.vertex_width_m(kLeft, 0), 6.0);
+    EXPECT_DOUBLE_EQ(vertex_width_m(width, kLeft, 0), 6.0);
     width.push(kRight, {4, -3});
-    EXPECT_DOUBLE_EQ(width.vertex_width_m(kLeft, 0), 5.0);
-    EXPECT_DOUBLE_EQ(width.vertex_width_m(kLeft, 1), 3.0);
-    EXPECT_DOUBLE_EQ(width.segment_width_m(kLeft, 0), 3.0);
+    EXPECT_DOUBLE_EQ(vertex_width_m(width, kLeft, 0), 5.0);
+    EXPECT_DOUBLE_EQ(vertex_width_m(width, kLeft, 1), 3.0);
+    EXPECT_NEAR(width.variance(),
+                variance_of(lane_widths(std::vector<Point>{{0, 0}, {4, 0}},
+                                        std::vector<Point>{{0, -6}, {3, -6}, {4, -3}})),
+                1e-9);
     width.pop(kRight);
-    EXPECT_DOUBLE_EQ(width.vertex_width_m(kLeft, 0), 6.0);
+    EXPECT_DOUBLE_EQ(vertex_width_m(width, kLeft, 0), 6.0);
 }
 
 TEST(OnlineLaneWidth, TellsWhoCanHelpAVertexThatIsTooFar) {
@@ -145,11 +167,10 @@ TEST(OnlineLaneWidth, EqualsTheDefinitionAfterEveryStepOfARandomLane) {
             double narrowest_m = kWMax_m;
             for (const Side side : {kLeft, kRight}) {
                 for (std::size_t i = 0; i < expected.of_vertex_m[side].size(); ++i) {
-                    ASSERT_NEAR(width.vertex_width_m(side, i), expected.of_vertex_m[side][i], 1e-6);
+                    ASSERT_NEAR(vertex_width_m(width, side, i), expected.of_vertex_m[side][i], 1e-6);
                     narrowest_m = std::min(narrowest_m, expected.of_vertex_m[side][i]);
                 }
                 for (std::size_t i = 0; i < expected.of_segment_m[side].size(); ++i) {
-                    ASSERT_NEAR(width.segment_width_m(side, i), expected.of_segment_m[side][i], 1e-6);
                     narrowest_m = std::min(narrowest_m, expected.of_segment_m[side][i]);
                 }
                 ASSERT_EQ(
@@ -157,6 +178,7 @@ TEST(OnlineLaneWidth, EqualsTheDefinitionAfterEveryStepOfARandomLane) {
                     std::ranges::count_if(expected.of_vertex_m[side], [](double w) { return w >= kWMax_m; }));
             }
             ASSERT_NEAR(std::min(std::sqrt(width.state().narrowest_squared), kWMax_m), narrowest_m, 1e-6);
+            ASSERT_NEAR(width.variance(), variance_of(expected), 1e-6);
         }
     }
 }
@@ -174,7 +196,7 @@ TEST(OnlineLaneWidth, VerdictsThatAreFixedNeverChange) {
             std::array<std::vector<double>, 2> before;
             for (const Side side : {kLeft, kRight}) {
                 for (std::size_t i = 0; i < lane.vertices(side).size(); ++i) {
-                    before[side].push_back(width.vertex_width_m(side, i));
+                    before[side].push_back(vertex_width_m(width, side, i));
                 }
             }
             const Side pushed = lane.random_side();
@@ -182,7 +204,7 @@ TEST(OnlineLaneWidth, VerdictsThatAreFixedNeverChange) {
             width.push(pushed, lane.vertices(pushed).back());
             for (const Side side : {kLeft, kRight}) {
                 for (std::size_t i = 0; i < before[side].size(); ++i) {
-                    const double now_m = width.vertex_width_m(side, i);
+                    const double now_m = vertex_width_m(width, side, i);
                     ASSERT_LE(now_m, before[side][i]);
                     if (side == pushed) {
                         ASSERT_EQ(now_m, before[side][i]) << "own extension changed a width";

@@ -83,19 +83,15 @@ std::vector<double> softmax(const std::vector<FrontJudge::Contender>& contenders
     return result;
 }
 
-TEST(FrontJudge, LooksUpWhatTheTableNames) {
-    const auto name = [](std::size_t place) { return extend_feature_table()[place].name; };
-    EXPECT_EQ(name(ExtendPlace::kLength), "length");
-    EXPECT_EQ(name(ExtendPlace::kLogRatioOwnSize), "log_ratio_own_size");
-    EXPECT_EQ(name(ExtendPlace::kTurnSize), "turn_size");
-    EXPECT_EQ(name(ExtendPlace::kTurnChangeSize), "turn_change_size");
-    EXPECT_EQ(name(ExtendPlace::kWidth), "width");
-    EXPECT_EQ(name(ExtendPlace::kWidthDeviation), "width_deviation");
-    EXPECT_EQ(name(ExtendPlace::kInside), "inside");
-    EXPECT_EQ(name(ExtendPlace::kBesideInward), "beside_inward");
-    EXPECT_EQ(name(ExtendPlace::kBesideOutward), "beside_outward");
-    EXPECT_EQ(name(ExtendPlace::kBridges), "bridges");
-    EXPECT_EQ(name(ExtendPlace::kViewLeft), "view_left");
+// Places are looked up by name, and so is what files of weights hold.
+TEST(FrontJudge, EveryFeatureHasANameOfItsOwn) {
+    for (const FrontFeatureList& list : front_feature_lists()) {
+        std::set<std::string_view> names;
+        for (const FrontFeature& feature : list.features) {
+            EXPECT_TRUE(names.insert(feature.name).second) << list.key << ": " << feature.name;
+            EXPECT_FALSE(feature.unit.empty() || feature.reason.empty()) << list.key << ": " << feature.name;
+        }
+    }
 }
 
 TEST(FrontJudge, WithoutWeightsKeepsTheOrderOfTheSearch) {

@@ -6,6 +6,7 @@
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/search_clock.hpp"
+#include "tests/support/fake_search_clock.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -36,21 +37,17 @@ std::vector<char> near_cones(const ArcGraph& graph) {
 TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
     const LaneGraphProblem problem = dense_problem();
     ASSERT_GT(problem.edges.size(), 1500U);
-    int looks = 0;
-    SearchClock clock([&] {
-        ++looks;
-        return false;
-    });
+    tests::FakeSearchClock clock;
     ArcGraph graph;
     EXPECT_TRUE(graph.build(problem, clock));
+    const int looks = clock.looks();
     // So many steps of a nanosecond at least, and a look after each 50 000 of them.
     EXPECT_GT(looks, static_cast<int>((10 * problem.conflicts.size() + 20 * problem.turns.size()) / 50'000));
 
     for (int last = 1; last <= looks; ++last) {
-        int seen = 0;
-        SearchClock striking([&] { return ++seen == last; });
+        tests::FakeSearchClock striking(last);
         EXPECT_FALSE(graph.build(problem, striking)) << "look " << last << " of " << looks;
-        EXPECT_EQ(seen, last);
+        EXPECT_EQ(striking.looks(), last);
     }
 }
 
@@ -60,19 +57,15 @@ TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
     ArcGraph graph;
     ASSERT_TRUE(graph.build(problem, no_limit));
     const std::vector<char> near = near_cones(graph);
-    int looks = 0;
-    SearchClock clock([&] {
-        ++looks;
-        return false;
-    });
+    tests::FakeSearchClock clock;
     ResidualGraph whole;
     EXPECT_TRUE(whole.assign(graph, near, clock));
+    const int looks = clock.looks();
     EXPECT_EQ(whole.in_arc.size(), whole.out_arc.size());
     EXPECT_GT(looks, static_cast<int>(10 * whole.out_arc.size() / 50'000));
 
     for (int last = 1; last <= looks; ++last) {
-        int seen = 0;
-        SearchClock striking([&] { return ++seen == last; });
+        tests::FakeSearchClock striking(last);
         ResidualGraph part;
         EXPECT_FALSE(part.assign(graph, near, striking)) << "look " << last << " of " << looks;
         EXPECT_EQ(part.size(), 0);

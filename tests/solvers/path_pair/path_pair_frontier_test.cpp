@@ -14,6 +14,8 @@
 #include "solvers/path_pair/primal/frontier_beam.hpp"
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
+#include "solvers/path_pair/primal/second_leg_bound.hpp"
+#include "tests/support/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 
@@ -55,8 +57,8 @@ struct Fronts {
         leg_bound = relaxation.evaluate(residual, multipliers);
         edges.assign(graph, residual, clock);
         dominated.find(residual, relaxation, edges, true, clock);
-        fronts.bind(relaxation, stopped);
-        search.bind(graph, relaxation, incumbent);
+        fronts.bind(relaxation, clock);
+        search.bind(graph, relaxation, incumbent, clock);
         incumbent.reset(graph, 1e6);
     }
 
@@ -78,8 +80,8 @@ struct Fronts {
     }
 
     FrontierSearch::Outcome run(std::size_t width, std::size_t max_labels, bool with_detours = true) {
-        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, stopped);
-        return search.run(fronts, edges, tables, {1e-9, width, max_labels}, stopped);
+        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, clock);
+        return search.run(fronts, edges, tables, {1e-9, width, max_labels});
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -126,9 +128,7 @@ struct Fronts {
     static std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
     LaneGraphProblem problem;
-    std::function<bool()> stopped = [this] { return is_stopped; };
-    bool is_stopped = false;
-    SearchClock clock;
+    tests::FakeSearchClock clock;
     ArcGraph graph;
     ResidualGraph residual;
     LegSystem system;
@@ -180,16 +180,14 @@ TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
         scene.cones.push_back({static_cast<ConeId>(cone), Point(100.0 + 100.0 * cone, 0.0)});
     const LaneGraphProblem problem = make_problem(scene, {});
     ArcGraph graph;
-    int looks = 0;
-    SearchClock patient([&] { return ++looks == 0; });
+    tests::FakeSearchClock patient;
     ASSERT_TRUE(graph.build(problem, patient));
-    const int all = looks;
+    const int all = patient.looks();
     ASSERT_GT(all, 3);
     for (int strike = 1; strike <= all; ++strike) {
-        looks = 0;
-        SearchClock clock([&] { return ++looks == strike; });
+        tests::FakeSearchClock clock(strike);
         EXPECT_FALSE(graph.build(problem, clock)) << strike;
-        EXPECT_EQ(looks, strike);
+        EXPECT_EQ(clock.looks(), strike);
     }
 }
 
@@ -253,8 +251,10 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
     parameters.d_max = 16.0;
     Fronts s(make_problem(scene, parameters), 1);
     s.relaxation.evaluate_backward(s.residual);
+    SecondLegBound second;
+    second.reset(s.graph, s.clock);
     PairCompletion completion;
-    completion.bind(s.graph, s.relaxation, s.incumbent, s.clock);
+    completion.bind(s.graph, s.relaxation, s.incumbent, second, s.clock);
     completion.complete(s.residual, 0, std::vector<int>{s.arc(0, 1), s.arc(1, 2)}, 1e-9, 0);
     ASSERT_TRUE(s.incumbent.found());
     EXPECT_NEAR(s.incumbent.cutoff(), -5.0 + 0.4 * std::pow(0.4 / 1.7, 4), 1e-9);
@@ -366,7 +366,7 @@ TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
     Fronts s(random_problem(3, 20), 3);
     EXPECT_FALSE(s.build(kUnreachable, 2));
     EXPECT_TRUE(s.build());
-    s.is_stopped = true;
+    s.clock.strike();
     EXPECT_FALSE(s.build());
 }
 
@@ -413,7 +413,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
         if (bound == kUnreachable) continue;
         const double gap = 1.5;
         s.fronts.drop(bound + gap);
-        s.tables.find(s.fronts, s.edges, bound + gap, true, s.stopped);
+        s.tables.find(s.fronts, s.edges, bound + gap, true, s.clock);
         for (int f = 0; f < s.fronts.size(); ++f) {
             const double onward = s.fronts.onward(f);
             std::vector<int> arcs;
@@ -514,16 +514,16 @@ TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
         Fronts s(random_problem(seed, 24), seed);
         ASSERT_TRUE(s.build());
         if (s.fronts.find_onward(kUnreachable) == kUnreachable) continue;
-        s.tables.find(s.fronts, s.edges, 1e6, true, s.stopped);
+        s.tables.find(s.fronts, s.edges, 1e6, true, s.clock);
         bool struck = true;
         for (int strike = 1; struck && strike < 5; ++strike) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike);
-            int looks = 0;
+            tests::FakeSearchClock clock(strike);
             s.incumbent.reset(s.graph, 1e6);
-            const std::function<bool()> strikes = [&] { return ++looks >= strike; };
+            s.search.bind(s.graph, s.relaxation, s.incumbent, clock);
             const FrontierSearch::Outcome outcome =
-                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny}, strikes);
-            struck = looks >= strike;
+                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny});
+            struck = clock.struck();
             ASSERT_EQ(outcome,
                       struck ? FrontierSearch::Outcome::stopped : FrontierSearch::Outcome::exhausted);
             stopped_on_the_way += struck && strike > 1 ? 1 : 0;
@@ -537,7 +537,7 @@ TEST(PathPairFrontierSearch, StopsWhereToldTo) {
     ASSERT_TRUE(s.build());
     s.fronts.find_onward(kUnreachable);
     EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, 5), FrontierSearch::Outcome::stopped);
-    s.is_stopped = true;
+    s.clock.strike();
     EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, kAny), FrontierSearch::Outcome::stopped);
 }
 

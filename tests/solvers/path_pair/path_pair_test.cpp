@@ -8,6 +8,7 @@
 #include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
+#include "tests/support/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 
@@ -202,17 +203,17 @@ TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
         if (run++ % 2 == 1) options = {.search_frontiers = false, .root_steps = 10, .node_steps = 5};
         BranchAndBound search(graph, incumbent, options);
         constexpr double kTolerance = 1e-9;
-        int looks = 0;
+        tests::FakeSearchClock patient;
         incumbent.reset(graph, 0.0);
-        ASSERT_TRUE(search.run(system, kTolerance, [&looks] { return ++looks < 0; }).complete);
+        ASSERT_TRUE(search.run(system, kTolerance, patient).complete);
+        const int looks = patient.looks();
         const double optimum = incumbent.cutoff();
         double bound_before = -kUnreachable;
         for (int strike = 1; strike <= looks + 1; strike += 1 + looks / 200) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike << " of " << looks);
-            int look = 0;
+            tests::FakeSearchClock clock(strike);
             incumbent.reset(graph, 0.0);
-            const BranchAndBound::Outcome outcome =
-                search.run(system, kTolerance, [&] { return ++look >= strike; });
+            const BranchAndBound::Outcome outcome = search.run(system, kTolerance, clock);
             EXPECT_GE(incumbent.cutoff(), optimum - kTolerance);
             EXPECT_LE(outcome.bound, optimum + kTolerance);
             EXPECT_GE(outcome.bound, bound_before - 1e-6);

@@ -11,6 +11,7 @@
 #include "solvers/path_pair/primal/pair_beam.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "solvers/path_pair/search_clock.hpp"
+#include "tests/support/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 
@@ -213,9 +214,9 @@ Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     const LaneGraphProblem problem = make_problem(scene, {});
     Graph s(problem);
     BranchAndBound search(s.arcs, s.incumbent, options);
-    int look = 0;
+    tests::FakeSearchClock clock(looks + 1);
     Stopped result;
-    result.outcome = search.run(s.system, 1e-9, [&] { return ++look > looks; });
+    result.outcome = search.run(s.system, 1e-9, clock);
     result.cost = s.incumbent.cutoff();
     if (s.incumbent.found()) {
         LaneGraph lane;

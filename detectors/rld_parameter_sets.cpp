@@ -1,0 +1,60 @@
+#include "conelane/rld_parameter_sets.hpp"
+
+#include "detectors/parameters/parameter_files.hpp"
+#include "detectors/parameters/parameter_reader.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace conelane {
+namespace {
+
+struct ParameterSet {
+    std::string_view name;
+    RldParameters parameters;
+};
+
+RldParameters parameters_of(std::string_view file) {
+    std::vector<RldParameterField> fields(rld_parameter_fields().begin(), rld_parameter_fields().end());
+    fields.insert(fields.end(), rld_extra_fields().begin(), rld_extra_fields().end());
+    RldParameters parameters;
+    const auto keys =
+        read_parameters(file, fields, parameters, [&](JsonReader& json, const std::string& key) {
+            if (key != "pairing") return false;
+            const std::string pairing = json.string();
+            if (pairing != to_string(Pairing::paper) && pairing != to_string(Pairing::near_far))
+                throw InvalidInput(key, "is no pairing");
+            parameters.pairing = pairing == to_string(Pairing::paper) ? Pairing::paper : Pairing::near_far;
+            return true;
+        });
+    for (const RldParameterField& field : rld_parameter_fields()) {
+        if (!keys.contains(field.key)) throw InvalidInput(std::string(field.key), "is missing");
+    }
+    if (!keys.contains("pairing")) throw InvalidInput("pairing", "is missing");
+    validate(parameters);
+    return parameters;
+}
+
+const std::vector<ParameterSet>& parameter_sets() {
+    static const std::vector<ParameterSet> kSets{{"n12", parameters_of(kN12File)},
+                                                 {"context", parameters_of(kContextFile)},
+                                                 {"shape", parameters_of(kShapeFile)},
+                                                 {"full", parameters_of(kFullFile)}};
+    return kSets;
+}
+
+}  // namespace
+
+std::vector<std::string_view> rld_parameter_set_names() {
+    std::vector<std::string_view> names;
+    for (const ParameterSet& set : parameter_sets()) names.push_back(set.name);
+    return names;
+}
+
+std::optional<RldParameters> rld_parameter_set(std::string_view name) {
+    const auto set = std::ranges::find(parameter_sets(), name, &ParameterSet::name);
+    if (set == parameter_sets().end()) return std::nullopt;
+    return set->parameters;
+}
+
+}  // namespace conelane

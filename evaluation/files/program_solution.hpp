@@ -1,0 +1,45 @@
+#pragma once
+
+#include "model/binary_program.hpp"
+
+#include <cstdint>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace conelane {
+
+/// What a solver's program wrote into a solution file.
+struct SolutionFile {
+    enum class Status { optimal, feasible, infeasible, unknown };
+    Status status = Status::unknown;
+    std::vector<double> point;        ///< by column of the program; empty without one
+    std::optional<double> objective;  ///< as written
+    std::optional<double> bound;      ///< as written: a lower bound of the program's optimum
+    std::optional<std::int64_t> nodes;
+    std::optional<double> engine_ms;  ///< the solver's own time, as written [ms]
+    std::string solver;               ///< name and version, as written
+};
+
+/// Reads a solution of the program in one of these formats, told by the first line that is not blank:
+/// - CBC: `cbc FILE solve solution SOL`, "Optimal - objective value ...", then INDEX NAME VALUE ...;
+/// - GLPK: `glpsol --write SOL`, lines c, s, i, j, e; by column number, in the order of a file that write_mps
+///   or write_lp made;
+/// - HiGHS: `highs --solution_file SOL FILE`, "Model status", its status a line later, then NAME VALUE below
+///   "# Columns";
+/// - SCIP: `write solution SOL`, "solution status: ...", then NAME VALUE (obj:...);
+/// - MIPLIB and Gurobi: NAME VALUE, before it comments (#). Such a file says nothing of optimality: its
+/// status
+///   is feasible.
+///
+/// Lines =KEY= VALUE may stand anywhere: =obj= VALUE and =infeas= as in MIPLIB, and what a format cannot say:
+/// =status= optimal|feasible|infeasible|unknown, which goes before the format's, =bound= VALUE, =nodes=
+/// COUNT, =ms= MILLISECONDS, =solver= NAME VERSION. A file of such lines alone is a solution too.
+///
+/// Columns that are not named are 0. Throws InvalidInput whose key is "line N" where the text is none of
+/// these, speaks of columns that the program does not have, names one twice, or has a value that is no finite
+/// number.
+[[nodiscard]] SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program);
+
+}  // namespace conelane

@@ -1,0 +1,195 @@
+#include "evaluation/outside/outside_solver.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "evaluation/outside/connecting_flow.hpp"
+#include "evaluation/outside/permuted_program.hpp"
+#include "model/deadline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace conelane {
+namespace {
+
+using Status = SolutionFile::Status;
+
+/// Solvers round to about 1e-6 and print fewer digits than they know.
+constexpr double kIntegrality = 1e-5;
+constexpr double kObjectiveTolerance = 1e-5;
+
+double tolerance(double value) {
+    return kObjectiveTolerance * std::max(1.0, std::abs(value));
+}
+
+/// The first integer column whose value is neither 0 nor 1, in words; empty where there is none.
+std::string fraction_of(const BinaryProgram& program, std::span<const double> point) {
+    for (std::size_t c = 0; c < program.columns.size(); ++c) {
+        const BinaryProgram::Column& column = program.columns[c];
+        if (!column.integer) continue;
+        const double value = point[c];
+        if (std::abs(value) <= kIntegrality || std::abs(value - 1.0) <= kIntegrality) continue;
+        return fmt::format("{} is {:g}, not 0 or 1", to_string(column.label), value);
+    }
+    return {};
+}
+
+void add_rows(BinaryProgram& program, std::span<const ProgramRow> rows, int& count) {
+    RowWriter writer(program);
+    for (const ProgramRow& row : rows) {
+        // Rows of different rounds may have one name.
+        writer.begin({"separated", {static_cast<std::int32_t>(count++)}}, row.lower, row.upper);
+        for (const auto& [column, coefficient] : row.terms) writer.add(column, coefficient);
+        writer.end();
+    }
+}
+
+void fail(RldReport& report, std::string message) {
+    report.status = SolveStatus::error;
+    report.stopped_by.reset();
+    report.message = std::move(message);
+}
+
+/// An answer without a point: that nothing below the cutoff is left proves the start.
+void conclude_without_point(Status status, std::optional<double> cutoff, RldReport& report) {
+    const bool has_start = report.lane_graph.has_value();
+    if (status != Status::infeasible) {
+        report.status = has_start ? SolveStatus::feasible : SolveStatus::stopped;
+        report.stopped_by = StopReason::time;
+        return;
+    }
+    report.status = has_start && cutoff ? SolveStatus::optimal : SolveStatus::infeasible;
+    report.bound.reset();
+    if (report.status == SolveStatus::optimal) report.bound = *cutoff;
+    if (report.status == SolveStatus::infeasible) report.lane_graph.reset();
+}
+
+}  // namespace
+
+OutsideSolver::OutsideSolver(const OutsideMethod& method, const OutsideSolverOptions& options)
+    : program_(method.source, options.patience), options_(options), model_(options.formulation) {}
+
+void OutsideSolver::run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
+                        RldReport& report) {
+    const Deadline deadline(limits.time_limit_ms);
+    engine_ms_.reset();
+    if (problem.edges.empty()) {
+        report.status = SolveStatus::infeasible;
+        return;
+    }
+    const Stopwatch build_watch;
+    if (const auto struck = model_.update(problem, deadline)) {
+        report.status = SolveStatus::stopped;
+        report.stopped_by = struck;
+        return;
+    }
+    BinaryProgram program = model_.program();
+    if (options_.all_rows) add_connecting_flow(program, problem);
+    report.build_ms = build_watch.elapsed_ms();
+    const Stopwatch solve_watch;
+    if (start != nullptr && is_feasible(problem, *start)) {
+        report.objective = objective(problem, *start);
+        report.lane_graph = *start;
+    }
+    solve_and_separate(problem, program, limits, deadline, report);
+    report.solve_ms = solve_watch.elapsed_ms();
+}
+
+SolverProgram::Answer OutsideSolver::ask(const BinaryProgram& program, const SolverQuestion& question) {
+    SolverProgram::Answer answer;
+    if (seed_ == 0) {
+        answer = program_.solve(program, question);
+    } else {
+        const PermutedProgram other = permuted(program, seed_);
+        answer = program_.solve(other.program, question);
+        answer.solution.point = other.point_of(answer.solution.point);
+    }
+    if (!answer.solution.solver.empty()) version_ = answer.solution.solver;
+    if (answer.solution.engine_ms) engine_ms_ = engine_ms_.value_or(0.0) + *answer.solution.engine_ms;
+    return answer;
+}
+
+/// A lane graph in the report is the start: what is looked for is a better one.
+void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryProgram& program,
+                                       const SolveLimits& limits, const Deadline& deadline,
+                                       RldReport& report) {
+    SolverQuestion question{deadline.remaining_ms(), limits.absolute_gap, options_.threads, seed_};
+    if (report.lane_graph) question.cutoff = *report.objective - limits.absolute_gap;
+    int separated = 0;
+    while (true) {
+        question.time_limit_ms = deadline.remaining_ms();
+        if (question.time_limit_ms <= 0.0) {
+            conclude_without_point(Status::unknown, question.cutoff, report);
+            return;
+        }
+        const auto [solution, fault] = ask(program, question);
+        ++report.rounds;
+        report.nodes += solution.nodes.value_or(0);
+        if (!fault.empty()) return fail(report, fault);
+        // Rows only ever tighten the program: every round's bound holds for the problem. An optimum without a
+        // bound is its own; a cutoff that the program keeps ends what its bound says.
+        std::optional<double> bound = solution.bound;
+        if (!bound && solution.status == Status::optimal) bound = solution.objective;
+        if (bound && question.cutoff) bound = std::min(*bound, *question.cutoff);
+        if (bound) report.bound = std::max(report.bound.value_or(*bound), *bound);
+        if (solution.point.empty()) return conclude_without_point(solution.status, question.cutoff, report);
+        if (const std::string fraction = fraction_of(program, solution.point); !fraction.empty())
+            return fail(report, "its point is not integral: " + fraction);
+        const std::vector<ProgramRow> violated = model_.separate(solution.point);
+        if (!violated.empty()) {
+            if (options_.all_rows) return fail(report, "its point violates (5) or the pairing");
+            add_rows(program, violated, separated);
+            continue;
+        }
+        LaneGraph graph = model_.decode(solution.point);
+        if (!is_feasible(problem, graph)) return fail(report, "its point violates a row of the program");
+        const double cost = objective(problem, graph);
+        if (solution.objective && std::abs(*solution.objective - cost) > tolerance(cost))
+            return fail(report, fmt::format("it claims the objective {:.9g}, its point has {:.9g}",
+                                            *solution.objective, cost));
+        if (report.bound && *report.bound > cost + tolerance(cost))
+            return fail(report, fmt::format("it claims the bound {:.9g}, its point has the objective {:.9g}",
+                                            *report.bound, cost));
+        if (solution.status == Status::optimal && report.lane_graph &&
+            cost > *report.objective + limits.absolute_gap + tolerance(cost))
+            return fail(report, "the start is cheaper than its optimum");
+        report.status = solution.status == Status::optimal ? SolveStatus::optimal : SolveStatus::feasible;
+        if (report.status == SolveStatus::feasible) report.stopped_by = StopReason::time;
+        if (report.status == SolveStatus::optimal && !report.bound) report.bound = cost;
+        if (!report.lane_graph || cost < *report.objective) {
+            report.objective = cost;
+            report.lane_graph = std::move(graph);
+        }
+        report.bound =
+            report.bound ? std::optional(std::min(*report.bound, *report.objective)) : std::nullopt;
+        const bool is_apart = report.bound && *report.objective - *report.bound >
+                                                  std::max(limits.absolute_gap, tolerance(*report.objective));
+        if (report.status == SolveStatus::optimal && is_apart) {
+            report.status = SolveStatus::feasible;
+            report.message = fmt::format("its optimum is proven to a gap of {:.3g} only",
+                                         *report.objective - *report.bound);
+        }
+        return;
+    }
+}
+
+std::optional<OutsideSolverText> parse_outside_solver(std::string_view text) {
+    constexpr std::string_view kProgram = "exec:";
+    if (!text.starts_with(kProgram)) return std::nullopt;
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::size_t slash = text.substr(0, equals).find('/');
+    if (slash == std::string_view::npos) return OutsideSolverText{*parse_outside_method(text), std::nullopt};
+    const std::string_view name = text.substr(slash + 1, equals - slash - 1);
+    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+        if (to_string(formulation) != name) continue;
+        const std::string without = std::string(text.substr(0, slash)) + std::string(text.substr(equals));
+        return OutsideSolverText{*parse_outside_method(without), formulation};
+    }
+    throw InvalidInput("solver", fmt::format("there is no formulation '{}': tight or paper", name));
+}
+
+}  // namespace conelane

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "evaluation/files/interruption.hpp"
+#include "evaluation/files/program_solution.hpp"
+#include "evaluation/outside/child_process.hpp"
+#include "model/binary_program.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace conelane {
+
+/// How long a solver's program is waited for, beyond the limit that it was told [ms].
+struct SolverPatience {
+    double late_ms = 1000.0;    ///< until it is killed
+    double start_ms = 20000.0;  ///< more for the first answer of a conversation: interpreters load packages
+    double end_ms = 1000.0;     ///< from the end of its input to its own end
+    /// A program that fails so many times in a row, or loses so much time by it, is asked no more.
+    int failures = 10;
+    double lost_ms = 60000.0;
+};
+
+/// What a solver's program is told with a program.
+struct SolverQuestion {
+    double time_limit_ms = std::numeric_limits<double>::infinity();
+    double absolute_gap = 1e-9;
+    unsigned threads = 1;
+    std::uint64_t seed = 0;
+    std::optional<double> cutoff{};  ///< only points of a lower objective are wanted
+};
+
+/// A program of others that solves binary programs (docs/solvers-from-outside.md). COMMAND is run by
+/// `/bin/sh -c`:
+/// - where it has {mps} or {lp}, once for each program, with its placeholders replaced: {mps} or {lp} (the
+///   program's file), {sol} (the solution file to write), {limit_s}, {limit_whole_s} (rounded up),
+///   {limit_ms}, {gap}, {threads}, {seed}, {cutoff} (1e300 for none);
+/// - else it is started once and reads a JSON object a line: program, solution (files), time_limit_ms,
+///   absolute_gap, threads, seed, cutoff; it answers each by a line: an object with any of status (as in
+///   =status=, or error), message, bound, nodes, ms and solver, which go before what the solution file says.
+///
+/// Whatever it does, no call waits longer than its limit and the patience, and what it has started is killed.
+/// Its files are in a folder of their own, which goes with the object or where a signal ends this program.
+class SolverProgram {
+  public:
+    /// Throws std::filesystem::filesystem_error where there is no place for temporary files, InvalidInput
+    /// where that place has characters that a shell would read or the command has an unknown placeholder.
+    explicit SolverProgram(std::string command, const SolverPatience& patience = {});
+    ~SolverProgram();
+    SolverProgram(const SolverProgram&) = delete;
+    SolverProgram& operator=(const SolverProgram&) = delete;
+
+    struct Answer {
+        SolutionFile solution;
+        std::string fault;  ///< what went wrong, in words; nothing is known of the program then
+    };
+    [[nodiscard]] Answer solve(const BinaryProgram& program, const SolverQuestion& question);
+
+    /// Ends a conversation.
+    void end();
+    /// The largest resident memory of any of its processes that have ended [bytes].
+    [[nodiscard]] std::size_t peak_bytes() const { return peak_bytes_; }
+
+  private:
+    [[nodiscard]] std::string run_once(const SolverQuestion& question);
+    [[nodiscard]] std::string converse(const SolverQuestion& question, SolutionFile& told,
+                                       bool& needs_no_file);
+    void end_child(double patience_ms, std::string& fault);
+    [[nodiscard]] std::string file(const char* ending) const;
+
+    std::string command_;
+    SolverPatience patience_;
+    bool is_conversation_;
+    bool writes_lp_;
+    std::filesystem::path folder_;
+    std::optional<ClearOnInterruption> clearing_;
+    std::unique_ptr<ChildProcess> child_;
+    std::size_t peak_bytes_ = 0;
+    int failures_ = 0;
+    double lost_ms_ = 0.0;
+    std::string last_fault_;
+};
+
+}  // namespace conelane

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "evaluation/scenes/annotated_scene.hpp"
+#include "evaluation/scenes/course.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace conelane {
+
+/// What the scenes of one lap share.
+struct Lap {
+    Condition condition;
+    double rate;
+    double range_m;
+    std::vector<Cone> persistent;  ///< false positives in the world
+};
+
+/// What the car sees from a viewpoint. Nothing where a run of the ground truth has fewer than two cones, or
+/// no cone is seen. A degenerate ground truth is left out of its scene.
+[[nodiscard]] std::optional<AnnotatedScene> make_scene(const Course& course, const SceneOptions& options,
+                                                       const Lap& lap, const Viewpoint& viewpoint,
+                                                       std::size_t pose_index);
+
+}  // namespace conelane

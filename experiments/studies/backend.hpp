@@ -1,0 +1,66 @@
+#pragma once
+
+#include "conelane/formulation.hpp"
+#include "conelane/rld_solver.hpp"
+#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_solver.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// A solver on a formulation, from nothing or from the lane graph of the scene before.
+struct Backend {
+    std::string solver;  ///< of the registry, or the NAME of a program from outside
+    Formulation formulation = Formulation::tight;
+    bool warm_start = false;
+    std::optional<OutsideMethod> outside{};
+    bool all_rows = false;  ///< of a program from outside: one file with all rows
+
+    /// "cbc/tight", "cbc/tight warm", "highs/tight whole"; only the solver's name where it ignores
+    /// formulations.
+    [[nodiscard]] std::string label() const;
+    [[nodiscard]] bool uses_formulation() const;
+    /// Whether the solver takes cone sets of this size.
+    [[nodiscard]] bool takes(std::size_t cones) const;
+};
+
+/// Every exact solver of the registry, from nothing, those that use a formulation on the tight one.
+[[nodiscard]] std::vector<Backend> exact_backends();
+
+/// "SOLVER" or "SOLVER/FORMULATION", tight where none is named; or exec:NAME=COMMAND, exec:NAME/FORMULATION=
+/// COMMAND. Throws InvalidInput where the registry has no such exact solver, there is no such formulation, or
+/// the solver uses none.
+[[nodiscard]] Backend backend_of(std::string_view name);
+
+/// A solver of a backend, ready to solve. Throws InvalidInput where the backend's solver is not in this
+/// build, and as SolverProgram does.
+class BackendSolver {
+  public:
+    /// With a seed other than 0 rows and columns of the program stand in an order drawn from it, where the
+    /// solver has a program: cbc, cbc-main, clp-bb, and those from outside, which are told the seed too.
+    explicit BackendSolver(const Backend& backend, std::uint64_t seed = 0);
+
+    [[nodiscard]] RldSolver& solver() { return outside_ ? *outside_ : *inside_; }
+    /// What the solver says that its own search took, of the last solve [ms]; absent where it says nothing.
+    [[nodiscard]] std::optional<double> engine_ms() const;
+    /// Changes the order of rows and columns of a program from outside; false where that takes a new object.
+    [[nodiscard]] bool set_seed(std::uint64_t seed);
+    /// Name and version of the solver, and of its libraries; empty where it says nothing.
+    [[nodiscard]] std::string version() const;
+    /// Ends a program from outside; the largest resident memory that it had [bytes], absent of other solvers.
+    [[nodiscard]] std::optional<std::size_t> end();
+
+  private:
+    std::string name_;
+    std::unique_ptr<OutsideSolver> outside_;
+    std::unique_ptr<RldSolver> inside_;
+};
+
+}  // namespace conelane::experiments

@@ -1,0 +1,387 @@
+#include "experiments/studies/backend_measures.hpp"
+
+#include "evaluation/scoring/statistics.hpp"
+#include "evaluation/scoring/wilcoxon.hpp"
+#include "experiments/studies/text_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace conelane::experiments {
+namespace {
+
+constexpr double kPar2 = 2.0;
+constexpr double kPar10 = 10.0;
+
+/// A scene in one of its orders.
+using Run = std::pair<const AnnotatedScene*, std::size_t>;
+
+bool is_solved(const BackendRow& row, double limit_ms) {
+    const bool proven = row.status == SolveStatus::optimal || row.status == SolveStatus::infeasible;
+    return proven && !row.refuted && row.latency_ms <= limit_ms;
+}
+
+SolverRun run_of(const BackendRow& row, double limit_ms) {
+    return {row.latency_ms, is_solved(row, limit_ms)};
+}
+
+/// The rows of one size and condition, by backend in the order in which they are met, each by its runs.
+struct Group {
+    std::size_t size = 0;
+    std::string condition;
+    std::vector<std::string> backends;
+    std::vector<std::map<Run, const BackendRow*>> rows;
+
+    void add(const BackendRow& row) {
+        const std::string label = row.backend.label();
+        auto place = static_cast<std::size_t>(std::ranges::find(backends, label) - backends.begin());
+        if (place == backends.size()) {
+            backends.push_back(label);
+            rows.emplace_back();
+        }
+        rows[place].emplace(Run{row.scene, row.permutation}, &row);
+    }
+
+    /// Runs that all backends have, in the order of the scenes.
+    [[nodiscard]] std::vector<Run> common_runs() const {
+        std::vector<Run> common;
+        for (const auto& [run, row] : rows.front()) {
+            if (std::ranges::all_of(rows, [&run = run](const auto& of_one) { return of_one.contains(run); }))
+                common.push_back(run);
+        }
+        return common;
+    }
+
+    /// The objective of the cheapest lane graph that any backend has for the scene.
+    [[nodiscard]] std::optional<double> known_best(const AnnotatedScene* scene) const {
+        std::optional<double> best;
+        for (const auto& of_one : rows) {
+            for (auto row = of_one.lower_bound({scene, 0}); row != of_one.end() && row->first.first == scene;
+                 ++row) {
+                const BackendRow& one = *row->second;
+                if (one.status == SolveStatus::error || !one.objective) continue;
+                best = std::min(best.value_or(*one.objective), *one.objective);
+            }
+        }
+        return best;
+    }
+};
+
+std::vector<Group> groups_of(std::span<const BackendRow> rows) {
+    std::set<std::string> conditions;
+    for (const BackendRow& row : rows) conditions.insert(row.scene->condition);
+    std::vector<Group> groups;
+    const auto group = [&](std::size_t size, const std::string& condition) -> Group& {
+        const auto known = std::ranges::find_if(
+            groups, [&](const Group& one) { return one.size == size && one.condition == condition; });
+        if (known != groups.end()) return *known;
+        return groups.emplace_back(Group{size, condition, {}, {}});
+    };
+    for (const BackendRow& row : rows) group(row.size, "").add(row);
+    if (conditions.size() < 2) return groups;
+    for (const BackendRow& row : rows) {
+        if (!row.scene->condition.empty()) group(row.size, row.scene->condition).add(row);
+    }
+    return groups;
+}
+
+/// The times of each scene over its orders, failures at the limit.
+std::map<const AnnotatedScene*, std::vector<double>> times_by_scene(
+    const std::map<Run, const BackendRow*>& rows, std::span<const Run> runs, double limit_ms) {
+    std::map<const AnnotatedScene*, std::vector<double>> times;
+    for (const Run& run : runs) {
+        const SolverRun one = run_of(*rows.at(run), limit_ms);
+        times[run.first].push_back(one.solved ? one.time_ms : limit_ms);
+    }
+    return times;
+}
+
+void add_variability(BackendSummary& summary, const std::map<Run, const BackendRow*>& rows, double limit_ms) {
+    std::vector<Run> runs;
+    for (const auto& [run, row] : rows) runs.push_back(run);
+    std::vector<double> coefficients, spreads;
+    for (const auto& [scene, times] : times_by_scene(rows, runs, limit_ms)) {
+        if (times.size() < 2) continue;
+        const Variability one = variability_of(times);
+        coefficients.push_back(one.coefficient);
+        spreads.push_back(one.ratio);
+    }
+    if (coefficients.empty()) return;
+    summary.variability = median(coefficients);
+    summary.spread = median(spreads);
+}
+
+void add_integrals(BackendSummary& summary, const Group& group, const std::map<Run, const BackendRow*>& rows,
+                   double limit_ms) {
+    std::vector<double> primal, dual;
+    for (const auto& [run, row] : rows) {
+        const auto best = group.known_best(run.first);
+        if (row->steps.empty() || !best || row->refuted) continue;
+        const GapIntegrals integrals = gap_integrals(row->steps, *best, limit_ms);
+        primal.push_back(integrals.primal_ms);
+        dual.push_back(integrals.dual_ms);
+    }
+    summary.integrals = primal.size();
+    if (primal.empty()) return;
+    summary.primal_integral_ms = mean(primal);
+    summary.dual_integral_ms = mean(dual);
+}
+
+/// Runs of every backend, in one order.
+std::vector<std::vector<SolverRun>> runs_by_backend(const Group& group, std::span<const Run> common,
+                                                    double limit_ms) {
+    std::vector<std::vector<SolverRun>> runs;
+    for (const auto& of_one : group.rows) {
+        auto& of_backend = runs.emplace_back();
+        for (const Run& run : common) of_backend.push_back(run_of(*of_one.at(run), limit_ms));
+    }
+    return runs;
+}
+
+void add_summaries(const Group& group, std::span<const Run> common, double limit_ms,
+                   std::vector<BackendSummary>& summaries) {
+    const std::vector<std::vector<SolverRun>> runs = runs_by_backend(group, common, limit_ms);
+    const std::vector<std::size_t> by_all = solved_by_all(runs);
+    const BestSolvers best = best_solvers(runs, limit_ms);
+    const std::vector<std::vector<double>> profiles = performance_profiles(runs, profile_ratios());
+    std::set<const AnnotatedScene*> scenes;
+    for (const Run& run : common) scenes.insert(run.first);
+    for (std::size_t b = 0; b < group.backends.size(); ++b) {
+        BackendSummary summary;
+        summary.size = group.size;
+        summary.condition = group.condition;
+        summary.backend = group.backends[b];
+        summary.scenes = scenes.size();
+        summary.runs = common.size();
+        std::vector<double> engine_ms;
+        for (const Run& run : common) {
+            const BackendRow& row = *group.rows[b].at(run);
+            summary.solved += is_solved(row, limit_ms) ? 1 : 0;
+            summary.refuted += row.refuted ? 1 : 0;
+            summary.errors += row.refuted || row.status == SolveStatus::error ? 1 : 0;
+            if (row.engine_ms) engine_ms.push_back(*row.engine_ms);
+        }
+        const std::vector<double> times = penalised_times_ms(runs[b], limit_ms);
+        summary.geometric_ms = shifted_geometric_mean(times, kGeometricMeanShift_ms);
+        summary.median_ms = median(times);
+        summary.par2_ms = penalised_average_ms(runs[b], limit_ms, kPar2);
+        summary.par10_ms = penalised_average_ms(runs[b], limit_ms, kPar10);
+        summary.common = by_all.size();
+        if (!by_all.empty()) {
+            std::vector<double> of_common;
+            for (const std::size_t run : by_all) of_common.push_back(runs[b][run].time_ms);
+            summary.common_geometric_ms = shifted_geometric_mean(of_common, kGeometricMeanShift_ms);
+        }
+        if (!engine_ms.empty()) summary.median_engine_ms = median(engine_ms);
+        summary.profile = profiles[b];
+        summary.won = best.won[b];
+        add_variability(summary, group.rows[b], limit_ms);
+        add_integrals(summary, group, group.rows[b], limit_ms);
+        summaries.push_back(std::move(summary));
+    }
+}
+
+void add_pairs(const Group& group, std::span<const Run> common, double limit_ms,
+               std::vector<BackendPair>& pairs) {
+    std::vector<std::vector<double>> logarithms;  // of each scene's geometric mean time
+    for (const auto& of_one : group.rows) {
+        auto& of_backend = logarithms.emplace_back();
+        for (const auto& [scene, times] : times_by_scene(of_one, common, limit_ms)) {
+            double sum = 0.0;
+            for (const double time : times) sum += std::log(std::max(time, 1e-6));
+            of_backend.push_back(sum / static_cast<double>(times.size()));
+        }
+    }
+    const std::size_t first_pair = pairs.size();
+    std::vector<double> p_values;
+    for (std::size_t a = 0; a < group.backends.size(); ++a) {
+        for (std::size_t b = a + 1; b < group.backends.size(); ++b) {
+            const SignedRankTest test = signed_rank_test(logarithms[a], logarithms[b]);
+            pairs.push_back({group.size, group.condition, group.backends[a], group.backends[b], test.pairs,
+                             std::exp(mean(logarithms[a]) - mean(logarithms[b])), test.p_value, 1.0});
+            p_values.push_back(test.p_value);
+        }
+    }
+    const std::vector<double> corrected = holm_corrected(p_values);
+    for (std::size_t k = 0; k < corrected.size(); ++k) pairs[first_pair + k].corrected_p_value = corrected[k];
+}
+
+void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps) {
+    for (std::size_t b = 0; b < group.backends.size(); ++b) {
+        std::vector<std::pair<const BackendRow*, double>> with_steps;
+        for (const auto& [run, row] : group.rows[b]) {
+            const auto best = group.known_best(run.first);
+            if (!row->steps.empty() && best && !row->refuted) with_steps.emplace_back(row, *best);
+        }
+        if (with_steps.empty()) continue;
+        constexpr double kStep = 1.2589254117941673;  // ten a decade
+        for (double time_ms = 0.1; time_ms <= limit_ms * (1.0 + 1e-9); time_ms *= kStep) {
+            BackendGap gap{group.size, group.backends[b], time_ms, 0.0, 0.0};
+            for (const auto& [row, best] : with_steps) {
+                std::optional<double> objective, bound;
+                for (const Knowledge& step : row->steps) {
+                    if (step.time_ms > time_ms) break;
+                    if (step.objective) objective = step.objective;
+                    if (step.bound) bound = step.bound;
+                }
+                gap.mean_primal_gap += relative_distance(objective, best);
+                gap.mean_dual_gap += relative_distance(bound, best);
+            }
+            gap.mean_primal_gap /= static_cast<double>(with_steps.size());
+            gap.mean_dual_gap /= static_cast<double>(with_steps.size());
+            gaps.push_back(gap);
+        }
+    }
+}
+
+nlohmann::ordered_json start_of(const char* row, std::size_t size, const std::string& condition) {
+    nlohmann::ordered_json json{{"row", row}, {"nearest", size}};
+    if (!condition.empty()) json["condition"] = condition;
+    return json;
+}
+
+template <typename Value>
+void put_if_known(nlohmann::ordered_json& json, const char* key, const std::optional<Value>& value) {
+    if (value) json[key] = *value;
+}
+
+nlohmann::ordered_json to_json(const BackendSummary& one) {
+    nlohmann::ordered_json json = start_of("summary", one.size, one.condition);
+    json["backend"] = one.backend;
+    json["scenes"] = one.scenes;
+    json["runs"] = one.runs;
+    json["solved"] = one.solved;
+    json["errors"] = one.errors;
+    json["refuted"] = one.refuted;
+    json["geometric_ms"] = one.geometric_ms;
+    json["par2_ms"] = one.par2_ms;
+    json["par10_ms"] = one.par10_ms;
+    json["common"] = one.common;
+    put_if_known(json, "common_geometric_ms", one.common_geometric_ms);
+    json["median_ms"] = one.median_ms;
+    put_if_known(json, "median_engine_ms", one.median_engine_ms);
+    put_if_known(json, "variability", one.variability);
+    put_if_known(json, "spread", one.spread);
+    json["integrals"] = one.integrals;
+    put_if_known(json, "primal_integral_ms", one.primal_integral_ms);
+    put_if_known(json, "dual_integral_ms", one.dual_integral_ms);
+    json["profile"] = one.profile;
+    json["won"] = one.won;
+    return json;
+}
+
+std::string group_name(std::size_t size, const std::string& condition) {
+    return condition.empty() ? size_name(size) : size_name(size) + " " + condition;
+}
+
+std::optional<double> mib(std::span<const BackendBlock> blocks, const BackendSummary& summary) {
+    constexpr double kMiB = 1024.0 * 1024.0;
+    for (const BackendBlock& block : blocks) {
+        if (block.size == summary.size && block.backend == summary.backend && block.peak_bytes)
+            return static_cast<double>(*block.peak_bytes) / kMiB;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::span<const double> profile_ratios() {
+    static const std::vector<double> kRatios = [] {
+        constexpr int kSteps = 75;
+        std::vector<double> ratios;
+        for (int k = 0; k <= kSteps; ++k) ratios.push_back(std::pow(10.0, 3.0 * k / kSteps));
+        return ratios;
+    }();
+    return kRatios;
+}
+
+BackendMeasures measures_of(std::span<const BackendRow> rows, double time_limit_ms) {
+    BackendMeasures measures;
+    for (const Group& group : groups_of(rows)) {
+        const std::vector<Run> common = group.common_runs();
+        if (common.empty()) continue;
+        add_summaries(group, common, time_limit_ms, measures.summaries);
+        add_pairs(group, common, time_limit_ms, measures.pairs);
+        const BestSolvers best = best_solvers(runs_by_backend(group, common, time_limit_ms), time_limit_ms);
+        measures.selections.push_back({group.size, group.condition, group.backends[best.single_best],
+                                       best.single_par10_ms, best.virtual_par10_ms});
+        if (group.condition.empty()) add_gaps(group, time_limit_ms, measures.gaps);
+    }
+    return measures;
+}
+
+std::vector<nlohmann::ordered_json> to_json(const BackendMeasures& measures) {
+    std::vector<nlohmann::ordered_json> rows;
+    for (const BackendSummary& one : measures.summaries) rows.push_back(to_json(one));
+    for (const BackendPair& one : measures.pairs) {
+        nlohmann::ordered_json& json = rows.emplace_back(start_of("pair", one.size, one.condition));
+        json["first"] = one.first;
+        json["second"] = one.second;
+        json["scenes"] = one.scenes;
+        json["ratio"] = one.ratio;
+        json["p_value"] = one.p_value;
+        json["corrected_p_value"] = one.corrected_p_value;
+    }
+    for (const BackendSelection& one : measures.selections) {
+        nlohmann::ordered_json& json = rows.emplace_back(start_of("selection", one.size, one.condition));
+        json["single_best"] = one.single_best;
+        json["single_par10_ms"] = one.single_par10_ms;
+        json["virtual_par10_ms"] = one.virtual_par10_ms;
+    }
+    for (const BackendGap& one : measures.gaps) {
+        nlohmann::ordered_json& json = rows.emplace_back(start_of("gap", one.size, ""));
+        json["backend"] = one.backend;
+        json["time_ms"] = one.time_ms;
+        json["mean_primal_gap"] = one.mean_primal_gap;
+        json["mean_dual_gap"] = one.mean_dual_gap;
+    }
+    return rows;
+}
+
+std::string measures_table(const BackendMeasures& measures, std::span<const BackendBlock> blocks) {
+    TextTable table({{"n", true},
+                     {"backend", true},
+                     {"runs"},
+                     {"solved %"},
+                     {"errors"},
+                     {"geo ms"},
+                     {"PAR2 ms"},
+                     {"PAR10 ms"},
+                     {"by all"},
+                     {"geo ms"},
+                     {"engine ms"},
+                     {"variation %"},
+                     {"max/min"},
+                     {"primal ms"},
+                     {"dual ms"},
+                     {"first"},
+                     {"MiB"}});
+    for (const BackendSummary& one : measures.summaries) {
+        table.add({group_name(one.size, one.condition), one.backend, std::to_string(one.runs),
+                   percent(share(one.solved, one.runs), 1), std::to_string(one.errors),
+                   fixed(one.geometric_ms, 2), fixed(one.par2_ms, 2), fixed(one.par10_ms, 2),
+                   std::to_string(one.common), fixed(one.common_geometric_ms, 2),
+                   fixed(one.median_engine_ms, 2), percent(one.variability, 1), fixed(one.spread, 2),
+                   fixed(one.primal_integral_ms, 2), fixed(one.dual_integral_ms, 2), std::to_string(one.won),
+                   fixed(mib(blocks, one), 1)});
+    }
+    TextTable pairs({{"n", true}, {"pair", true}, {"time ratio"}, {"p"}, {"p (Holm)"}});
+    for (const BackendPair& one : measures.pairs) {
+        pairs.add({group_name(one.size, one.condition), one.first + " : " + one.second, fixed(one.ratio, 2),
+                   fmt::format("{:.2g}", one.p_value), fmt::format("{:.2g}", one.corrected_p_value)});
+    }
+    TextTable selections({{"n", true}, {"single best", true}, {"PAR10 ms"}, {"virtual best PAR10 ms"}});
+    for (const BackendSelection& one : measures.selections) {
+        selections.add({group_name(one.size, one.condition), one.single_best, fixed(one.single_par10_ms, 2),
+                        fixed(one.virtual_par10_ms, 2)});
+    }
+    return table.text() + '\n' + (measures.pairs.empty() ? "" : pairs.text() + '\n') + selections.text();
+}
+
+}  // namespace conelane::experiments

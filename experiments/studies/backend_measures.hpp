@@ -1,0 +1,95 @@
+#pragma once
+
+#include "experiments/studies/backends.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace conelane::experiments {
+
+/// What the runs of one backend at one size and condition add up to. A run is a scene in one order of its
+/// cones, rows and columns; it is solved where its optimum, or that there is none, was proven within the
+/// limit, the checker passes it and no other backend refutes it. Definitions: docs/benchmark-measures.md.
+struct BackendSummary {
+    std::size_t size = 0;
+    std::string condition;  ///< empty: all scenes
+    std::string backend;
+    std::size_t scenes = 0;
+    std::size_t runs = 0;
+    std::size_t solved = 0;
+    std::size_t errors = 0;  ///< refuted claims among them
+    std::size_t refuted = 0;
+    double geometric_ms = 0.0;  ///< shifted by 1 ms, failures at the limit
+    double par2_ms = 0.0;
+    double par10_ms = 0.0;
+    std::size_t common = 0;                     ///< runs that every backend solved
+    std::optional<double> common_geometric_ms;  ///< over these
+    double median_ms = 0.0;                     ///< failures at the limit
+    std::optional<double> median_engine_ms;     ///< by the solver itself, of the runs that say so
+    std::optional<double> variability;          ///< median over scenes of the coefficient of variation
+    std::optional<double> spread;               ///< median over scenes of largest / smallest time
+    std::size_t integrals = 0;                  ///< scenes with steps and a known lane graph
+    std::optional<double> primal_integral_ms;   ///< means over these
+    std::optional<double> dual_integral_ms;
+    std::vector<double> profile;  ///< at kProfileRatios
+    std::size_t won = 0;          ///< runs that it solves first
+};
+
+/// Multiples of the fastest time at which profiles are told: 1 to 1000, 25 a decade.
+[[nodiscard]] std::span<const double> profile_ratios();
+
+/// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
+struct BackendPair {
+    std::size_t size = 0;
+    std::string condition;
+    std::string first;
+    std::string second;
+    std::size_t scenes = 0;  ///< whose times differ
+    double ratio = 1.0;      ///< geometric mean of first / second
+    double p_value = 1.0;
+    double corrected_p_value = 1.0;  ///< Holm, over the pairs of this size and condition
+};
+
+/// Single best against virtual best solver.
+struct BackendSelection {
+    std::size_t size = 0;
+    std::string condition;
+    std::string single_best;
+    double single_par10_ms = 0.0;
+    double virtual_par10_ms = 0.0;
+};
+
+/// What is known after some time, of all scenes with steps and a known lane graph.
+struct BackendGap {
+    std::size_t size = 0;
+    std::string backend;
+    double time_ms = 0.0;
+    double mean_primal_gap = 0.0;
+    double mean_dual_gap = 0.0;
+};
+
+struct BackendMeasures {
+    std::vector<BackendSummary> summaries;  ///< by size, condition and backend
+    std::vector<BackendPair> pairs;
+    std::vector<BackendSelection> selections;
+    std::vector<BackendGap> gaps;
+};
+
+/// All scenes of each size first, then, where scenes have several conditions, each of these. Backends that
+/// did not solve the same runs as the first one (a warm start has no permutations) are compared on the scenes
+/// as they stand.
+[[nodiscard]] BackendMeasures measures_of(std::span<const BackendRow> rows, double time_limit_ms);
+
+/// Rows for a file, each with "row": summary, pair, selection or gap.
+[[nodiscard]] std::vector<nlohmann::ordered_json> to_json(const BackendMeasures& measures);
+
+/// For a terminal: summaries with peak memory, the pairs, the selections.
+[[nodiscard]] std::string measures_table(const BackendMeasures& measures,
+                                         std::span<const BackendBlock> blocks);
+
+}  // namespace conelane::experiments

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace conelane {
+
+/// Reads JSON from front to back. The core has no JSON library, and needs no more than this. Throws
+/// InvalidInput naming the line of what is no JSON.
+class JsonReader {
+  public:
+    /// `key`: what errors name. Both views must outlive the object.
+    JsonReader(std::string_view text, std::string_view key) : text_(text), key_(key) {}
+
+    [[noreturn]] void fail(const std::string& reason) const;
+
+    /// What the next value begins with; 0 at the end.
+    [[nodiscard]] char next() {
+        pass_blanks();
+        return peek();
+    }
+    void require_end();
+
+    /// Calls `read(key)` at each value of an object.
+    template <typename Read>
+    void object(const Read& read) {
+        list('{', '}', [&] {
+            const std::string key = string();
+            expect(':');
+            read(key);
+        });
+    }
+    /// Calls `read()` at each value of an array.
+    template <typename Read>
+    void array(const Read& read) {
+        list('[', ']', read);
+    }
+
+    /// With its escapes as they stand: no name that is compared has one.
+    std::string string();
+
+    [[nodiscard]] bool is_number();
+    /// The nearest double; infinite where it is out of range.
+    double number();
+
+    /// Passes over any value.
+    void skip(int depth = 0);
+
+  private:
+    void pass_blanks();
+    [[nodiscard]] char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+    char character();
+    void expect(char wanted);
+
+    template <typename Read>
+    void list(char open, char close, const Read& read) {
+        expect(open);
+        if (next() == close) {
+            ++at_;
+            return;
+        }
+        while (true) {
+            read();
+            if (next() == close) break;
+            expect(',');
+        }
+        ++at_;
+    }
+
+    void escape();
+    void digits();
+    void word();
+
+    std::string_view text_;
+    std::string_view key_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace conelane

@@ -1,0 +1,48 @@
+// What the library throws, in a module without exceptions: the message goes to the host, which throws it as
+// an error of its own. Nothing is unwound, so the instance is used no more; conelane.mjs starts another one.
+#include "conelane/invalid_input.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <typeinfo>
+
+namespace {
+
+extern "C" __attribute__((import_module("conelane"), import_name("thrown"))) void conelane_thrown(
+    const char* message);
+
+/// Where exceptions are made; one is enough, since the first one ends the instance.
+constexpr std::size_t kRoom = 1024;
+alignas(std::max_align_t) std::array<std::byte, kRoom> room;
+
+/// The message of what has exactly one of these types; nothing of any other.
+template <class... Types>
+const char* message_of(void* thrown, const std::type_info& type) {
+    const char* message = nullptr;
+    const auto look = [&]<class Type>(Type* value) {
+        if (type == typeid(Type)) message = value->what();
+    };
+    (look(static_cast<Types*>(thrown)), ...);
+    return message;
+}
+
+}  // namespace
+
+extern "C" {
+
+void* __cxa_allocate_exception(std::size_t size) noexcept {
+    return size <= kRoom ? room.data() : std::malloc(size);
+}
+
+[[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void (*)(void*)) {
+    const char* message =
+        message_of<conelane::InvalidInput, std::invalid_argument, std::domain_error, std::length_error,
+                   std::out_of_range, std::logic_error, std::runtime_error, std::bad_alloc>(thrown, *type);
+    conelane_thrown(message != nullptr ? message : type->name());
+    __builtin_trap();
+}
+}

@@ -1,0 +1,287 @@
+#include "conelane/planner.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "python/bindings/arrays.hpp"
+#include "python/bindings/bindings.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+namespace conelane::python {
+namespace {
+
+struct PlanObject {
+    Plan plan;
+    double latency_ms = 0.0;
+};
+
+/// A planner that may be called from any thread: calls of one instance wait for each other.
+class PlannerObject {
+  public:
+    PlannerObject(const std::string& mission, std::string detector, std::optional<int> laps, double max_age_s,
+                  const py::kwargs& given)
+        : mission_(mission_named(mission)), detector_(std::move(detector)) {
+        PlannerOptions options;
+        options.mission = mission_;
+        options.detector = detector_;
+        options.detector_options = detector_options(detector_, given);
+        options.laps = laps;
+        options.max_age_s = max_age_s;
+        planner_ = make_planner(options);
+    }
+
+    [[nodiscard]] PlanObject update(const Frame& frame, std::optional<double> time_limit_ms) {
+        const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
+        PlanObject result;
+        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        const std::scoped_lock lock(mutex_);
+        const auto start = std::chrono::steady_clock::now();
+        result.plan = planner_->update(frame, {.time_limit_ms = limit_ms});
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+        result.latency_ms = took.count();
+        return result;
+    }
+
+    [[nodiscard]] std::optional<DrivableLane> course() {
+        const py::gil_scoped_release unlocked;
+        const std::scoped_lock lock(mutex_);
+        return planner_->course();
+    }
+
+    void reset() {
+        const py::gil_scoped_release unlocked;
+        const std::scoped_lock lock(mutex_);
+        planner_->reset();
+    }
+
+    [[nodiscard]] Mission mission() const { return mission_; }
+    [[nodiscard]] const std::string& detector() const { return detector_; }
+
+  private:
+    Mission mission_;
+    std::string detector_;
+    std::unique_ptr<Planner> planner_;
+    std::mutex mutex_;
+};
+
+double time_of(py::handle object) {
+    const double time_s = PyFloat_AsDouble(object.ptr());
+    if (time_s == -1.0 && PyErr_Occurred() != nullptr) {
+        PyErr_Clear();
+        throw InvalidInput("time_s", "is no number");
+    }
+    return time_s;
+}
+
+void add_answer(py::module_& module) {
+    py::class_<LaneAnswer>(module, "Answer", R"(What the detector of a planner answered in a frame.)")
+        .def_property_readonly(
+            "status", [](const LaneAnswer& a) { return to_string(a.status); }, "str: as of `Lane.status`")
+        .def_property_readonly(
+            "found", [](const LaneAnswer& a) { return a.status == LaneStatus::found; },
+            "bool: whether the status is \"found\"")
+        .def_property_readonly(
+            "message", [](const LaneAnswer& a) { return a.message; }, "str: as of `Lane.message`")
+        .def_property_readonly(
+            "stopped_by",
+            [](const LaneAnswer& a) -> std::optional<std::string_view> {
+                if (!a.stopped_by) return std::nullopt;
+                return to_string(*a.stopped_by);
+            },
+            R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
+        .def_property_readonly(
+            "confidence", [](const LaneAnswer& a) { return a.confidence; },
+            "float or None: probability that the lane is right, where the detector knows one")
+        .def_property_readonly(
+            "trusted_m", [](const LaneAnswer& a) { return a.trusted_m; },
+            "float or None: distance up to which the lane can be trusted [m]")
+        .def_property_readonly(
+            "left_ids", [](const LaneAnswer& a) { return array(a.lane.left); },
+            R"((L,) ndarray of int64: cones of the left boundary from the car outward, by the ids of the frames; a cone
+that the car gave no id has a negative one of the planner's)")
+        .def_property_readonly(
+            "right_ids", [](const LaneAnswer& a) { return array(a.lane.right); },
+            "(R,) ndarray of int64: the same for the right boundary")
+        .def("__repr__", [](const LaneAnswer& a) {
+            return fmt::format("<conelane.Answer {}: {} left, {} right>", to_string(a.status),
+                               a.lane.left.size(), a.lane.right.size());
+        });
+}
+
+void add_plan(py::module_& module) {
+    py::class_<PlanObject>(module, "Plan", R"(What to drive. Every attribute is a copy.)")
+        .def_property_readonly(
+            "state", [](const PlanObject& p) { return to_string(p.plan.state); },
+            R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in
+this frame, what is left of an earlier one; "lost": nothing of an earlier lane is left, there is no path: brake;
+"finished": the last line is crossed, the lane is what is left to come to rest on.)")
+        .def_property_readonly(
+            "centre_line", [](const PlanObject& p) { return array(p.plan.lane); },
+            R"((N, 7) ndarray of float64: from the car on, columns as of `Lane.centre_line`. N is 0 where state is
+"searching" or "lost", and where the car is at rest at the end.)")
+        .def_property_readonly(
+            "safe_m", [](const PlanObject& p) { return p.plan.safe_m; },
+            "float: how far along `centre_line` it is trusted, or what is left of that [m]")
+        .def_property_readonly(
+            "age_s", [](const PlanObject& p) { return p.plan.age_s; },
+            "float: age of the frame that the lane stems from [s]; 0 where following")
+        .def_property_readonly(
+            "lap", [](const PlanObject& p) { return p.plan.lap; },
+            "int: start lines crossed since the start; of skidpad: circles that are complete")
+        .def_property_readonly(
+            "stop", [](const PlanObject& p) { return p.plan.stop; },
+            "bool: come to rest inside what is left of `centre_line`")
+        .def_property_readonly(
+            "phase", [](const PlanObject& p) { return p.plan.phase; },
+            R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)")
+        .def_property_readonly(
+            "answer", [](const PlanObject& p) { return p.plan.answer; },
+            "Answer: of the detector in this frame")
+        .def_property_readonly(
+            "latency_ms", [](const PlanObject& p) { return p.latency_ms; },
+            "float: wall clock of the update [ms]")
+        .def("__repr__", [](const PlanObject& p) {
+            return fmt::format("<conelane.Plan {}: {:.1f} m>", to_string(p.plan.state), p.plan.lane.length_m);
+        });
+}
+
+}  // namespace
+
+void add_planner(py::module_& module) {
+    add_answer(module);
+    add_plan(module);
+    py::class_<PlannerObject>(
+        module, "Planner",
+        R"(Planner(mission="trackdrive", detector="front-warm", laps=None, *, max_age_s=1.0, **options)
+
+The path to drive in each frame of an event, from the start line to the stop.
+
+Parameters
+----------
+mission : str
+    "trackdrive", "autocross", "acceleration" or "skidpad".
+detector : str
+    One of `methods()`.
+laps : int, optional
+    Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
+max_age_s : float
+    A lane older than this is no path [s].
+nearest, parameters, pairing, weights : optional
+    Of the detector, see `Detector`.
+
+Raises
+------
+ValueError
+    For an unknown mission, detector or option, for one that the mission or the detector does not use, and for
+    values out of range.
+
+Notes
+-----
+Planners are independent of each other, and the interpreter lock is free while they plan: use one for each run.
+Calls of one planner from several threads wait for each other.
+
+Examples
+--------
+>>> import conelane
+>>> planner = conelane.Planner(mission="autocross")
+>>> cones = [[x, y] for x in (2, 6, 10, 14) for y in (-1.5, 1.5)]
+>>> plan = planner.update(cones, (0, 0, 0), time_s=0.0)
+>>> plan.state, plan.lap, plan.stop
+('following', 0, False)
+>>> plan = planner.update([], (1, 0, 0), time_s=0.1)
+>>> plan.state, plan.age_s
+('bridging', 0.1)
+>>> bool(plan.centre_line[0, 1] > 0.9)
+True
+)")
+        .def(py::init<const std::string&, std::string, std::optional<int>, double, const py::kwargs&>(),
+             py::arg("mission") = "trackdrive", py::arg("detector") = "front-warm",
+             py::arg("laps") = py::none(), py::kw_only(), py::arg("max_age_s") = PlannerOptions{}.max_age_s)
+        .def(
+            "update",
+            [](PlannerObject& planner, const py::object& cones, const py::object& pose,
+               const py::object& time_s, const py::object& ids, const py::object& colors,
+               std::optional<double> time_limit_ms, const py::object& confidences) {
+                Frame frame{time_of(time_s), python::pose(pose),
+                            python::cones(cones, ids, colors, confidences)};
+                if (ids.is_none()) {
+                    for (Cone& cone : frame.cones) cone.id = kNoId;
+                }
+                return planner.update(frame, time_limit_ms);
+            },
+            py::arg("cones"), py::arg("pose"), py::arg("time_s"), py::arg("ids") = py::none(),
+            py::arg("colors") = py::none(), py::arg("time_limit_ms") = 20.0, py::kw_only(),
+            py::arg("confidences") = py::none(),
+            R"(update(cones, pose, time_s, ids=None, colors=None, time_limit_ms=20.0, *, confidences=None)
+
+The plan of the next frame.
+
+Parameters
+----------
+cones : (N, 2) array_like of float
+    Positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
+pose : (3,) array_like of float
+    The car in a map that stays: x, y [m] and yaw [rad].
+time_s : float
+    Of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
+    nothing: it has the last plan again, and where it is older, as "bridging".
+ids : (N,) array_like of int, optional
+    What the map calls the cones, each once; `NO_ID` for a cone that it does not know. Without ids a cone is known
+    again by its place.
+colors : (N,) array_like of str or int, optional
+    As of `Detector.detect`. Orange cones on both sides of the lane are the start line.
+time_limit_ms : float or None
+    Of the detector, wall clock [ms]; None for no limit.
+confidences : (N,) array_like of float, optional
+    Of the detections, in [0, 1]. By default 1.
+
+Returns
+-------
+Plan
+
+Raises
+------
+ValueError
+    For wrong shapes and dtypes, numbers that are not finite, and an id that is there twice; the planner is then as
+    it was before.
+)")
+        .def(
+            "course",
+            [](PlannerObject& planner) -> std::optional<py::array_t<double>> {
+                const std::optional<DrivableLane> course = planner.course();
+                if (!course) return std::nullopt;
+                return array(*course);
+            },
+            R"(course()
+
+The whole course, once a lap is known.
+
+Returns
+-------
+(N, 7) ndarray of float64 or None
+    Columns as of `Lane.centre_line`; the last row stands a step before the first one. None before, and in
+    acceleration and skidpad.
+)")
+        .def("reset", &PlannerObject::reset, R"(reset()
+
+Forgets the run.
+)")
+        .def_property_readonly(
+            "mission", [](const PlannerObject& p) { return to_string(p.mission()); }, "str")
+        .def_property_readonly("detector", &PlannerObject::detector, "str: its name")
+        .def("__repr__", [](const PlannerObject& p) {
+            return fmt::format("<conelane.Planner '{}' by '{}'>", to_string(p.mission()), p.detector());
+        });
+}
+
+}  // namespace conelane::python

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "solvers/path_pair/bound/leg_bounds.hpp"
+#include "solvers/path_pair/bound/leg_search.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// The bound of a second leg, where the first one is given: a shortest walk over the arcs that the first leg
+/// leaves, at true costs. Cones of the first leg and edges incompatible with it are left out, so nothing else
+/// couples the legs; multipliers on cones alone keep walks from cycles. They stay from one first leg to the
+/// next.
+class SecondLegBound {
+  public:
+    /// Sets the multipliers to 0.
+    void reset(const ArcGraph& graph, SearchClock& clock);
+
+    /// The second legs of `kind` that go with `first`, arcs of the residual graph. Precondition: the
+    /// relaxation was evaluated on it.
+    void assign(const PairRelaxation& relaxation, const ResidualGraph& residual, int kind,
+                std::span<const int> first);
+
+    /// The cheapest walk, once no cycle gains. `budget` falls by each arc of each pass. False where the clock
+    /// struck.
+    bool evaluate(std::int64_t& budget);
+    /// The walk's bound of every second leg; kUnreachable where there is no walk.
+    [[nodiscard]] double value() const { return value_; }
+    /// Arcs of the residual graph.
+    [[nodiscard]] std::span<const int> walk() const { return walk_; }
+    /// A step of the multipliers' ascent from the walk towards the value `target`. False where there is none.
+    bool step(double target);
+
+    /// The way on from each arc, at the costs last evaluated. False where the clock struck.
+    bool evaluate_backward();
+    /// For legs whose cost, the offset added, is below a cutoff. Precondition: backward labels are evaluated.
+    [[nodiscard]] LegSearch::Query query() const {
+        return {*graph_, *residual_, reduced_, start_, end_, backward_};
+    }
+    [[nodiscard]] double offset() const { return offset_; }
+
+  private:
+    void leave_out(std::span<const int> first);
+    void reduce_costs();
+    void take_cheapest_walk();
+
+    const ArcGraph* graph_ = nullptr;
+    SearchClock* clock_ = nullptr;
+    const PairRelaxation* relaxation_ = nullptr;
+    const ResidualGraph* residual_ = nullptr;
+    int kind_ = 0;
+    LegBounds bounds_;
+    Ascent ascent_;
+    Multipliers multipliers_;  ///< on cones
+    std::vector<int> none_required_;
+    std::vector<char> taken_;             ///< cones of the first leg
+    std::vector<std::uint64_t> blocked_;  ///< edges incompatible with it
+    std::vector<char> usable_;            ///< by arc
+    std::vector<double> start_;
+    std::vector<double> end_;
+    std::vector<double> reduced_;
+    std::vector<double> forward_;
+    std::vector<double> backward_;
+    std::vector<int> before_;
+    std::vector<int> cycles_;
+    double offset_ = 0.0;
+    double value_ = kUnreachable;
+    std::vector<int> walk_;
+    Usage usage_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/bound/walk_usage.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/search/node.hpp"
+#include "solvers/path_pair/search_tuning.hpp"
+
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Splits a node where its relaxation is least sure: on ends first, for with both ends free half of the
+/// relaxed optimum may run along one boundary and half along the other. Then on the edge of most doubtful
+/// use.
+class Brancher {
+  public:
+    Brancher(const ArcGraph& graph, const BranchingTuning& tuning) : graph_(graph), tuning_(tuning) {}
+
+    /// On nothing where every edge of the residual graph is decided.
+    [[nodiscard]] Branching choose(const ResidualGraph& graph, const PairRelaxation& relaxation,
+                                   const Decisions& decisions, const WalkUsage& usage) const;
+    /// Whether the branch that has the end, or the edge, is searched before the other one.
+    [[nodiscard]] bool is_in_first(const Branching& branching) const {
+        return branching.on == Branching::On::end || branching.use >= tuning_.min_use_in_first;
+    }
+    /// What the branch with it, or without it, leaves of the graph.
+    void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
+
+  private:
+    void branch_on_end(const ResidualGraph& source, int cone, bool in);
+    void branch_on_edge(const ResidualGraph& source, int edge, bool in);
+
+    const ArcGraph& graph_;
+    const BranchingTuning& tuning_;
+    std::vector<int> order_;  ///< arcs that stay
+    std::vector<char> keep_successor_;
+    std::vector<int> index_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,119 @@
+#pragma once
+
+#include "solvers/path_pair/bound/arc_fixing.hpp"
+#include "solvers/path_pair/bound/clique_separation.hpp"
+#include "solvers/path_pair/bound/multipliers.hpp"
+#include "solvers/path_pair/bound/pair_relaxation.hpp"
+#include "solvers/path_pair/bound/walk_usage.hpp"
+#include "solvers/path_pair/graph/arc_graph.hpp"
+#include "solvers/path_pair/path_pair_options.hpp"
+#include "solvers/path_pair/primal/incumbent.hpp"
+#include "solvers/path_pair/primal/pair_completion.hpp"
+#include "solvers/path_pair/primal/second_leg_bound.hpp"
+#include "solvers/path_pair/search/frontier_solve.hpp"
+#include "solvers/path_pair/search/multiplier_stages.hpp"
+#include "solvers/path_pair/search/node.hpp"
+#include "solvers/path_pair/search_clock.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace conelane::path_pair {
+
+/// Raises the bound of a node step by step. On the way it completes the bound's walks to incumbents, drops
+/// what reaches the incumbent, adds cliques, and searches the fronts where they are few enough.
+class NodeAscent {
+  public:
+    /// What all nodes of a search share.
+    struct Shared {
+        CliquePool& cliques;
+        const Decisions& decisions;  ///< of the node at hand
+        SecondLegBound& second_leg;
+        double tolerance;
+        SearchClock& clock;
+        MultiplierStages* stages = nullptr;  ///< that a certificate wants
+    };
+    /// In which kinds of nodes differ.
+    struct Rules {
+        AscentPatience patience;
+        FrontierSolve::TargetLimits last_search;  ///< of fronts, at the ascent's end
+        bool separates_cliques = true;
+        int first_try = 1;           ///< the step that searches fronts first; 0: after a beam
+        std::size_t beam_steps = 0;  ///< of FrontierTuning::beam_steps, so many
+    };
+    /// What the steps aim at: the incumbent, but if that is as it was known, the cost of the one that was
+    /// found by other means than windows.
+    struct Aim {
+        double known_cost = kUnreachable;
+        double outside_cost = kUnreachable;
+    };
+
+    NodeAscent(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
+    void bind(const LegSystem& system, const Shared& shared);
+
+    void begin(const Node& node, const Rules& rules);
+    /// Precondition: not done.
+    Verdict step(Node& node, const Aim& aim);
+    /// To the end.
+    Verdict run(Node& node, const Rules& rules);
+    [[nodiscard]] bool is_done() const { return state_.is_last; }
+    [[nodiscard]] int steps() const { return state_.step; }
+
+    [[nodiscard]] const PairRelaxation& relaxation() const { return relaxation_; }
+    [[nodiscard]] const WalkUsage& usage() const { return usage_; }
+    [[nodiscard]] FrontierSolve& frontiers() { return frontiers_; }
+
+  private:
+    struct State {
+        int step = 0;
+        bool is_last = false;          ///< the ascent ends with this step
+        double value = -kUnreachable;  ///< the bound at this step's multipliers
+        double best = -kUnreachable;
+        double scale = 1.0;                ///< of the steps
+        int since_best = 0;                ///< steps without progress
+        int next_completion = 0;           ///< the step that completes walks next
+        std::size_t beams = 0;             ///< run so far
+        std::int64_t updates = 0;          ///< of labels since the fronts were last tried, about
+        double failed_gap = kUnreachable;  ///< the gap at which the fronts were too many
+    };
+
+    /// Minus infinity where the clock struck.
+    double evaluate(const ResidualGraph& graph);
+    /// The node's best multipliers so far, with 0 for cliques that came later.
+    void take_best_multipliers(const Node& node);
+    /// Keeps the multipliers where they are the best so far, and counts steps without progress.
+    void note_value(Node& node);
+    void complete_walks(const ResidualGraph& graph);
+    /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
+    Verdict try_frontiers(const ResidualGraph& graph);
+    void move_multipliers(const Node& node, const Aim& aim);
+    [[nodiscard]] double step_gap(const Aim& aim) const;
+    /// Whether anything was dropped.
+    bool fix(ResidualGraph& graph);
+    void separate(const ResidualGraph& graph);
+    [[nodiscard]] double cutoff() const { return incumbent_.cutoff() - tolerance_; }
+    [[nodiscard]] const AscentTuning& tuning() const { return options_.tuning.ascent; }
+
+    const ArcGraph& graph_;
+    Incumbent& incumbent_;
+    const PathPairOptions& options_;
+    CliquePool* cliques_ = nullptr;
+    const Decisions* decisions_ = nullptr;
+    double tolerance_ = 0.0;
+    SearchClock* clock_ = nullptr;
+    MultiplierStages* stages_ = nullptr;
+    PairRelaxation relaxation_;
+    PairCompletion completion_;
+    FrontierSolve frontiers_;
+    ArcFixing fixing_;
+    CliqueSeparation separation_;
+    Ascent ascent_;
+    WalkUsage usage_;
+    Multipliers multipliers_;  ///< of the current step
+    Rules rules_{};
+    State state_;
+    std::vector<char> edge_alive_;
+};
+
+}  // namespace conelane::path_pair

@@ -1,0 +1,139 @@
+// The choice between the lane driven by and one that jumps away from it; noise from frame to frame; frames
+// whose time stands still.
+
+#include "conelane/planner.hpp"
+#include "detectors/planner/lane_choice.hpp"
+#include "detectors/planner/lane_stretch.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+DrivableLane line(double heading_rad) {
+    DrivableLane lane;
+    for (int i = 0; i <= 40; ++i) {
+        DrivablePoint point;
+        point.s_m = 0.5 * i;
+        point.position = point.s_m * Point(std::cos(heading_rad), std::sin(heading_rad));
+        point.heading_rad = heading_rad;
+        lane.points.push_back(point);
+    }
+    lane.length_m = 20.0;
+    return lane;
+}
+
+/// A choice that drives by a lane of which many frames were sure.
+class SureChoice : public testing::Test {
+  protected:
+    SureChoice() {
+        EXPECT_TRUE(choice_.take(lane_, DrivableLane{}, 0.95));
+        for (int i = 0; i < 30; ++i) EXPECT_TRUE(choice_.take(lane_, lane_, 0.95));
+    }
+    /// Frames until `other` is driven by; 1000 where it never is.
+    int frames_until_left(const DrivableLane& other, double weight, double kept_weight) {
+        int frames = 1;
+        while (frames < 1000 && !choice_.take(other, lane_, weight, kept_weight)) ++frames;
+        return frames;
+    }
+
+    LaneChoiceSettings settings_;
+    LaneChoice choice_{settings_};
+    DrivableLane lane_ = line(0.0);
+    DrivableLane other_ = line(0.5);
+};
+
+TEST_F(SureChoice, IsHeldAgainstFramesThatAreLittleSure) {
+    EXPECT_GT(frames_until_left(other_, 0.3, 0.0), 10);
+}
+
+TEST_F(SureChoice, IsLeftForFramesThatAreSure) {
+    const int frames = frames_until_left(other_, 0.95, 0.0);
+    EXPECT_GT(frames, 1);
+    EXPECT_LE(frames, static_cast<int>(std::ceil(settings_.max_support / 0.95)));
+}
+
+TEST_F(SureChoice, IsLeftAlsoWhereCandidatesSpeakForIt) {
+    EXPECT_LE(frames_until_left(other_, 0.5, 0.3), 20);
+}
+
+TEST_F(SureChoice, IsNotLeftForFramesThatContradictEachOther) {
+    const DrivableLane third = line(-0.5);
+    for (int i = 0; i < 50; ++i) EXPECT_FALSE(choice_.take(i % 2 == 0 ? other_ : third, lane_, 1.0));
+}
+
+TEST(LaneChoice, FramesThatSpeakForTheLaneDrivenByHoldANewOneUp) {
+    const DrivableLane lane = line(0.0);
+    const DrivableLane other = line(0.5);
+    int frames[2];
+    for (const bool is_kept : {false, true}) {
+        LaneChoice choice{LaneChoiceSettings{}};
+        EXPECT_TRUE(choice.take(lane, DrivableLane{}, 0.9));
+        int& count = frames[is_kept ? 1 : 0];
+        count = 1;
+        while (count < 1000 && !choice.take(other, lane, 0.5, is_kept ? 0.3 : 0.0)) ++count;
+    }
+    EXPECT_EQ(frames[0], 2) << "one frame against two";
+    EXPECT_GT(frames[1], frames[0]);
+    EXPECT_LT(frames[1], 10) << "and no trap";
+}
+
+DrivableLane line_aside(double left_m, double width_m) {
+    DrivableLane lane = line(0.0);
+    for (DrivablePoint& point : lane.points) {
+        point.position.y() += left_m;
+        point.width_left_m = width_m / 2.0;
+        point.width_right_m = width_m / 2.0;
+    }
+    lane.trusted_m = 15.0;
+    return lane;
+}
+
+TEST(Steadied, NearTheCarNoiseMovesTheLineHalfAsMuchAndTheWidthsSaySo) {
+    const DrivableLane lane = steadied(line_aside(0.4, 3.5), line_aside(0.0, 3.5), 0.5);
+    for (const DrivablePoint& point : lane.points) {
+        EXPECT_NEAR(point.width_left_m - point.width_right_m, 2.0 * (0.4 - point.position.y()), 1e-6);
+        if (point.s_m > 0.6 && point.s_m < 7.5) {
+            EXPECT_NEAR(point.position.y(), 0.2, 1e-6);
+        }
+        if (point.s_m > 12.6) {
+            EXPECT_NEAR(point.position.y(), 0.4, 1e-6);
+        }
+    }
+    ASSERT_TRUE(lane.trusted_m);
+    EXPECT_NEAR(*lane.trusted_m, 15.0, 1e-9);
+    EXPECT_NEAR(lane.points[10].s_m, 5.0, 1e-9) << "equal steps";
+}
+
+TEST(Steadied, ALaneThatIsElsewhereStays) {
+    for (const DrivablePoint& point : steadied(line_aside(1.0, 3.5), line_aside(0.0, 3.5), 0.5).points) {
+        EXPECT_NEAR(point.position.y(), 1.0, 1e-9);
+    }
+    EXPECT_EQ(steadied(line_aside(1.0, 3.5), {}, 0.5).points.size(), line(0.0).points.size());
+}
+
+TEST(Steadied, TheLineComesNoNearerToABoundary) {
+    for (const DrivablePoint& point : steadied(line_aside(0.4, 2.0), line_aside(0.0, 2.0), 0.5).points) {
+        EXPECT_NEAR(point.position.y(), 0.4, 1e-9);
+    }
+}
+
+TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
+    const auto planner = make_planner({.detector = "front"});
+    Frame frame{1.0, {{0.0, 0.0}, 0.0}, {}};
+    for (int i = 0; i < 6; ++i) {
+        frame.cones.push_back({2 * i, {3.0 * i, 1.75}});
+        frame.cones.push_back({2 * i + 1, {3.0 * i, -1.75}});
+    }
+    ASSERT_EQ(planner->update(frame, {.time_limit_ms = 1e4}).state, PlanState::following);
+    EXPECT_EQ(planner->update(frame, {.time_limit_ms = 1e4}).state, PlanState::following) << "it came twice";
+    frame.pose.position.x() += 0.6;
+    EXPECT_EQ(planner->update(frame, {.time_limit_ms = 1e4}).state, PlanState::bridging);
+    frame.time_s += 0.1;
+    EXPECT_EQ(planner->update(frame, {.time_limit_ms = 1e4}).state, PlanState::following);
+}
+
+}  // namespace
+}  // namespace conelane

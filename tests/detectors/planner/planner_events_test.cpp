@@ -1,0 +1,321 @@
+// Whole events by the planner: laps, phases, the last line, the stop; drawn ones, and recorded runs.
+
+#include "conelane/invalid_input.hpp"
+#include "conelane/planner.hpp"
+#include "evaluation/scenes/frame_file.hpp"
+#include "evaluation/tracks/track_spec.hpp"
+#include "model/geometry.hpp"
+#include "tests/support/no_time_limit.hpp"
+#include "tests/support/plan_checks.hpp"
+#include "tests/support/planner_frames.hpp"
+#include "tests/support/recorded_tracks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using tests::DrivenCourse;
+using tests::frame_at;
+using tests::kNoTimeLimit;
+using tests::Sight;
+
+/// What was told along a drive at constant speed.
+struct Told {
+    std::vector<PlanState> states;         ///< without repetitions
+    std::vector<std::string_view> phases;  ///< without repetitions
+    std::optional<double> stop_m;          ///< where a stop was said first
+    std::vector<double> laps_m;            ///< where the lap counted
+    int frames = 0;
+    int without_path = 0;
+    double farthest_m = 0.0;  ///< of the first metres of a path from the middle
+    Plan last;
+};
+
+Told drive(Planner& planner, const DrivenCourse& course, double to_m, const Sight& sight = {},
+           double from_m = 0.0) {
+    Told told;
+    std::mt19937 random(5);
+    constexpr double kStep_m = 0.6;
+    for (int i = 0; from_m + kStep_m * i <= to_m; ++i) {
+        const double s_m = from_m + kStep_m * i;
+        SCOPED_TRACE(s_m);
+        const Frame frame = frame_at(course, s_m, 0.1 * i, sight, &random);
+        Plan plan = planner.update(frame, kNoTimeLimit);
+        tests::expect_consistent(plan, course.mission, frame.pose);
+        if (told.states.empty() || told.states.back() != plan.state) told.states.push_back(plan.state);
+        if (told.phases.empty() || told.phases.back() != plan.phase) told.phases.push_back(plan.phase);
+        if (plan.stop && !told.stop_m) told.stop_m = s_m;
+        while (static_cast<std::size_t>(plan.lap) > told.laps_m.size()) told.laps_m.push_back(s_m);
+        ++told.frames;
+        if (plan.lane.points.empty()) ++told.without_path;
+        DrivableLane near = plan.lane;
+        std::erase_if(near.points, [](const DrivablePoint& point) { return point.s_m > 5.0; });
+        told.farthest_m = std::max(told.farthest_m, tests::farthest_from_middle_m(course, s_m, near));
+        told.last = std::move(plan);
+    }
+    return told;
+}
+
+/// How far a closed line is from the middle of a course at most.
+double course_error_m(const DrivableLane& line, const DrivenCourse& course) {
+    double farthest_m = 0.0;
+    for (const DrivablePoint& point : line.points) {
+        double nearest_m = std::numeric_limits<double>::infinity();
+        for (double s_m = 0.0; s_m < course.lap_m; s_m += 0.1) {
+            nearest_m = std::min(nearest_m, (course.pose(s_m).position - point.position).norm());
+        }
+        farthest_m = std::max(farthest_m, nearest_m);
+    }
+    return farthest_m;
+}
+
+TEST(PlannerEvent, LapsAreCountedAtTheLineAndTheLastOneEndsTheRun) {
+    const DrivenCourse course = tests::oval(2);
+    const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 2});
+    EXPECT_FALSE(planner->course());
+    const Told told = drive(*planner, course, course.finish_m + 6.0);
+    EXPECT_LE(told.without_path, 1);
+    EXPECT_LT(told.farthest_m, 0.5);
+    ASSERT_EQ(told.laps_m.size(), 2U);
+    EXPECT_NEAR(told.laps_m[0], course.lap_m, 1.5);
+    EXPECT_NEAR(told.laps_m[1], 2.0 * course.lap_m, 1.5);
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9) << "a stop before the line loses the run";
+    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
+    EXPECT_EQ(told.last.state, PlanState::finished);
+    EXPECT_EQ(told.last.lap, 2);
+    // What is left to come to rest on ends within 30 m behind the line.
+    EXPECT_GT(told.last.lane.length_m, 5.0);
+    EXPECT_LE(told.last.lane.length_m, 30.0 - 5.0);
+}
+
+TEST(PlannerEvent, TheCourseIsClosedAfterALapAndIsTheMiddleOfTheLane) {
+    const DrivenCourse course = tests::oval(2);
+    const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 2});
+    (void)drive(*planner, course, course.lap_m / 2.0);
+    EXPECT_FALSE(planner->course());
+    planner->reset();
+    (void)drive(*planner, course, course.lap_m + 10.0);
+    const auto known = planner->course();
+    ASSERT_TRUE(known);
+    EXPECT_TRUE(known->closed);
+    EXPECT_NEAR(known->length_m, course.lap_m, 1.0);
+    EXPECT_LT(course_error_m(*known, course), 0.25);
+    for (const DrivablePoint& point : known->points) {
+        EXPECT_NEAR(point.width_left_m, 1.75, 0.4);
+        EXPECT_NEAR(point.width_right_m, 1.75, 0.4);
+    }
+}
+
+TEST(PlannerEvent, AnAutocrossEndsAfterOneLap) {
+    const DrivenCourse course = tests::oval(1);
+    const auto planner = make_planner({.mission = Mission::autocross});
+    const Told told = drive(*planner, course, course.finish_m + 4.0);
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
+    EXPECT_LT(*told.stop_m, course.finish_m + 4.0);
+    EXPECT_EQ(told.last.lap, 1);
+}
+
+TEST(PlannerEvent, NoiseWithoutIdsLeavesTheLapsAsTheyAre) {
+    const DrivenCourse course = tests::oval(2);
+    const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 2});
+    const Told told = drive(*planner, course, course.finish_m + 6.0,
+                            {.with_ids = false, .with_color = true, .noise_m = 0.08});
+    EXPECT_EQ(told.last.state, PlanState::finished);
+    EXPECT_EQ(told.laps_m.size(), 2U);
+    EXPECT_LT(told.farthest_m, 0.8);
+    ASSERT_TRUE(planner->course());
+    EXPECT_LT(course_error_m(*planner->course(), course), 0.35);
+}
+
+TEST(PlannerEvent, ALapIsAsLongAsItIsWhereverTheRunBegins) {
+    const DrivenCourse course = tests::oval(1);
+    // 8 m before the gate of orange cones: crossing it is the start.
+    const auto planner = make_planner({.mission = Mission::autocross});
+    const Told told = drive(*planner, course, course.finish_m + 5.0, {.with_color = true}, -8.0);
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m - 1e-9);
+    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
+}
+
+TEST(PlannerEvent, AccelerationIsStraightAndStopsBehindTheFinish) {
+    const DrivenCourse course = tests::course_of(Mission::acceleration);
+    const auto planner = make_planner({.mission = Mission::acceleration});
+    const Told told = drive(*planner, course, course.finish_m + 60.0);
+    EXPECT_LE(told.without_path, 2);
+    EXPECT_LT(told.farthest_m, 0.4);
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m);
+    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
+    EXPECT_EQ(told.last.state, PlanState::finished);
+    EXPECT_GT(told.last.lane.length_m, 10.0);
+    EXPECT_LE(told.last.lane.length_m, 40.0 + 2.0) << "100 m behind the finish it is at rest";
+    EXPECT_FALSE(planner->course());
+}
+
+TEST(PlannerEvent, SkidpadIsDrivenInItsPhases) {
+    const DrivenCourse course = tests::course_of(Mission::skidpad);
+    const auto planner = make_planner({.mission = Mission::skidpad});
+    const Told told = drive(*planner, course, course.finish_m + 12.0);
+    EXPECT_LE(told.without_path, 3);
+    EXPECT_LT(told.farthest_m, 0.4);
+    EXPECT_EQ(told.phases, std::vector<std::string_view>(tests::kPhases.begin(), tests::kPhases.end()));
+    EXPECT_EQ(told.laps_m.size(), 4U);
+    ASSERT_TRUE(told.stop_m);
+    EXPECT_GE(*told.stop_m, course.finish_m);
+    EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
+    EXPECT_LE(told.last.lane.length_m, 13.0 + 2.0) << "25 m behind the line it is at rest";
+    EXPECT_FALSE(planner->course());
+}
+
+TEST(PlannerEvent, AtRestAtTheEndNothingIsLeftToDrive) {
+    for (const Mission mission : {Mission::autocross, Mission::acceleration, Mission::skidpad}) {
+        SCOPED_TRACE(to_string(mission));
+        const DrivenCourse course = tests::course_of(mission);
+        const auto planner = make_planner({.mission = mission});
+        const double rest_m = mission == Mission::acceleration ? 100.0
+                              : mission == Mission::skidpad    ? 25.0
+                                                               : 30.0;
+        const Told told = drive(*planner, course, course.finish_m + rest_m + 0.5);
+        EXPECT_EQ(told.last.state, PlanState::finished);
+        EXPECT_TRUE(told.last.stop);
+        EXPECT_LT(told.last.lane.length_m, 1.5);
+    }
+}
+
+/// Resident memory of this process [KiB]; 0 where it is not known.
+long resident_kib() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
+    }
+    return 0;
+}
+
+// False positives that are new in each frame, for as long as an hour of driving in circles.
+TEST(PlannerHour, MemoryIsBounded) {
+    const DrivenCourse course = tests::oval(100000, 4.0);
+    const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 100000});
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-30.0, 30.0);
+    constexpr int kFrames = 36000;
+    long warm_kib = 0;
+    ConeId id = 100000;
+    for (int i = 0; i < kFrames; ++i) {
+        Frame frame = frame_at(course, 0.6 * i, 0.1 * i, {.range_m = 12.0});
+        for (int k = 0; k < 3; ++k) frame.cones.push_back({id++, {place(random), 8.0 + place(random)}});
+        (void)planner->update(frame, kNoTimeLimit);
+        if (i == kFrames / 10) warm_kib = resident_kib();
+    }
+    if (warm_kib == 0) GTEST_SKIP() << "the system does not tell resident memory";
+    EXPECT_LT(resident_kib() - warm_kib, 4096);
+}
+
+/// Frames of a run of ft-fsd, ten a second, without ids; none where the data are not there.
+std::vector<Frame> recorded_frames(const std::string& name) {
+    const std::filesystem::path file = recorded_data() / "ft_fsd" / (name + ".json");
+    std::vector<Frame> frames;
+    if (!std::filesystem::exists(file)) return frames;
+    for (const FrameLine& line : read_frames(file, 0.1)) frames.push_back(*line.frame);
+    return frames;
+}
+
+class RecordedEvent : public testing::Test {
+  protected:
+    void read(const std::string& name) {
+        frames_ = recorded_frames(name);
+        if (frames_.empty()) GTEST_SKIP() << "no " << name << " in CONELANE_DATA or in ../shared/data";
+    }
+    std::vector<Frame> frames_;
+};
+
+/// Two laps of FSG 2019. The recording ends 1 m before its start, 7 m before the gate: the poses of the first
+/// crossing, among the cones of the last map, complete the second lap.
+class RecordedLaps : public RecordedEvent {
+  protected:
+    void SetUp() override {
+        read("fsg_19_2_laps");
+        if (IsSkipped()) return;
+        const std::vector<Frame> first(frames_.begin() + 246, frames_.begin() + 254);
+        const std::vector<Cone> map = frames_.back().cones;
+        for (const Frame& frame : first) frames_.push_back({frames_.back().time_s + 0.1, frame.pose, map});
+    }
+    std::unique_ptr<Planner> planner_ = make_planner({.mission = Mission::trackdrive, .laps = 2});
+};
+
+TEST_F(RecordedLaps, AreBothCountedAndTheCourseIsClosed) {
+    int without_path = 0;
+    std::vector<std::size_t> frame_of_lap;
+    Plan plan;
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        plan = planner_->update(frames_[i], kNoTimeLimit);
+        if (plan.lane.points.empty()) ++without_path;
+        if (static_cast<std::size_t>(plan.lap) > frame_of_lap.size()) frame_of_lap.push_back(i);
+    }
+    EXPECT_LE(without_path, 4);
+    EXPECT_EQ(plan.lap, 2);
+    EXPECT_EQ(plan.state, PlanState::finished);
+    ASSERT_EQ(frame_of_lap.size(), 2U);
+    EXPECT_NEAR(static_cast<double>(frame_of_lap.front()), 250.0, 5.0) << "the first crossing";
+    const auto course = planner_->course();
+    ASSERT_TRUE(course);
+    EXPECT_TRUE(course->closed);
+}
+
+// Does not hold yet: at frames 278 and 279 the lane takes wrong cones and begins 1.3 m ahead of the car, and
+// the course is up to 1.2 m beside the middle along 15 m of the lap.
+TEST_F(RecordedLaps, DISABLED_GiveTheMiddleOfTheMapAsCourseAndConsistentPlans) {
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+        SCOPED_TRACE(i);
+        tests::expect_consistent(planner_->update(frames_[i], kNoTimeLimit), Mission::trackdrive,
+                                 frames_[i].pose);
+    }
+    const auto course = planner_->course();
+    ASSERT_TRUE(course);
+    const std::filesystem::path file = recorded_data() / "ft_fsd" / "fsg_19_2_laps.json";
+    const experiments::RaceCourse map = experiments::circuit(load_tracks("ftlog:" + file.string()).front());
+    for (const DrivablePoint& point : course->points) {
+        double nearest_m = std::numeric_limits<double>::infinity();
+        for (const Pose& pose : map.line) {
+            nearest_m = std::min(nearest_m, (pose.position - point.position).norm());
+        }
+        EXPECT_LT(nearest_m, 0.3) << point.s_m;
+    }
+    EXPECT_NEAR(course->length_m, map.length_m, 0.02 * map.length_m);
+}
+
+TEST_F(RecordedEvent, ARealSkidpadIsDrivenInItsPhases) {
+    read("skidpad");
+    if (IsSkipped()) return;
+    const std::vector<Frame>& frames = frames_;
+    const auto planner = make_planner({.mission = Mission::skidpad});
+    std::vector<std::string_view> phases;
+    int without_path = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        SCOPED_TRACE(i);
+        const Plan plan = planner->update(frames[i], kNoTimeLimit);
+        tests::expect_consistent(plan, Mission::skidpad, frames[i].pose);
+        if (phases.empty() || phases.back() != plan.phase) phases.push_back(plan.phase);
+        if (plan.lane.points.empty() && !frames[i].cones.empty()) ++without_path;
+    }
+    EXPECT_EQ(phases, std::vector<std::string_view>(tests::kPhases.begin(), tests::kPhases.end()));
+    EXPECT_LE(without_path, 10);
+}
+
+}  // namespace
+}  // namespace conelane

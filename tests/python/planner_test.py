@@ -1,0 +1,218 @@
+"""conelane.Planner: a drawn lane and the recorded runs, frame by frame."""
+import json
+import os
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import conelane
+
+COLUMNS = 7
+
+
+def straight(x0=0.0, x1=60.0):
+    """Cones every 4 m on both sides of the x axis, and their ids."""
+    x = np.arange(x0, x1, 4.0)
+    cones = np.vstack([np.column_stack([x, np.full(len(x), 1.75)]), np.column_stack([x, np.full(len(x), -1.75)])])
+    return cones, np.arange(len(cones))
+
+
+def in_view(cones, pose, range_m=20.0):
+    ahead = (cones - pose[:2]) @ [np.cos(pose[2]), np.sin(pose[2])]
+    return (ahead >= 0.0) & (np.linalg.norm(cones - pose[:2], axis=1) <= range_m)
+
+
+def oval():
+    """Cones of a course of two straights of 20 m and half circles of 8 m, and the car's pose by way driven."""
+    lap = 40.0 + 16.0 * np.pi
+
+    def pose(s):
+        s = s % lap
+        for length, start, yaw, curvature in ((10, (0, 0), 0, 0), (8 * np.pi, (10, 0), 0, 1 / 8), (20, (10, 16), np.pi, 0),
+                                              (8 * np.pi, (-10, 16), np.pi, 1 / 8), (10, (-10, 0), 2 * np.pi, 0)):
+            if s <= length:
+                break
+            s -= length
+        x, y = start
+        if curvature:
+            turn = yaw + s * curvature
+            return np.array([x + (np.sin(turn) - np.sin(yaw)) / curvature,
+                             y + (np.cos(yaw) - np.cos(turn)) / curvature, turn])
+        return np.array([x + s * np.cos(yaw), y + s * np.sin(yaw), yaw])
+
+    cones = []
+    for s in np.linspace(0.0, lap, 30, endpoint=False):
+        x, y, yaw = pose(s)
+        for side in (1.75, -1.75):
+            cones.append([x - side * np.sin(yaw), y + side * np.cos(yaw)])
+    return np.array(cones), pose, lap
+
+
+class Straight(unittest.TestCase):
+    def setUp(self):
+        self.cones, self.ids = straight()
+
+    def update(self, planner, x, time_s, **more):
+        pose = np.array([x, 0.0, 0.0])
+        seen = in_view(self.cones, pose)
+        if more.pop("with_ids", True):
+            more["ids"] = self.ids[seen]
+        return planner.update(self.cones[seen], pose, time_s, time_limit_ms=None, **more)
+
+    def test_a_plan_says_what_to_drive(self):
+        planner = conelane.Planner(mission="trackdrive", detector="front-warm", laps=3)
+        self.assertEqual((planner.mission, planner.detector), ("trackdrive", "front-warm"))
+        for with_ids in (True, False):
+            planner.reset()
+            for i in range(4):
+                plan = self.update(planner, 0.5 * i, 0.1 * i, with_ids=with_ids)
+            self.assertEqual((plan.state, plan.lap, plan.stop, plan.phase, plan.age_s), ("following", 0, False, "", 0.0))
+            line = plan.centre_line
+            self.assertEqual(line.shape[1], COLUMNS)
+            self.assertEqual(line[0, 0], 0.0)
+            self.assertAlmostEqual(line[0, 1], 1.5, delta=0.3)
+            self.assertGreater(line[-1, 0], 14.0)
+            np.testing.assert_allclose(line[:, 2], 0.0, atol=0.05)
+            np.testing.assert_allclose(line[:, 5:], 1.75, atol=0.1)
+            self.assertTrue(0.0 < plan.safe_m <= line[-1, 0] + 0.5)
+            self.assertGreater(plan.latency_ms, 0.0)
+            answer = plan.answer
+            self.assertTrue(answer.found)
+            self.assertEqual((answer.status, answer.message, answer.stopped_by), ("found", "", None))
+            self.assertGreater(answer.confidence, 0.5)
+            self.assertGreater(answer.trusted_m, 5.0)
+            if with_ids:
+                self.assertLessEqual(set(answer.left_ids), set(range(15)))
+                self.assertLessEqual(set(answer.right_ids), set(range(15, 30)))
+            else:
+                self.assertTrue((answer.left_ids < 0).all())
+            self.assertIsNone(planner.course())
+
+    def test_ids_may_be_missing_one_by_one(self):
+        planner = conelane.Planner()
+        some = np.where(self.ids % 2 == 0, self.ids, conelane.NO_ID)
+        for i in range(3):
+            plan = planner.update(self.cones[:40], (0.5 * i, 0, 0), 0.1 * i, ids=some[:40], time_limit_ms=None)
+        self.assertEqual(plan.state, "following")
+
+    def test_bridging_lost_and_found(self):
+        planner = conelane.Planner(max_age_s=0.45)
+        states = []
+        for i in range(14):
+            if 3 <= i < 10:
+                plan = planner.update([], (0.5 * i, 0, 0), 0.1 * i)
+            else:
+                plan = self.update(planner, 0.5 * i, 0.1 * i)
+            states.append(plan.state)
+            self.assertEqual(len(plan.centre_line) == 0, plan.state in ("searching", "lost"))
+            if plan.state == "bridging":
+                self.assertAlmostEqual(plan.age_s, 0.1 * (i - 2))
+                self.assertAlmostEqual(plan.centre_line[0, 1], 0.5 * i, delta=0.3)
+        self.assertEqual(states[:10], ["following"] * 3 + ["bridging"] * 4 + ["lost"] * 3)
+        self.assertEqual(states[-1], "following")
+
+    def test_a_late_frame_is_no_new_one(self):
+        planner = conelane.Planner()
+        plan = self.update(planner, 1.0, 1.0)
+        self.assertEqual(self.update(planner, 1.0, 1.0).state, "following")  # twice
+        late = self.update(planner, 0.0, 0.5)
+        self.assertEqual(late.state, "bridging")
+        np.testing.assert_array_equal(late.centre_line, plan.centre_line)
+
+    def test_what_is_wrong_is_named_and_changes_nothing(self):
+        planner, same = conelane.Planner(), conelane.Planner()
+        for i in range(3):
+            for message, arguments, more in (
+                    (r"cones\[0\]\.y: must be a finite number", ([[0.0, np.nan]], (0, 0, 0), 0.1 * i), {}),
+                    ("pose: has shape", ([[0.0, 1.0]], (0, 0), 0.1 * i), {}),
+                    (r"pose\.yaw", ([[0.0, 1.0]], (0, 0, np.inf), 0.1 * i), {}),
+                    ("time_s: is not finite", ([[0.0, 1.0]], (0, 0, 0), np.nan), {}),
+                    ("time_s: is no number", ([[0.0, 1.0]], (0, 0, 0), "now"), {}),
+                    ("time_limit_ms", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"time_limit_ms": np.nan}),
+                    ("ids: has shape", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"ids": [1, 2]}),
+                    (r"cones\[1\]\.id", ([[0.0, 1.0], [1.0, 1.0]], (0, 0, 0), 0.1 * i), {"ids": [7, 7]}),
+                    ("colors", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"colors": ["green"]}),
+                    (r"cones\[0\]\.confidence", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"confidences": [2.0]})):
+                with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                    planner.update(*arguments, **more)
+            plan, expected = self.update(planner, 0.5 * i, 0.1 * i), self.update(same, 0.5 * i, 0.1 * i)
+            np.testing.assert_array_equal(plan.centre_line, expected.centre_line)
+
+    def test_options(self):
+        for message, options in (("mission: there is no 'rally', only trackdrive", {"mission": "rally"}),
+                                 ("only front", {"detector": "magic"}),
+                                 ("laps", {"laps": 0}),
+                                 ("laps", {"mission": "skidpad", "laps": 4}),
+                                 ("laps", {"mission": "acceleration", "laps": 1}),
+                                 ("max_age_s", {"max_age_s": -1.0}),
+                                 ("weights", {"detector": "clc", "weights": b"{}"}),
+                                 ("there is no option 'speed'", {"speed": 3})):
+            with self.subTest(message), self.assertRaisesRegex(ValueError, message):
+                conelane.Planner(**options)
+        self.assertEqual(repr(conelane.Planner("skidpad")), "<conelane.Planner 'skidpad' by 'front-warm'>")
+
+    def test_planners_of_threads_are_independent(self):
+        alone = [self.update(conelane.Planner(), 0.0, 0.0).centre_line]
+        results = []
+
+        def run():
+            planner = conelane.Planner()
+            for i in range(5):
+                results.append((i, self.update(planner, 0.5 * i, 0.1 * i).centre_line))
+
+        threads = [threading.Thread(target=run) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(results), 20)
+        for i, line in results:
+            if i == 0:
+                np.testing.assert_array_equal(line, alone[0])
+
+
+class Laps(unittest.TestCase):
+    def test_a_lap_gives_the_course_and_the_last_one_ends_the_run(self):
+        cones, pose_at, lap = oval()
+        planner = conelane.Planner("autocross")
+        stop_at = None
+        for i, s in enumerate(np.arange(0.0, lap + 6.0, 0.6)):
+            pose = pose_at(s)
+            seen = in_view(cones, pose)
+            plan = planner.update(cones[seen], pose, 0.1 * i, ids=np.flatnonzero(seen), time_limit_ms=None)
+            if plan.stop and stop_at is None:
+                stop_at = s
+        self.assertEqual((plan.state, plan.lap), ("finished", 1))
+        self.assertTrue(lap - 1e-6 <= stop_at < lap + 5.0, stop_at)
+        course = planner.course()
+        self.assertEqual(course.shape[1], COLUMNS)
+        middle = np.array([pose_at(s)[:2] for s in np.arange(0.0, lap, 0.1)])
+        off = np.linalg.norm(course[:, None, 1:3] - middle[None], axis=2).min(axis=1)
+        self.assertLess(off.max(), 0.3)
+        planner.reset()
+        self.assertIsNone(planner.course())
+
+
+def data():
+    here = Path(os.environ.get("CONELANE_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
+    return here / "ft_fsd" if (here / "ft_fsd").is_dir() else None
+
+
+@unittest.skipIf(data() is None, "no recorded runs in CONELANE_DATA or in ../shared/data")
+class RecordedSkidpad(unittest.TestCase):
+    def test_phases_come_in_their_order(self):
+        planner = conelane.Planner("skidpad")
+        phases = []
+        for i, frame in enumerate(json.loads((data() / "skidpad.json").read_text(encoding="utf-8"))):
+            cones = [place for kind in frame["slam_cones"] for place in kind]
+            yaw = np.arctan2(frame["car_direction"][1], frame["car_direction"][0])
+            plan = planner.update(cones, (*frame["car_position"], yaw), 0.1 * i, time_limit_ms=None)
+            if phases[-1:] != [plan.phase]:
+                phases.append(plan.phase)
+        self.assertEqual(phases, ["approach", "right 1", "right 2", "left 1", "left 2", "exit"])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

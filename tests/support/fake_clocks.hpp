@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <ctime>
+
+#include <sys/syscall.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+// Fakes the clocks of the whole program, of the C library and of every library that it links: a test
+// program includes this once. The monotonic clock is as it was, but ahead by what a test asks for, as if the
+// processor had been away; the time of day jumps by an hour, forth and back, from one look at it to the next.
+
+namespace conelane::tests {
+
+struct ClockLooks {
+    std::int64_t monotonic = 0;
+    std::int64_t time_of_day = 0;
+    double max_gap_ms = 0.0;  ///< processor time of this thread between two looks at the monotonic clock
+    double last_look_ms = 0.0;
+    std::int64_t away_at = 0;  ///< the look at the monotonic clock from which it is ahead; 0: none
+    std::int64_t away_s = 0;   ///< by so much
+};
+inline thread_local ClockLooks clock_looks;
+
+inline timespec true_time(clockid_t clock) {
+    timespec time{};
+    syscall(SYS_clock_gettime, clock, &time);
+    return time;
+}
+inline double thread_cpu_ms() {
+    const timespec time = true_time(CLOCK_THREAD_CPUTIME_ID);
+    return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+/// A look at the clock, and what ends a call.
+inline void note_look() {
+    const double now_ms = thread_cpu_ms();
+    clock_looks.max_gap_ms = std::max(clock_looks.max_gap_ms, now_ms - clock_looks.last_look_ms);
+    clock_looks.last_look_ms = thread_cpu_ms();
+}
+inline void forget_looks() {
+    clock_looks = {};
+    clock_looks.last_look_ms = thread_cpu_ms();
+}
+
+}  // namespace conelane::tests
+
+extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
+    using conelane::tests::clock_looks;
+    *time = conelane::tests::true_time(clock);
+    if (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE) {
+        ++clock_looks.time_of_day;
+        time->tv_sec += clock_looks.time_of_day % 2 == 0 ? 3600 : -3600;
+    } else if (clock == CLOCK_MONOTONIC) {
+        ++clock_looks.monotonic;
+        if (clock_looks.away_at > 0 && clock_looks.monotonic >= clock_looks.away_at)
+            time->tv_sec += clock_looks.away_s;
+        conelane::tests::note_look();
+    }
+    return 0;
+}
+
+extern "C" int gettimeofday(timeval* time, void* /*zone*/) noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    *time = {now.tv_sec, now.tv_nsec / 1000};
+    return 0;
+}
+
+extern "C" time_t time(time_t* seconds) noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_REALTIME, &now);
+    if (seconds != nullptr) *seconds = now.tv_sec;
+    return now.tv_sec;
+}

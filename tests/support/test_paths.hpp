@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace conelane {
+
+/// The folder of the sources: weight files, stored instances, and beside it recorded tracks.
+[[nodiscard]] std::filesystem::path source_directory();
+
+/// The program `conelane`.
+[[nodiscard]] std::string conelane_program();
+
+/// A method from outside that misbehaves when told to: tests/evaluation/outside/outside_child.cpp.
+[[nodiscard]] std::string outside_child();
+
+/// The example of a method from outside that answers a stream of scenes.
+[[nodiscard]] std::string clc_stream();
+
+}  // namespace conelane
