@@ -32,6 +32,7 @@ constexpr int kJumpFrames = 2;  ///< that say so, one after the other
 constexpr int kMinMatched = 3;
 constexpr double kSurplusGain = 0.3;  ///< of one frame
 constexpr int kMinPlaces = 3;
+constexpr double kFull = 0.75;
 constexpr double kMinTaken = 0.5;       ///< of the places that should have a cone
 constexpr double kMinSurplus = 0.3;     ///< of cones on boundaries over those beside, of both
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
@@ -235,8 +236,10 @@ bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
         const double share = static_cast<double>(fit.taken) / fit.places;
         taken_ += kSurplusGain * (share - taken_);
     }
-    return fit.matched >= kMinMatched && fit.matched >= fit.beside && surplus_ > kMinSurplus &&
-           taken_ > kMinTaken && off_route_m_ < kMaxOffRoute_m;
+    if (fit.matched < kMinMatched || off_route_m_ >= kMaxOffRoute_m || taken_ <= kMinTaken) return false;
+    // Where a boundary of the rules has no cones at all, false ones beside it weigh more.
+    const bool is_full = fit.places >= kMinPlaces && taken_ > kFull;
+    return is_full || (fit.matched >= fit.beside && surplus_ > kMinSurplus);
 }
 
 void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
