@@ -32,9 +32,7 @@ constexpr int kJumpFrames = 2;  ///< that say so, one after the other
 constexpr int kMinMatched = 3;
 constexpr double kSurplusGain = 0.3;  ///< of one frame
 constexpr int kMinPlaces = 3;
-constexpr double kFull = 0.75;
-constexpr double kMinTaken = 0.5;       ///< of the places that should have a cone
-constexpr double kMinSurplus = 0.3;     ///< of cones on boundaries over those beside, of both
+constexpr double kMinSupport = 0.8;     ///< surplus and share of places with a cone, together
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
 constexpr double kSearchAgain_s = 0.3;  ///< without support
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
@@ -236,10 +234,8 @@ bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
         const double share = static_cast<double>(fit.taken) / fit.places;
         taken_ += kSurplusGain * (share - taken_);
     }
-    if (fit.matched < kMinMatched || off_route_m_ >= kMaxOffRoute_m || taken_ <= kMinTaken) return false;
-    // Where a boundary of the rules has no cones at all, false ones beside it weigh more.
-    const bool is_full = fit.places >= kMinPlaces && taken_ > kFull;
-    return is_full || (fit.matched >= fit.beside && surplus_ > kMinSurplus);
+    // Cones of the course may be missing, and false ones stand beside it; both at once is too much.
+    return fit.matched >= kMinMatched && off_route_m_ < kMaxOffRoute_m && surplus_ + taken_ > kMinSupport;
 }
 
 void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
@@ -292,8 +288,7 @@ void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, 
         registration_ = found->registration;
         settling_ = kSettlingFrames;
         jump_frames_ = 0;
-        surplus_ = kMinSurplus;
-        taken_ = kMinTaken;
+        surplus_ = taken_ = 0.5 * kMinSupport;
     }
 }
 
