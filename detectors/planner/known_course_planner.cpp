@@ -30,11 +30,11 @@ constexpr double kJumpGain = 2.0;    ///< of the score, by a move that is not sm
 constexpr double kJumpGainShare = 0.15;
 constexpr int kJumpFrames = 2;  ///< that say so, one after the other
 constexpr int kMinMatched = 3;
-constexpr double kSurplusGain = 0.3;    ///< of one frame
-constexpr double kMinSurplus = 0.5;     ///< of cones on boundaries over those beside, of both
+constexpr double kSurplusGain = 0.3;  ///< of one frame
+constexpr int kMinPlaces = 3;
+constexpr double kMinSupport = 0.8;     ///< surplus and share of places with a cone, together
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
 constexpr double kSearchAgain_s = 0.3;  ///< without support
-constexpr int kConfirmingFrames = 4;    ///< at most, until a registration found again has support
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
 constexpr std::size_t kMinDrawnTogether = 6;
 
@@ -114,8 +114,8 @@ class KnownCoursePlanner final : public Planner {
     std::vector<SeenView> views_;              ///< while searching
     std::vector<RegistrationFit> contenders_;  ///< of this frame, while searching
     int settling_ = 0;                         ///< frames until the registration is steady
-    int confirming_ = 0;                       ///< frames left to confirm a registration found again
     double surplus_ = 1.0;  ///< of cones on boundaries over those beside them, mean of the last frames
+    double taken_ = 1.0;    ///< share of the places that have their cone, mean of the last frames
     int jump_frames_ = 0;   ///< one after the other that say that the map has jumped
     std::optional<double> time_s_;
     Pose first_pose_;
@@ -152,7 +152,6 @@ void KnownCoursePlanner::reset() {
     finished_ = false;
     closed_x_m_.reset();
     began_ = false;
-    confirming_ = 0;
     last_ = {};
 }
 
@@ -222,7 +221,7 @@ void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) 
     settling_ = kSettlingFrames;
     jump_frames_ = 0;
     surplus_ = 1.0;
-    confirming_ = 0;
+    taken_ = 1.0;
 }
 
 bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
@@ -231,8 +230,12 @@ bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
         const double surplus = static_cast<double>(fit.matched - fit.beside) / (fit.matched + fit.beside);
         surplus_ += kSurplusGain * (surplus - surplus_);
     }
-    return fit.matched >= kMinMatched && fit.matched >= fit.beside && surplus_ > kMinSurplus &&
-           off_route_m_ < kMaxOffRoute_m;
+    if (fit.places >= kMinPlaces) {
+        const double share = static_cast<double>(fit.taken) / fit.places;
+        taken_ += kSurplusGain * (share - taken_);
+    }
+    // Cones of the course may be missing, and false ones stand beside it; both at once is too much.
+    return fit.matched >= kMinMatched && off_route_m_ < kMaxOffRoute_m && surplus_ + taken_ > kMinSupport;
 }
 
 void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
@@ -254,15 +257,9 @@ void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const D
         settling_ = kSettlingFrames;
     }
     if (!supports(fit)) {
-        if (confirming_ > 0) {
-            --confirming_;
-            registration_ = fit.registration;
-        } else if (frame.time_s - supported_s_ > kSearchAgain_s) {
-            search_again(frame, view, deadline);
-        }
+        if (frame.time_s - supported_s_ > kSearchAgain_s) search_again(frame, view, deadline);
         return;
     }
-    confirming_ = 0;
     settling_ = std::max(settling_ - 1, 0);
     registration_ = fit.registration;
     supported_s_ = frame.time_s;
@@ -287,12 +284,11 @@ void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, 
     now.observe(frame);
     if (const auto found = known_.search(now.cones(), {&view, 1}, frame.pose, expected,
                                          {.ahead_m = 2.4, .left_m = 2.4, .yaw_rad = 0.35}, deadline)) {
-        // The next frames have to confirm it: among enough cones some registration fits one frame by chance.
+        // The next frame has to confirm it: among enough cones some registration fits one frame by chance.
         registration_ = found->registration;
         settling_ = kSettlingFrames;
         jump_frames_ = 0;
-        surplus_ = 0.0;
-        confirming_ = kConfirmingFrames;
+        surplus_ = taken_ = 0.5 * kMinSupport;
     }
 }
 
