@@ -32,7 +32,7 @@ struct RegistrationFit {
 
 /// How far the car may stand from where a search expects it.
 struct SearchReach {
-    double ahead_m = 4.5;  ///< of no use where the boundaries do not tell the place along x
+    double ahead_m = 4.5;  ///< ignored where the boundaries do not tell the place along x
     double left_m = 4.0;
     double yaw_rad = 0.5;
 };
