@@ -74,7 +74,8 @@ class RowWriter {
     /// With a deadline, `stop` says when it has passed, or the program is as large as it may become.
     explicit RowWriter(BinaryProgram& program, const Deadline* deadline = nullptr);
 
-    /// To be asked between rows by who writes many of them: what is written from then on is of no use.
+    /// Whether to stop. A caller that writes many rows asks between them. Rows written after it is true are
+    /// ignored.
     [[nodiscard]] bool stop();
     [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
 

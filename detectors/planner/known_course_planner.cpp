@@ -30,8 +30,9 @@ constexpr double kJumpGain = 2.0;    ///< of the score, by a move that is not sm
 constexpr double kJumpGainShare = 0.15;
 constexpr int kJumpFrames = 2;  ///< that say so, one after the other
 constexpr int kMinMatched = 3;
-constexpr double kSurplusGain = 0.3;    ///< of one frame
-constexpr double kMinSurplus = 0.3;     ///< of cones on boundaries over those beside, of both
+constexpr double kSurplusGain = 0.3;  ///< of one frame
+constexpr int kMinPlaces = 3;
+constexpr double kMinSupport = 0.8;     ///< surplus and share of places with a cone, together
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
 constexpr double kSearchAgain_s = 0.3;  ///< without support
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
@@ -114,6 +115,7 @@ class KnownCoursePlanner final : public Planner {
     std::vector<RegistrationFit> contenders_;  ///< of this frame, while searching
     int settling_ = 0;                         ///< frames until the registration is steady
     double surplus_ = 1.0;  ///< of cones on boundaries over those beside them, mean of the last frames
+    double taken_ = 1.0;    ///< share of the places that have their cone, mean of the last frames
     int jump_frames_ = 0;   ///< one after the other that say that the map has jumped
     std::optional<double> time_s_;
     Pose first_pose_;
@@ -219,6 +221,7 @@ void KnownCoursePlanner::accept(const RegistrationFit& fit, const Frame& frame) 
     settling_ = kSettlingFrames;
     jump_frames_ = 0;
     surplus_ = 1.0;
+    taken_ = 1.0;
 }
 
 bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
@@ -227,8 +230,12 @@ bool KnownCoursePlanner::supports(const RegistrationFit& fit) {
         const double surplus = static_cast<double>(fit.matched - fit.beside) / (fit.matched + fit.beside);
         surplus_ += kSurplusGain * (surplus - surplus_);
     }
-    return fit.matched >= kMinMatched && fit.matched >= fit.beside && surplus_ > kMinSurplus &&
-           off_route_m_ < kMaxOffRoute_m;
+    if (fit.places >= kMinPlaces) {
+        const double share = static_cast<double>(fit.taken) / fit.places;
+        taken_ += kSurplusGain * (share - taken_);
+    }
+    // Cones of the course may be missing, and false ones stand beside it; both at once is too much.
+    return fit.matched >= kMinMatched && off_route_m_ < kMaxOffRoute_m && surplus_ + taken_ > kMinSupport;
 }
 
 void KnownCoursePlanner::track(const Frame& frame, const SeenView& view, const Deadline& deadline) {
@@ -281,7 +288,7 @@ void KnownCoursePlanner::search_again(const Frame& frame, const SeenView& view, 
         registration_ = found->registration;
         settling_ = kSettlingFrames;
         jump_frames_ = 0;
-        surplus_ = kMinSurplus;
+        surplus_ = taken_ = 0.5 * kMinSupport;
     }
 }
 

@@ -253,6 +253,7 @@ RegistrationFit KnownRegistration::fit(const Registration& registration, std::sp
     const std::vector<SeenCone> cones = nearest_to(car.position, all, kMaxFitted);
     RegistrationFit result;
     result.registration = registration;
+    std::vector<Point> on_boundary;
     for (const SeenCone& seen : cones) {
         const Point place = registration.to_course(seen.position);
         const auto contact = course_.boundary_at(place, registration.widening_m, kBeside_m);
@@ -262,6 +263,7 @@ RegistrationFit KnownRegistration::fit(const Registration& registration, std::sp
             continue;
         }
         ++result.matched;
+        on_boundary.push_back(seen.position);
         result.score += 1.0 - square(contact->off_m / kMatched_m);
         if (seen.color != ConeColor::unknown && contact->color != ConeColor::unknown) {
             if (seen.color == contact->color) {
@@ -279,6 +281,11 @@ RegistrationFit KnownRegistration::fit(const Registration& registration, std::sp
         const bool in_view =
             std::ranges::any_of(views, [&](const SeenView& view) { return view.covers(place); });
         if (!in_view) continue;
+        ++result.places;
+        if (std::ranges::any_of(on_boundary,
+                                [&](const Point& cone) { return (cone - place).norm() < known.reach_m; })) {
+            ++result.taken;
+        }
         const bool is_there = std::ranges::any_of(
             cones, [&](const SeenCone& cone) { return (cone.position - place).norm() < known.reach_m; });
         if (!is_there) result.score -= kMissing;

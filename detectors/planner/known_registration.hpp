@@ -25,12 +25,14 @@ struct RegistrationFit {
     double score = 0.0;       ///< cones on boundaries, less for those that stand off, less for places without
     int matched = 0;          ///< cones on a boundary
     int beside = 0;           ///< cones beside one, in a band of the same area: as many by chance
+    int places = 0;           ///< that should have a cone on the boundary, in view
+    int taken = 0;            ///< of these, with one
     double farthest_m = 0.0;  ///< of the cones on a boundary from the car, ahead of it
 };
 
 /// How far the car may stand from where a search expects it.
 struct SearchReach {
-    double ahead_m = 4.5;  ///< of no use where the boundaries do not tell the place along x
+    double ahead_m = 4.5;  ///< ignored where the boundaries do not tell the place along x
     double left_m = 4.0;
     double yaw_rad = 0.5;
 };

@@ -13,7 +13,8 @@ namespace conelane {
 [[nodiscard]] std::string_view closest_name(std::string_view misspelt,
                                             std::span<const std::string_view> names);
 
-/// Throws InputError naming the first key of the object that is none of these, and the one that is meant.
+/// Throws InputError where the object has a key that is not in `keys`. The error names the first such key and
+/// the most similar known one.
 void require_known_keys(const JsonNode& object, std::span<const std::string_view> keys);
 
 }  // namespace conelane

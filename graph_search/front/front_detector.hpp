@@ -34,9 +34,10 @@ struct FrontOptions {
 /// comes back beside or behind the car, where no view that it has learned from shows cones.
 ///
 /// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
-/// to its end; LaneAnswer::trusted_m is how far it is right all but surely. DetectionLimits::keep_candidates
-/// asks for the best lanes, kContenders of FrontJudge at most, each with its confidence. Enumeration counts
-/// the states that moved, and says `complete` where no lane that the rules allow was left out.
+/// to its end; LaneAnswer::trusted_m is how far it is right, with calibrated probability.
+/// DetectionLimits::keep_candidates asks for the best lanes, kContenders of FrontJudge at most, each with its
+/// confidence. Enumeration counts the states that moved, and says `complete` where no lane that the rules
+/// allow was left out.
 ///
 /// Where no lane was found before time or memory was spent, or none that is usable with a probability of 0.1,
 /// a boundary is looked for that is seen alone (see BoundarySearch): three cones at least, five in place of a

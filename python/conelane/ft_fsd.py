@@ -56,6 +56,7 @@ _MISSION_OF = {
 }  # all others drive laps
 _WITHOUT_END = 1_000_000_000  # laps of what is no dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
+_GUESSED_M = 5.0  # of a lane that is a guess
 _MOST_CONES = 5000  # whose places are kept
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
 
@@ -251,6 +252,7 @@ class PathPlanner:
         if is_fresh:
             left = self._boundary(self.plan.answer.left_ids, Color.yellow, True)
             right = self._boundary(self.plan.answer.right_ids, Color.blue, False)
+            self._cut_guess()
         path = self._path()
         self._calls = 0 if is_fresh else self._calls + 1
         self.path_age = self._calls if len(path) else None
@@ -282,6 +284,15 @@ class PathPlanner:
             if self._end is None or _along(line, end) < _along(line, self._end):
                 self._end = end
         return places
+
+    def _cut_guess(self) -> None:
+        """A lane of one boundary of which nothing is trusted is a guess: its beginning alone is a path."""
+        line = self.plan.centre_line
+        if self.plan.answer.confidence is not None or self.plan.safe_m > 0.0 or len(line) == 0:
+            return
+        end = line[np.abs(line[:, 0] - _GUESSED_M).argmin(), 1:3]
+        if self._end is None or _along(line[:, 1:3], end) < _along(line[:, 1:3], self._end):
+            self._end = end
 
     def _path(self) -> FloatArray:
         line = self.plan.centre_line

@@ -14,6 +14,10 @@ std::string outside_child() {
     return CONELANE_OUTSIDE_CHILD;
 }
 
+std::string solver_child() {
+    return CONELANE_SOLVER_CHILD;
+}
+
 std::string clc_stream() {
     return CONELANE_EXAMPLE;
 }

@@ -17,8 +17,8 @@ struct CheckReport {
         violations;                   ///< a sentence each, naming constraint and cones; empty: a lane graph
     std::optional<double> objective;  ///< (29), where every edge joins two cones of the scene
     std::size_t along_heading = 0;    ///< edges that count in (9)
-    /// A violation stays whatever edges are added: one of (2), (5), (6), (27), (28), a crossing, or an edge
-    /// that is none.
+    /// A violation stays whatever edges are added: one of (2), (5), (6), (27), (28), a crossing, or an
+    /// invalid edge.
     bool is_final = false;
 };
 

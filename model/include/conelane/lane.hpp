@@ -25,8 +25,8 @@ inline constexpr double kMaxLaneWidth_m = 6.5;
 /// with an empty side. Precondition: every id of the lane is a cone of the scene.
 void even_far_ends(Lane& lane, const Scene& scene, double widest_m = kMaxLaneWidth_m);
 
-/// What of a lane lies among the scene's `nearest` cones ahead: each boundary is cut at its first cone that
-/// is none of them, then the far ends are evened. A boundary may be left with one cone or none, and only a
+/// The lane restricted to the scene's `nearest` cones ahead: each boundary is cut at its first cone that is
+/// not one of them, then the far ends are evened. A boundary may be left with one cone or none, and only a
 /// lane that was not cut stays closed. Precondition: every id of the lane is a cone of the scene.
 [[nodiscard]] Lane cut_to_nearest(Lane lane, const Scene& scene, std::size_t nearest,
                                   double widest_m = kMaxLaneWidth_m);

@@ -33,7 +33,7 @@ struct Optimality {
 struct LaneCandidate {
     Lane lane;
     std::int64_t iteration;
-    std::optional<double> confidence = {};  ///< probability that the lane is right
+    std::optional<double> confidence = {};  ///< probability that the lane is usable
 };
 
 struct Enumeration {
@@ -71,7 +71,7 @@ struct LaneAnswer {
     std::string message;
     /// The limit that ended the search. Absent where it ran to its end: then a lane is the detector's best.
     std::optional<StopReason> stopped_by;
-    std::optional<double> confidence;  ///< probability that the lane is right
+    std::optional<double> confidence;  ///< probability that the lane is usable
     /// Distance up to which the lane can be trusted. Of a detector that `make_detector` makes every lane has
     /// one. With a confidence it follows from probabilities; without one it is a rule and no probability: as
     /// far as both boundaries were seen without a gap, and 10 m at most.

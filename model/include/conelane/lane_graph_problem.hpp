@@ -73,8 +73,8 @@ struct LaneGraphProblem {
     std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending
 };
 
-/// Throws InvalidInput where the scene or the parameters are not valid. Takes the time and the memory that it
-/// needs: both grow with the fourth power of the cones where many lie within reach of each other.
+/// Throws InvalidInput where the scene or the parameters are not valid. No time or memory limit:
+/// both grow with the fourth power of the cones where many lie within reach of each other.
 [[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                             EdgeExtent extent = EdgeExtent::candidates);
 
@@ -85,7 +85,7 @@ inline constexpr std::size_t kMaxProblemEdges = 16'384;
 inline constexpr std::size_t kMaxProblemEntries = 4'000'000;
 [[nodiscard]] bool is_too_large(const LaneGraphProblem& problem);
 
-/// A problem, or the limit that its making ran into.
+/// A problem, or why its construction stopped.
 struct LimitedProblem {
     std::optional<LaneGraphProblem> problem;  ///< complete; absent where a limit was struck
     std::optional<StopReason> stopped_by;     ///< then: time or memory

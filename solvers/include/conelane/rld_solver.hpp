@@ -15,7 +15,7 @@ class RldSolver {
     [[nodiscard]] virtual EdgeExtent extent() const { return EdgeExtent::candidates; }
 
     /// Building the program is inside the time limit; a problem or a program that is too large (is_too_large,
-    /// kMaxProgramEntries) gives status stopped by memory, limits that are no limits (see `invalidity`) and
+    /// kMaxProgramEntries) gives status stopped by memory, invalid limits (see `invalidity`) and
     /// a backend that fails give status error and a message. `start` is a lane graph to start from, or
     /// nullptr: a hint that solvers may use as their first incumbent; one that is not feasible for the
     /// problem is dropped, a feasible one is in the report unless there is a cheaper lane graph, with status

@@ -48,7 +48,7 @@ struct MilpReport {
 struct RldReport {
     SolveStatus status = SolveStatus::error;
     std::optional<StopReason> stopped_by;
-    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible, and of a start with error
+    std::optional<LaneGraph> lane_graph;  ///< with status optimal and feasible; with error the warm start
     std::optional<double> objective;      ///< recomputed from the lane graph
     std::optional<double> bound;          ///< proven lower bound
     std::int64_t nodes = 0;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ const Pose kCourse{{40.0, -25.0}, 2.3};
 std::unique_ptr<Planner> planner_of(Mission mission) {
     return make_known_course_planner({.mission = mission, .detector = "front"});
 }
+
+/// No wall clock decides what a busy machine finds.
+constexpr DetectionLimits kNoLimit{.time_limit_ms = std::numeric_limits<double>::infinity()};
 
 Pose acceleration_route(double s_m) {
     return {{s_m, 0.0}, 0.0};
@@ -83,7 +87,7 @@ TEST(KnownCoursePlanner, SkidpadIsDrivenInOrderToTheStop) {
         std::vector<std::string> phases;
         int lap = 0;
         while (car.s_m() < 4.0 * kCircle_m + 15.0) {
-            const Plan plan = planner->update(car.next());
+            const Plan plan = planner->update(car.next(), kNoLimit);
             if (phases.empty() || phases.back() != plan.phase) phases.emplace_back(plan.phase);
             EXPECT_GE(plan.lap, lap);
             lap = plan.lap;
@@ -114,7 +118,7 @@ TEST(KnownCoursePlanner, AccelerationStopsBehindTheLineAndNeverBefore) {
         Car car(Mission::acceleration, seed);
         double stop_m = 0.0;
         while (car.s_m() < 90.0) {
-            const Plan plan = planner->update(car.next());
+            const Plan plan = planner->update(car.next(), kNoLimit);
             if (plan.stop && stop_m == 0.0) stop_m = car.s_m();
             EXPECT_EQ(plan.phase, "");
             EXPECT_EQ(plan.lap, 0);
@@ -138,7 +142,7 @@ TEST(KnownCoursePlanner, RowsAcrossTheExitShortenWhatIsLeft) {
         Plan plan;
         for (int i = 0; i < 10 * (75 + static_cast<int>(row_m) - 10) / 6; ++i) {
             const Pose pose = acceleration_route(-2.0 + 0.6 * i);
-            plan = planner->update(sight.look(pose, kCourse, 0.1 * i));
+            plan = planner->update(sight.look(pose, kCourse, 0.1 * i), kNoLimit);
         }
         ASSERT_TRUE(plan.stop);
         ASSERT_FALSE(plan.lane.points.empty());
@@ -153,14 +157,14 @@ TEST(KnownCoursePlanner, IsLostWhereTheConesStopToSpeakForTheRegistration) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 1);
-        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next()));
+        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next(), kNoLimit));
         int lost = 0;
         for (int i = 0; i < 40; ++i) {
             Frame frame = car.next();
             frame.cones.clear();
             const auto strewn = Sight::strewn(25, frame.pose.position, 15.0, static_cast<unsigned>(100 + i));
             for (const Point& point : strewn) frame.cones.push_back({kNoId, point});
-            const Plan plan = planner->update(frame);
+            const Plan plan = planner->update(frame, kNoLimit);
             EXPECT_EQ(plan.age_s > 0.0, plan.state != PlanState::following);
             if (plan.state == PlanState::lost) {
                 ++lost;
@@ -176,11 +180,11 @@ TEST(KnownCoursePlanner, WithoutConesItGoesOnForAWhileAndComesBack) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 2);
-        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next()));
+        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next(), kNoLimit));
         for (int i = 0; i < 25; ++i) {
             Frame frame = car.next();
             frame.cones.clear();
-            const Plan plan = planner->update(frame);
+            const Plan plan = planner->update(frame, kNoLimit);
             EXPECT_EQ(plan.state, i < 10 ? PlanState::bridging : PlanState::lost) << i;
             EXPECT_NEAR(plan.age_s, 0.1 * (i + 1), 1e-9);
             if (i < 10) {
@@ -188,7 +192,7 @@ TEST(KnownCoursePlanner, WithoutConesItGoesOnForAWhileAndComesBack) {
             }
         }
         Plan plan;
-        for (int i = 0; i < 5; ++i) plan = planner->update(car.next());
+        for (int i = 0; i < 5; ++i) plan = planner->update(car.next(), kNoLimit);
         EXPECT_EQ(plan.state, PlanState::following);
         EXPECT_LT(error_of(plan.lane, car, kCourse), 0.45);
     }
@@ -199,7 +203,7 @@ TEST(KnownCoursePlanner, ComesBackAfterTheMapHasJumped) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 3);
-        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next()));
+        for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next(), kNoLimit));
         // About the car, as a correction of a map is.
         const Pose before = in_map(kCourse, car.pose());
         Pose course = kCourse;
@@ -207,7 +211,7 @@ TEST(KnownCoursePlanner, ComesBackAfterTheMapHasJumped) {
         course.position += before.position + Point(1.4, -1.4) - in_map(course, car.pose()).position;
         Plan plan;
         for (int i = 0; i < 12; ++i) {
-            plan = planner->update(car.next(course));
+            plan = planner->update(car.next(course), kNoLimit);
             if (plan.state == PlanState::following && i > 8) {
                 EXPECT_LT(error_of(plan.lane, car, course), 0.5) << to_string(mission) << " " << i;
             }
@@ -221,7 +225,7 @@ TEST(KnownCoursePlanner, ACarThatStandsStillMakesNoProgress) {
     const auto planner = planner_of(Mission::skidpad);
     Sight sight(known_event::skidpad_cones(), 0.2, 0.1, 4);
     for (int i = 0; i < 300; ++i) {
-        const Plan plan = planner->update(sight.look(skidpad_route(-0.8), kCourse, 0.1 * i));
+        const Plan plan = planner->update(sight.look(skidpad_route(-0.8), kCourse, 0.1 * i), kNoLimit);
         EXPECT_NE(plan.phase, "right 2");
         EXPECT_EQ(plan.lap, 0);
     }
@@ -234,15 +238,15 @@ TEST(KnownCoursePlanner, FramesTwiceAndOutOfOrderChangeNothing) {
     std::vector<Frame> frames;
     for (int i = 0; i < 60; ++i) frames.push_back(car.next());
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Plan plan = planner->update(frames[i]);
-        const Plan wanted = reference->update(frames[i]);
+        const Plan plan = planner->update(frames[i], kNoLimit);
+        const Plan wanted = reference->update(frames[i], kNoLimit);
         ASSERT_EQ(plan.lane.points.size(), wanted.lane.points.size());
         ASSERT_EQ(plan.state, wanted.state);
-        const Plan again = planner->update(frames[i]);
+        const Plan again = planner->update(frames[i], kNoLimit);
         EXPECT_EQ(again.state, plan.state);
         EXPECT_EQ(again.lane.points.size(), plan.lane.points.size());
         if (i > 20) {
-            EXPECT_EQ(planner->update(frames[i - 2]).state, PlanState::bridging);
+            EXPECT_EQ(planner->update(frames[i - 2], kNoLimit).state, PlanState::bridging);
         }
     }
 }
@@ -257,7 +261,7 @@ TEST(KnownCoursePlanner, KeepsTheTimeLimitOfASearch) {
         EXPECT_EQ(plan.state, PlanState::searching);
         EXPECT_TRUE(plan.lane.points.empty());
     }
-    const Plan plan = planner->update(sight.look(skidpad_route(-16.0), kCourse, 1.0));
+    const Plan plan = planner->update(sight.look(skidpad_route(-16.0), kCourse, 1.0), kNoLimit);
     EXPECT_EQ(plan.state, PlanState::following);
     EXPECT_GT(plan.lane.length_m, 20.0);
 }
@@ -266,14 +270,14 @@ TEST(KnownCoursePlanner, ResetForgetsTheRun) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto used = planner_of(mission);
         Car first(mission, 7);
-        for (int i = 0; i < 200; ++i) static_cast<void>(used->update(first.next()));
+        for (int i = 0; i < 200; ++i) static_cast<void>(used->update(first.next(), kNoLimit));
         used->reset();
         const auto fresh = planner_of(mission);
         Car second(mission, 8);
         for (int i = 0; i < 60; ++i) {
             const Frame frame = second.next({{-5.0, 3.0}, -1.0});
-            const Plan a = used->update(frame);
-            const Plan b = fresh->update(frame);
+            const Plan a = used->update(frame, kNoLimit);
+            const Plan b = fresh->update(frame, kNoLimit);
             ASSERT_EQ(a.state, b.state);
             ASSERT_EQ(a.lane.points.size(), b.lane.points.size());
             for (std::size_t k = 0; k < a.lane.points.size(); ++k) {

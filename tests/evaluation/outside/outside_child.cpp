@@ -3,7 +3,8 @@
 // fault, once: not where the file MARKER is there, which it makes. What it reads goes to the file that
 // OUTSIDE_LOG names, its process number to OUTSIDE_PID.
 
-#include <csignal>
+#include "tests/evaluation/outside/process_faults.hpp"
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,8 @@
 namespace {
 
 using conelane::Point;
+using conelane::tests::commit_process_fault;
+using conelane::tests::sleep_on;
 using nlohmann::json;
 
 Point position(const json& from) {
@@ -66,27 +69,10 @@ void say(const std::string& line) {
     std::cout << line << std::endl;
 }
 
-void sleep_on() {
-    std::signal(SIGTERM, SIG_IGN);
-    for (;;) ::pause();
-}
-
 /// Commits the fault; what it says, if it goes on.
 void commit(const std::string& fault, const json& right, const conelane::Scene& scene) {
     json wrong = right;
-    if (fault == "crash") {
-        std::cerr << "what went wrong\n" << std::flush;
-        std::abort();
-    }
-    if (fault == "exit") std::_Exit(3);
-    if (fault == "hang") sleep_on();
-    if (fault == "half-a-line") {
-        std::cout << R"({"scene": ")" << std::flush;
-        sleep_on();
-    }
-    if (fault == "endless-line") {
-        for (const std::string block(65536, 'x');;) std::cout << block << std::flush;
-    }
+    commit_process_fault(fault, R"({"scene": ")");
     if (fault == "endless-errors") {
         for (const std::string block(65536, 'x');;) std::cerr << block << std::flush;
     }

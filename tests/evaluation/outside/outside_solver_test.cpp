@@ -12,6 +12,7 @@
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
+#include "tests/support/test_paths.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -31,7 +32,7 @@ using testing::HasSubstr;
 constexpr double kSame = 1e-6;
 
 std::string child(const std::string& arguments = "") {
-    return std::string(CONELANE_SOLVER_CHILD) + " " + arguments;
+    return solver_child() + " " + arguments;
 }
 
 OutsideMethod method(const std::string& command) {

@@ -8,8 +8,8 @@
 
 #include "model/binary_program.hpp"
 #include "solvers/milp/cbc_solver.hpp"
+#include "tests/evaluation/outside/process_faults.hpp"
 
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -21,13 +21,13 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace {
 
 using conelane::BinaryProgram;
 using conelane::MilpReport;
 using conelane::SolveStatus;
+using conelane::tests::commit_process_fault;
 
 struct NamedProgram {
     BinaryProgram program;
@@ -88,11 +88,6 @@ NamedProgram read_mps(const std::string& file) {
     return read;
 }
 
-[[noreturn]] void sleep_on() {
-    std::signal(SIGTERM, SIG_IGN);
-    for (;;) ::pause();
-}
-
 struct Solved {
     MilpReport report;
     NamedProgram read;
@@ -135,19 +130,7 @@ void write(const Solved& solved, const std::string& file, const std::string& fau
 
 /// Faults of a process, before it answers.
 void misbehave(const std::string& fault) {
-    if (fault == "crash") {
-        std::cerr << "what went wrong\n" << std::flush;
-        std::abort();
-    }
-    if (fault == "exit") std::_Exit(3);
-    if (fault == "hang") sleep_on();
-    if (fault == "half-a-line") {
-        std::cout << R"({"status": ")" << std::flush;
-        sleep_on();
-    }
-    if (fault == "endless-line") {
-        for (const std::string block(65536, 'x');;) std::cout << block << std::flush;
-    }
+    commit_process_fault(fault, R"({"status": ")");
     if (fault == "endless-lines") {
         for (const std::string block(1000, '\n');;) std::cout << block << std::flush;
     }
