@@ -8,9 +8,9 @@
 
 namespace conelane {
 
-/// Cones that stand at most this far apart [m] are one cone for `front`. True cones of different boundaries
-/// stand metres apart, so at most cones of one boundary become one (the big cones of a gate, 0.26 to 0.44 m
-/// apart in courses), or a false cone stands for a true one beside it, within what a lane may be off.
+/// Cones that stand at most this far apart [m] are one cone for `front` in scenes that have many of them (see
+/// DoubledCones). True cones of different boundaries stand metres apart, so at most cones of one boundary
+/// become one, or a false cone stands for a true one beside it, within what a lane may be off.
 inline constexpr double kFrontDoubledCone_m = 0.35;
 
 struct FrontOptions {

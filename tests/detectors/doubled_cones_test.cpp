@@ -180,6 +180,7 @@ TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
 
 TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
     std::size_t merged = 0;
+    std::size_t crowds = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         const double radius_m = seed % 4 < 2 ? kDoubledCone_m : DoubledCones::kMaxRadius_m;
         DoubledCones doubles(radius_m);
@@ -198,13 +199,18 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         const std::vector<ConeId> kept = ids(once);
         merged += doubles.merged().size();
         EXPECT_EQ(kept.size() + doubles.merged().size(), scene.cones.size());
+        const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
+        const bool has_far_doubles = std::ranges::any_of(doubles.merged(), [&](const MergedCone& cone) {
+            return (at(cone.cone) - at(cone.into)).norm() > kDoubledCone_m;
+        });
+        const double apart_m = has_far_doubles ? radius_m : kDoubledCone_m;
+        crowds += has_far_doubles ? 1 : 0;
         for (const Cone& a : once.cones) {
             for (const Cone& b : once.cones) {
                 if (a.id == b.id) continue;
-                EXPECT_GT((a.position - b.position).norm(), radius_m);
+                EXPECT_GT((a.position - b.position).norm(), apart_m);
             }
         }
-        const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
         for (const MergedCone& cone : doubles.merged()) {
             EXPECT_EQ(std::ranges::count(kept, cone.cone), 0);
             EXPECT_EQ(std::ranges::count(kept, cone.into), 1);
@@ -225,6 +231,29 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         EXPECT_EQ(renumbered, reversed_in_list_order);
     }
     EXPECT_GT(merged, 200U) << "scenes without doubles show little";
+    EXPECT_GT(crowds, 5U);
+}
+
+/// False cones stand near true ones by chance: one pair says nothing of the map.
+TEST(DoubledCones, FewFarDoublesAreChance) {
+    const auto merged_of = [](std::size_t cones, std::size_t pairs, double distance_m) {
+        Scene scene;
+        for (std::size_t i = 0; i < cones; ++i) {
+            const Point position(3.0 * static_cast<double>(i), 1.5);
+            scene.cones.push_back({static_cast<ConeId>(i), position});
+            if (i < pairs)
+                scene.cones.push_back({static_cast<ConeId>(1000 + i), position + Point(distance_m, 0.0)});
+        }
+        DoubledCones doubles(0.35);
+        (void)doubles.merge(scene);
+        return doubles.merged().size();
+    };
+    EXPECT_EQ(merged_of(10, 2, 0.3), 0U) << "fewer than three";
+    EXPECT_EQ(merged_of(10, 3, 0.3), 3U);
+    EXPECT_EQ(merged_of(40, 3, 0.3), 0U) << "fewer than one for each ten cones";
+    EXPECT_EQ(merged_of(40, 4, 0.3), 4U);
+    EXPECT_EQ(merged_of(40, 1, 0.1), 1U) << "so near they are one cone, however few";
+    EXPECT_EQ(merged_of(10, 10, 0.36), 0U);
 }
 
 TEST(DoubledCones, ARowOfConesDoesNotCollapse) {

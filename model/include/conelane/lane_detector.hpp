@@ -50,7 +50,8 @@ struct UncutLane {
 
 /// Cones of a scene that stand at most this far apart [m] are one cone that a map holds twice: the base of
 /// the smallest cone of the rules is 0.228 m wide, so the middles of two cones cannot be that near. A
-/// detector may merge cones that stand farther apart, see LaneDetector::doubled_cone_m.
+/// detector may merge cones that stand farther apart where a scene has many, see
+/// LaneDetector::doubled_cone_m.
 inline constexpr double kDoubledCone_m = 0.12;
 
 /// A cone that a detector did not look at, since it stands within its doubled_cone_m of another one.
@@ -102,7 +103,8 @@ class LaneDetector {
     /// search or its backend throws give status error and a message.
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
-    /// Cones that stand at most this far apart [m] are one cone for this detector.
+    /// Cones that stand at most this far apart [m] are one cone for this detector; beyond kDoubledCone_m only
+    /// in a scene that has at least three such doubles, and one for each ten cones.
     [[nodiscard]] double doubled_cone_m() const;
 
     /// Forgets what was carried from earlier scenes.
