@@ -12,7 +12,7 @@ namespace conelane {
 ///
 /// Each frame speaks for a lane with a weight, the probability that its detector gives. What spoke for the
 /// lane driven by, settings.max_support at most, has to be outweighed by what speaks for the new one, in two
-/// frames at least. So frames that are little sure lead nowhere, and a wrong lane is left after some frames.
+/// frames at least. So uncertain frames change nothing, and a wrong lane is left after some frames.
 class LaneChoice {
   public:
     explicit LaneChoice(const LaneChoiceSettings& settings) : settings_(settings) {}

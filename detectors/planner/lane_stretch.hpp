@@ -12,7 +12,7 @@ struct LaneFoot {
     double s_m = 0.0;
     double offset_m = 0.0;  ///< distance of the car
 };
-/// Among what lies between two arc lengths; nothing where no point of it runs with the car.
+/// The same in a range of arc lengths; nothing if no point of it runs with the car.
 [[nodiscard]] std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m,
                                               double to_s_m);
 
@@ -20,8 +20,8 @@ struct LaneFoot {
 /// lane has a point.
 [[nodiscard]] DrivablePoint point_at(const DrivableLane& lane, double s_m);
 
-/// What of a lane lies between two arc lengths, as an open lane that begins at 0; of a closed one once around
-/// at most. No points where that is shorter than a step.
+/// The lane restricted to a range of arc lengths, as an open lane that begins at 0; at most once around a
+/// closed lane. No points if the range is shorter than a step.
 [[nodiscard]] DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, double step_m);
 
 /// How far apart two open lanes are within an arc length of the first one, as far as both go [m].

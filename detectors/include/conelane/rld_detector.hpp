@@ -20,7 +20,7 @@ struct ConeSet {
 
     /// Whether lanes are cut.
     [[nodiscard]] bool has_context() const;
-    /// What of a scene lanes are found among.
+    /// The scene restricted to the cones that the solver sees.
     [[nodiscard]] Scene seen(const Scene& scene) const;
     bool operator==(const ConeSet&) const = default;
 };

@@ -9,7 +9,7 @@ namespace conelane {
 
 /// A scene, solved: the numbers that it became, and what the solver answered.
 struct SolvedScene {
-    LaneGraphProblem problem;  ///< empty where a limit was struck on the way to it
+    LaneGraphProblem problem;  ///< empty if a limit ended its construction
     RldReport report;          ///< build_ms counts making the problem too
     double total_ms = 0.0;     ///< from the scene in memory to the report
 };
