@@ -107,7 +107,7 @@ class Checker {
     [[nodiscard]] bool is_near(std::size_t cone) const {
         return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
     }
-    /// More edges may mend it.
+    /// More edges may repair it.
     void violated(std::string what) { report_.violations.push_back(std::move(what)); }
     void violated_for_good(std::string what) {
         violated(std::move(what));

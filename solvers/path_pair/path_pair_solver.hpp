@@ -19,8 +19,8 @@ namespace conelane {
 [[nodiscard]] BoundCertificate certify_root_bound(
     const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 
-/// Solves the problem and says how the proof can be repeated without this solver. Where the limit strikes
-/// first the certificate is for the bound that was proven until then; minus infinity where there was none.
+/// Solves the problem and says how the proof can be repeated without this solver. If the limit ends
+/// the search, the certificate is for the bound proven so far; minus infinity if there is none.
 [[nodiscard]] SearchCertificate certify_search(
     const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 

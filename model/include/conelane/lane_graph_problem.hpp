@@ -87,8 +87,8 @@ inline constexpr std::size_t kMaxProblemEntries = 4'000'000;
 
 /// A problem, or why its construction stopped.
 struct LimitedProblem {
-    std::optional<LaneGraphProblem> problem;  ///< complete; absent where a limit was struck
-    std::optional<StopReason> stopped_by;     ///< then: time or memory
+    std::optional<LaneGraphProblem> problem;  ///< complete; absent if a limit ended construction
+    std::optional<StopReason> stopped_by;     ///< if absent: time or memory
 };
 
 /// The same problem as without a deadline, or none: where the deadline passes on the way (it is looked at

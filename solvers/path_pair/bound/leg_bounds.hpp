@@ -16,7 +16,7 @@ namespace conelane::path_pair {
 /// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
 class LegBounds {
   public:
-    /// With a clock, both end early once it has struck: the labels are of no use then.
+    /// With a clock, both passes end early when it expires; the labels are then invalid.
     void bind(SearchClock& clock) { clock_ = &clock; }
 
     /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
