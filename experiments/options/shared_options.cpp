@@ -163,7 +163,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         "--miss", [&options](double rate) { options.miss_rate = rate; }, "share of the cones not seen");
     command.add_flag_function(
         "--persist,!--no-persist", [&options](std::int64_t count) { options.persistent = count > 0; },
-        "false positives keep id and place along a lap; else they are drawn anew at each pose");
+        "false positives keep id and place along a lap; without it they are drawn at each pose");
     command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
     command.add_option("--color-error", options.color_error_rate,
                        "with --color: share of the cones seen in the other boundary's colour");

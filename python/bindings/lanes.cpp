@@ -114,7 +114,7 @@ one that can be driven was found; "error": see `message`.)")
             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
         .def_property_readonly(
             "confidence", [](const LaneObject& l) { return l.record.answer.confidence; },
-            "float or None: probability that the lane is right, where the detector knows one")
+            "float or None: probability that the lane is usable; None if the detector has none")
         .def_property_readonly(
             "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
             R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:

@@ -101,7 +101,7 @@ void add_answer(py::module_& module) {
             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
         .def_property_readonly(
             "confidence", [](const LaneAnswer& a) { return a.confidence; },
-            "float or None: probability that the lane is right, where the detector knows one")
+            "float or None: probability that the lane is usable; None if the detector has none")
         .def_property_readonly(
             "trusted_m", [](const LaneAnswer& a) { return a.trusted_m; },
             "float or None: distance up to which the lane can be trusted [m]")

@@ -207,7 +207,7 @@ def from_fs_track(message: Any) -> Cones:
     Raises
     ------
     ValueError
-        Naming the field that is missing, and for a colour that is none of fs_msgs/Cone.
+        Naming a missing field, or a colour that fs_msgs/Cone does not have.
 
     Examples
     --------
