@@ -234,7 +234,7 @@ TEST(SearchCertificate, CannotBeForged) {
              c.lane_graph = LaneGraph{{{0, 1}, {1, 5}, {3, 4}, {2, 4}}};
          },
          "none"},
-        {"a cone that is none",
+        {"an unknown cone",
          [](auto& c) {
              c.lane_graph->edges.back() = {4, 6};
          },
