@@ -24,7 +24,7 @@ std::set<std::string, std::less<>> read_parameters(std::string_view file, const 
         if (field != std::ranges::end(fields)) {
             parameters.*(field->value) = json.number();
         } else if (!read_other(json, key)) {
-            throw InvalidInput(key, "is no parameter");
+            throw InvalidInput(key, "is not a parameter");
         }
     });
     json.require_end();

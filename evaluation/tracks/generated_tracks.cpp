@@ -242,7 +242,7 @@ TrackLayout layout_of(const std::string& name, std::uint64_t seed) {
         return draw_layout(name, seed);
     }
     throw InvalidInput("generated track",
-                       fmt::format("'{}' is none of {}", name, fmt::join(generated_track_names(), ", ")));
+                       fmt::format("'{}' is not one of {}", name, fmt::join(generated_track_names(), ", ")));
 }
 
 }  // namespace

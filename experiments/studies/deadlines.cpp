@@ -163,7 +163,7 @@ class DeadlinesStudy : public Study {
             ->delimiter(',')
             ->check(CLI::Range(0.1, 1e6))
             ->capture_default_str();
-        command.add_option("--repeats", options_.repeats, "calls for each scene and limit")
+        command.add_option("--repeats", options_.repeats, "number of calls for each scene and limit")
             ->check(whole_number(1, 1'000'000))
             ->capture_default_str();
         command

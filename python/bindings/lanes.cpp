@@ -72,7 +72,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
         const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
             throw InputError(file, record.line, "scene",
-                             "'" + record.scene + "' is none of the scenes given");
+                             "'" + record.scene + "' is not one of the scenes given");
         }
         const Scene& scene = found->second->scene;
         snap_to_cones(record, scene);

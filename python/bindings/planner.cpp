@@ -78,7 +78,7 @@ double time_of(py::handle object) {
     const double time_s = PyFloat_AsDouble(object.ptr());
     if (time_s == -1.0 && PyErr_Occurred() != nullptr) {
         PyErr_Clear();
-        throw InvalidInput("time_s", "is no number");
+        throw InvalidInput("time_s", "is not a number");
     }
     return time_s;
 }

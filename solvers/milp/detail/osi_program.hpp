@@ -12,7 +12,7 @@
 
 namespace conelane::detail {
 
-/// Runs `work`; an error of COIN, whose type is no std::exception, comes out as one.
+/// Runs `work`; an error of COIN, whose type is not std::exception, comes out as one.
 template <typename Work>
 void with_std_errors(Work&& work) {
     try {

@@ -208,7 +208,7 @@ struct Forgery {
 TEST(SearchCertificate, CannotBeForged) {
     const std::vector<Forgery> forgeries{
         {"a higher bound", [](auto& c) { c.bound = -3.9; }, "above"},
-        {"a bound that is no number", [](auto& c) { c.bound = std::nan(""); }, "number"},
+        {"a bound that is not a number", [](auto& c) { c.bound = std::nan(""); }, "number"},
         {"no bound", [](auto& c) { c.bound = -kInfinity; }, "nothing is claimed"},
         {"a huge bound",
          [](auto& c) {
