@@ -9,17 +9,16 @@
 
 namespace conelane {
 
-/// Finds the cones of a scene that are held twice, see kDoubledCone_m. Keeps memory from call to call: once
-/// it is warm, nothing is allocated.
+/// Finds the cones of a scene that a map holds twice, see kDoubledCone_m. Keeps memory from call to call:
+/// once it is warm, it allocates nothing.
 ///
-/// Cones are looked at in the order of their ids. A cone that stands within kDoubledCone_m of one that was
-/// kept is merged into it, of several into the nearest, of equally near ones into the smallest id; else it is
-/// kept. So the order of the scene's cones does not count, kept cones stand farther apart than that, and what
-/// is kept is a part of the scene: the cones that are left stay as they are.
+/// Cones are visited in the order of their ids. A cone within kDoubledCone_m of a kept cone is merged into
+/// the nearest one (ties: the smallest id); otherwise it is kept. So the order of the scene's cones does not
+/// matter, kept cones are farther apart than that, and their positions stay unchanged.
 class DoubledCones {
   public:
-    /// The scene with each cone once: `scene` itself where no cone is doubled, else a copy without the merged
-    /// ones, valid until the next call. Time n log n. Precondition: the scene is valid.
+    /// The scene with each cone once: `scene` itself if no cone is doubled, else a copy without the merged
+    /// cones, valid until the next call. Time n log n. Precondition: the scene is valid.
     [[nodiscard]] const Scene& merge(const Scene& scene);
     /// The cones that the last call merged, by their ids.
     [[nodiscard]] const std::vector<MergedCone>& merged() const { return merged_; }
@@ -39,7 +38,7 @@ class DoubledCones {
 
     [[nodiscard]] static Cell cell_of(const Point& position);
     [[nodiscard]] std::size_t first_slot(const Cell& cell) const;
-    /// The kept cone that a cone is merged into; kNone where there is none.
+    /// The kept cone that a cone is merged into; kNone if there is none.
     [[nodiscard]] std::size_t kept_near(const Scene& scene, const Point& position) const;
     void keep(const Point& position, std::size_t cone);
 
