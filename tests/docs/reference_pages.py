@@ -59,9 +59,11 @@ def members_of(root, struct, header):
             last[3] += " " + goes_on.group(1)
         elif comment:
             above.append(comment.group(1))
-        elif member and "(" not in line:
+        elif member:
             kind, name, equal, braced, beside = member.groups()
             default = equal if equal is not None else braced
+            if default and default.endswith("::infinity()"):
+                default = "infinity"
             last = [kind, name, "none" if default in ("{}", "", None) else default, " ".join(above + ([beside] if beside else []))]
             members.append(last)
             above = []

@@ -61,12 +61,12 @@ struct Plan {
 };
 
 struct PlannerOptions {
-    Mission mission = Mission::trackdrive;
-    std::string detector = "front-warm";
-    DetectorOptions detector_options = {};
-    std::optional<int> laps = {};  ///< trackdrive: 10 if absent; autocross: 1. At least 1
-    DrivableOptions drivable = {};
-    double max_age_s = 1.0;  ///< an older lane is not driven; at least 0
+    Mission mission = Mission::trackdrive;  ///< the event
+    std::string detector = "front-warm";    ///< a name of `detectors`
+    DetectorOptions detector_options = {};  ///< of that detector
+    std::optional<int> laps = {};           ///< trackdrive: 10 if absent; autocross: 1. At least 1
+    DrivableOptions drivable = {};          ///< of the lanes in plans
+    double max_age_s = 1.0;                 ///< an older lane is not driven; at least 0
 };
 
 /// A planner of one run. It serves one thread; planners are independent of each other.

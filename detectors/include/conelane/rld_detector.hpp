@@ -26,10 +26,10 @@ struct ConeSet {
 };
 
 struct RldDetectorOptions {
-    RldParameters parameters;
-    ConeSet cones;
-    double absolute_gap = 1e-9;
-    bool warm_start = false;  ///< start from the previous scene's lane graph, its cones found again by id
+    RldParameters parameters;    ///< of the objective
+    ConeSet cones;               ///< all cones by default
+    double absolute_gap = 1e-9;  ///< see SolveLimits
+    bool warm_start = false;     ///< start from the previous scene's lane graph, its cones found again by id
 };
 
 /// A detector of an RLD solver: the lane graph of least cost is the lane. The time limit includes making
