@@ -5,8 +5,8 @@
 
 namespace conelane {
 
-/// The parameters that delaunay-beam and astar-lane are shipped with, of parameters/NAME.json;
-/// parameters/NAME.record.json says on which scenes `conelane tune-method` found them.
+/// The shipped parameters of delaunay-beam and astar-lane, from parameters/NAME.json.
+/// parameters/NAME.record.json has the scenes on which `conelane tune-method` found them.
 [[nodiscard]] DelaunayBeamParameters tuned_delaunay_beam_parameters();
 [[nodiscard]] AstarLaneParameters tuned_astar_lane_parameters();
 

@@ -70,7 +70,7 @@ class RldDetector : public LaneDetector {
         std::optional<Lane> lane = report.lane_graph ? to_lane(*report.lane_graph, seen) : std::nullopt;
         if (!lane) {
             answer.status = LaneStatus::error;
-            answer.message = "the solver's edges are no lane graph";
+            answer.message = "the solver's edges are not a lane graph";
             return answer;
         }
         answer.lane = std::move(*lane);

@@ -23,7 +23,7 @@ RldParameters parameters_of(std::string_view file) {
             if (key != "pairing") return false;
             const std::string pairing = json.string();
             if (pairing != to_string(Pairing::paper) && pairing != to_string(Pairing::near_far))
-                throw InvalidInput(key, "is no pairing");
+                throw InvalidInput(key, "is not a pairing");
             parameters.pairing = pairing == to_string(Pairing::paper) ? Pairing::paper : Pairing::near_far;
             return true;
         });

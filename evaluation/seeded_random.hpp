@@ -12,7 +12,7 @@
 
 namespace conelane {
 
-/// The generator of what is drawn for the scene or track of that name.
+/// The generator of random numbers for the scene or track of that name.
 inline boost::random::mt19937_64 generator_of(const std::string& name, std::uint64_t seed) {
     std::vector<std::uint32_t> words{static_cast<std::uint32_t>(seed),
                                      static_cast<std::uint32_t>(seed >> 32U)};
@@ -21,8 +21,8 @@ inline boost::random::mt19937_64 generator_of(const std::string& name, std::uint
     return boost::random::mt19937_64(sequence);
 }
 
-/// Fisher and Yates. The same order from the same generator with any standard library; std::shuffle has no
-/// such promise.
+/// Fisher and Yates. The same order from the same generator with any standard library; std::shuffle does not
+/// guarantee this.
 template <typename Value>
 void shuffle(std::vector<Value>& values, boost::random::mt19937_64& random) {
     for (std::size_t i = values.size(); i > 1; --i) {

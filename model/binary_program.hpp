@@ -18,7 +18,7 @@ namespace conelane {
 /// the program (a string literal).
 struct Label {
     struct Index {
-        std::int32_t first = -1;  ///< -1 where absent
+        std::int32_t first = -1;  ///< -1 if absent
         std::int32_t second = -1;
         std::int32_t third = -1;
     };
@@ -44,7 +44,7 @@ struct BinaryProgram {
         double lower;
         double upper;
         bool integer;
-        bool branch_first = false;  ///< advice: of the integer columns, branch on these before the others
+        bool branch_first = false;  ///< hint: among the integer columns, branch on these first
     };
     struct RowBounds {
         Label label;
@@ -64,18 +64,18 @@ struct BinaryProgram {
     void truncate_rows(std::size_t first);
 };
 
-/// A program that is built within limits has at most so many columns and entries together, below 300 MB; a
-/// solver that is loaded with it takes several times as much.
+/// Largest number of columns and entries together of a program built within limits, below 300 MB; a solver
+/// that loads it takes several times as much.
 inline constexpr std::size_t kMaxProgramEntries = 4'000'000;
 
 /// Writes rows into a program; terms of the same column add up.
 class RowWriter {
   public:
-    /// With a deadline, `stop` says when it has passed, or the program is as large as it may become.
+    /// With a deadline, `stop` tells when it has passed, or the program has reached its largest size.
     explicit RowWriter(BinaryProgram& program, const Deadline* deadline = nullptr);
 
-    /// Whether to stop. A caller that writes many rows asks between them. Rows written after it is true are
-    /// ignored.
+    /// Whether to stop. A caller that writes many rows checks this between them. Rows written after it is
+    /// true are ignored.
     [[nodiscard]] bool stop();
     [[nodiscard]] std::optional<StopReason> struck() const { return struck_; }
 
@@ -88,7 +88,7 @@ class RowWriter {
     const Deadline* deadline_;
     int until_clock_ = 0;
     std::optional<StopReason> struck_;
-    std::vector<int> position_;  ///< of a column in the open row, -1 where it has none
+    std::vector<int> position_;  ///< position of a column in the open row, -1 if it has none
 };
 
 inline constexpr double kInfinity = 1e300;  ///< an absent row bound

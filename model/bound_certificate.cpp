@@ -37,7 +37,7 @@ class Verification {
         if (!verdict_.violations.empty()) return std::move(verdict_);
         build_arcs();
         if (!shortest_walks()) {
-            violated("a walk gains from a cycle without end: the multipliers prove no bound");
+            violated("a walk gains from an endless cycle: the multipliers prove no bound");
             return std::move(verdict_);
         }
         const double bound = combine();
@@ -85,7 +85,7 @@ class Verification {
 
     void check_multipliers() {
         if (certificate_.cone_multiplier.size() != scene_.cones.size())
-            violated("there is not one multiplier for each cone");
+            violated("the number of multipliers differs from the number of cones");
         const auto bad = [](double multiplier) { return !(multiplier >= 0.0 && std::isfinite(multiplier)); };
         if (std::ranges::any_of(certificate_.cone_multiplier, bad) || bad(certificate_.heading_multiplier) ||
             std::ranges::any_of(certificate_.cliques, bad, &BoundCertificate::Clique::multiplier)) {
@@ -113,7 +113,7 @@ class Verification {
             for (std::size_t k = 0; k < clique.edges.size(); ++k) {
                 const Edge& edge = clique.edges[k];
                 if (edge.i >= edge.j || edge.j >= scene_.cones.size()) {
-                    violated("a clique holds what is no edge");
+                    violated("a clique holds an invalid edge");
                     return;
                 }
                 for (std::size_t l = 0; l < k; ++l) {

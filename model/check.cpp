@@ -107,7 +107,7 @@ class Checker {
     [[nodiscard]] bool is_near(std::size_t cone) const {
         return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
     }
-    /// More edges may mend it.
+    /// More edges may repair it.
     void violated(std::string what) { report_.violations.push_back(std::move(what)); }
     void violated_for_good(std::string what) {
         violated(std::move(what));
@@ -118,7 +118,7 @@ class Checker {
         std::set<std::pair<std::size_t, std::size_t>> seen;
         for (const Edge& edge : graph_.edges) {
             if (edge.i >= scene_.cones.size() || edge.j >= scene_.cones.size()) {
-                violated_for_good("an edge ends in no cone of the scene");
+                violated_for_good("an edge ends at a cone that the scene does not have");
                 return false;
             }
             if (edge.i == edge.j) violated_for_good("edge " + name(edge) + " is a loop");

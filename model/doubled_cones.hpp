@@ -9,17 +9,16 @@
 
 namespace conelane {
 
-/// Finds the cones of a scene that are held twice: those that stand at most kDoubledCone_m apart. In a scene
-/// with many cones that are at most `radius_m` apart those are doubles, too: at least kMinFarDoubles, and at
-/// least one for each kMaxConesPerFarDouble cones that are left. Fewer may be chance: of 1036 scenes with 50
-/// % false positives none had one for each 18 cones. Keeps memory from call to call: once it is warm, nothing
-/// is allocated.
+/// Finds the cones of a scene that a map holds twice: cones at most kDoubledCone_m apart. Cones at most
+/// `radius_m` apart are doubles, too, if the scene has many of them: at least kMinFarDoubles, and at least
+/// one for each kMaxConesPerFarDouble cones that are left. Fewer may be chance: of 1036 scenes with 50 %
+/// false positives none had one for each 18 cones. Keeps memory from call to call: once it is warm, it
+/// allocates nothing.
 ///
-/// Cones are looked at from the car outward, equally far ones by their ids. A cone that stands within the
-/// radius of one that was kept is merged into it, of several into the nearest, of equally near ones into the
-/// one with the smallest id; else it is kept. So neither the order nor, but for ties, the ids of the scene's
-/// cones count, kept cones stand farther apart than that, and what is kept is a part of the scene: the cones
-/// that are left stay as they are.
+/// Cones are visited from the car outward (ties: by id). A cone within the radius of a kept cone is merged
+/// into the nearest one (ties: the smallest id); otherwise it is kept. So the order of the scene's cones does
+/// not matter, their ids matter for ties alone, kept cones are farther apart than the radius, and their
+/// positions stay unchanged.
 class DoubledCones {
   public:
     static constexpr double kMaxRadius_m = 0.4;
@@ -30,8 +29,8 @@ class DoubledCones {
     explicit DoubledCones(double radius_m) : radius_m_(radius_m) {}
 
     [[nodiscard]] double radius_m() const { return radius_m_; }
-    /// The scene with each cone once: `scene` itself where no cone is doubled, else a copy without the merged
-    /// ones, valid until the next call. Time n log n. Precondition: the scene is valid.
+    /// The scene with each cone once: `scene` itself if no cone is doubled, else a copy without the merged
+    /// cones, valid until the next call. Time n log n. Precondition: the scene is valid.
     [[nodiscard]] const Scene& merge(const Scene& scene);
     /// The cones that the last call merged, in the order of their ids.
     [[nodiscard]] const std::vector<MergedCone>& merged() const { return merged_; }
@@ -51,10 +50,10 @@ class DoubledCones {
 
     [[nodiscard]] static Cell cell_of(const Point& position);
     [[nodiscard]] std::size_t first_slot(const Cell& cell) const;
-    /// Sorts cones into kept and merged ones; returns how many of the merged ones stand farther than
+    /// Sorts cones into kept and merged ones; returns the number of merged cones that are farther than
     /// kDoubledCone_m from the cone that they were merged into.
     std::size_t merge_within(double radius_m, const std::vector<Cone>& cones);
-    /// The kept cone that a cone is merged into; kNone where there is none.
+    /// The kept cone that a cone is merged into; kNone if there is none.
     [[nodiscard]] std::size_t kept_near(double radius_m, const std::vector<Cone>& cones,
                                         const Point& position) const;
     void keep(const Point& position, std::size_t cone);

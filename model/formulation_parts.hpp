@@ -10,7 +10,7 @@
 
 namespace conelane {
 
-/// Where the variables of a problem stand in its program; -1 where a variable is left out.
+/// Columns of the variables of a problem in its program; -1 for a variable that is left out.
 struct ColumnMap {
     std::vector<int> edge;     ///< a_ij by problem edge
     std::vector<int> turn;     ///< f_ijk by problem turn
@@ -20,7 +20,7 @@ struct ColumnMap {
     std::vector<std::array<int, 2>> end;
 };
 
-/// What a constraint family works on.
+/// The arguments of a constraint family.
 struct FamilyContext {
     const LaneGraphProblem& problem;
     const ColumnMap& columns;
@@ -31,14 +31,14 @@ using ConstraintFamily = void (*)(const FamilyContext&);
 /// A formulation as a list of parts.
 struct FormulationParts {
     EdgeExtent extent;
-    bool high_cost_turns;  ///< f columns for forbidden turns too
+    bool high_cost_turns;  ///< f columns also for forbidden turns
     bool inliers;          ///< g columns
     bool far_marks;        ///< u columns
     bool path_ends;        ///< e columns
     bool all_integer;
-    /// Families whose rows depend on the number of cones alone; they come first.
+    /// Families whose rows depend only on the number of cones; they come first.
     std::span<const ConstraintFamily> fixed_families;
-    std::span<const ConstraintFamily> families;  ///< the others
+    std::span<const ConstraintFamily> families;  ///< the other families
 };
 [[nodiscard]] const FormulationParts& parts(Formulation formulation);
 

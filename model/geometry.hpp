@@ -7,7 +7,7 @@
 
 namespace conelane {
 
-/// Two lengths [m] closer than this count as equal, and so do a value and its limit; the one tolerance of
+/// Two lengths [m] closer than this count as equal, and so do a value and its limit; the only tolerance of
 /// MinDist and End, equation (7).
 inline constexpr double kTieTolerance = 1e-9;
 
@@ -46,21 +46,21 @@ struct SegmentDistance {
 /// Whether the ends of each lie on both sides of the other's line, farther than kTieTolerance from it.
 [[nodiscard]] bool segments_cross(const Segment& a, const Segment& b);
 
-/// Angle at `middle` between the rays to `a` and `b`, in [0, pi] rad; straight on is pi. 0 where a ray has no
+/// Angle at `middle` between the rays to `a` and `b`, in [0, pi] rad; straight on is pi. 0 if a ray has no
 /// length.
 [[nodiscard]] double interior_angle(const Point& a, const Point& middle, const Point& b);
 
-/// Signed angle from direction `before` to direction `after`, in (-pi, pi] rad, positive to the left; 0 where
-/// a direction has no length.
+/// Signed angle from direction `before` to direction `after`, in (-pi, pi] rad, positive to the left; 0 if a
+/// direction has no length.
 [[nodiscard]] double turning_angle(const Point& before, const Point& after);
 
 /// Sum of the segment lengths [m]; a closed polyline includes the segment from the last vertex to the first.
 [[nodiscard]] double polyline_length_m(std::span<const Point> vertices, bool closed = false);
 
-/// The point of a polyline nearest to a query. The first one along the polyline wins a tie.
+/// The point of a polyline nearest to a query. Ties: the first one along the polyline.
 struct PolylineFoot {
     Point point;
-    std::size_t segment;  ///< index of the segment's first vertex; 0 where there is one vertex only
+    std::size_t segment;  ///< index of the segment's first vertex; 0 if there is only one vertex
     double arc_length_m;  ///< along the polyline from its first vertex
     double distance_m;    ///< from the query
 };

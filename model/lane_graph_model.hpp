@@ -12,23 +12,24 @@
 
 namespace conelane {
 
-/// The binary program of a lane-graph problem, and the way back from its points to lane graphs. Sole owner of
-/// the column map. Refers to the problem of its making or last update, which must outlive its use.
+/// The binary program of a lane-graph problem, and the conversion of its points to lane graphs. It alone
+/// knows the columns of the variables. It refers to the problem of its construction or last update, which
+/// must outlive its use.
 class LaneGraphModel {
   public:
-    /// Of no problem yet.
+    /// Without a problem.
     explicit LaneGraphModel(Formulation formulation) : formulation_(formulation) {}
     /// Precondition: the problem was made with the extent that the formulation needs.
     LaneGraphModel(const LaneGraphProblem& problem, Formulation formulation);
 
-    /// Makes this the program of another problem, the same as built anew. With as many cones as before, the
-    /// paper formulation keeps its columns and the rows that depend on their number alone (most of them), and
-    /// writes costs and the other rows; the columns of the tight formulation depend on the scene, so only its
+    /// Makes this the program of another problem, equal to a new one. If the number of cones is the same, the
+    /// paper formulation keeps its columns and the rows that depend only on that number (most of them), and
+    /// writes costs and the other rows. The columns of the tight formulation depend on the scene, so only its
     /// memory is kept. Precondition as for the constructor.
     void update(const LaneGraphProblem& problem);
 
-    /// As above, or the limit that the building ran into: where the deadline passes, or problem or program
-    /// are too large (see is_too_large and kMaxProgramEntries), there is no program until the next update.
+    /// As above, or why construction stopped: if the deadline passes, or problem or program are too large
+    /// (see is_too_large and kMaxProgramEntries), there is no program until the next update.
     [[nodiscard]] std::optional<StopReason> update(const LaneGraphProblem& problem, const Deadline& deadline);
 
     [[nodiscard]] const BinaryProgram& program() const { return program_; }
@@ -36,8 +37,8 @@ class LaneGraphModel {
     /// The edges chosen by a point of the program (a_ij > 1/2).
     [[nodiscard]] LaneGraph decode(std::span<const double> point) const;
 
-    /// Rows of (5), and of the pairing near_far, that an integral point violates; empty where it is a lane
-    /// graph. Every candidate must pass this before it counts as a solution.
+    /// Rows of (5), and of the pairing near_far, that an integral point violates; empty for a lane graph.
+    /// Every candidate must pass this before it counts as a solution.
     [[nodiscard]] std::vector<ProgramRow> separate(std::span<const double> point) const;
 
   private:
@@ -51,7 +52,7 @@ class LaneGraphModel {
                                          const Deadline* deadline);
 
     const LaneGraphProblem* problem_ = nullptr;
-    /// Of the problem that the columns and the fixed rows were made for; absent where there is no program.
+    /// The number of cones that the columns and the fixed rows were made for; absent without a program.
     std::optional<std::size_t> problem_cones_;
     Formulation formulation_;
     ColumnMap columns_;

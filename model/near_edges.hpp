@@ -12,7 +12,7 @@
 
 namespace conelane {
 
-/// A segment with what its distances from many others need.
+/// A segment with data for its distances from many others.
 struct MeasuredSegment {
     MeasuredSegment(const Point& from_m, const Point& to_m)
         : from(from_m),
@@ -26,21 +26,22 @@ struct MeasuredSegment {
     double inverse_squared_length;
 };
 
-/// Whether two segments come closer than the limit, and nearer than any two of their ends are: with
-/// segment_distance, distance_m < limit_m and not between_ends. One test of thousands that a problem needs,
-/// so hardly a branch depends on the segments: a branch that is guessed wrong costs more than the sums.
+/// Whether two segments come closer than the limit, at a point where not both are ends: with
+/// segment_distance, distance_m < limit_m and not between_ends. A problem needs thousands of these tests, so
+/// the code avoids branches that depend on the segments: a mispredicted branch costs more than the
+/// arithmetic.
 [[nodiscard]] bool come_closer(const MeasuredSegment& a, const MeasuredSegment& b, double limit_m);
 
-/// Which of a problem's edges may come close to each other. Where both ends of an edge are out of reach on
-/// the same side of another one (left, right, behind or ahead), so is all of it: the codes of Cohen and
-/// Sutherland's line clipping, one for each cone around an edge, rule out most pairs of edges.
+/// Which of a problem's edges may come close to each other. If both ends of an edge are out of reach on the
+/// same side of another edge (left, right, behind or ahead), so is the whole edge. The codes of Cohen and
+/// Sutherland's line clipping, one for each cone around an edge, exclude most pairs of edges.
 class NearEdges {
   public:
-    /// Edges as a problem lists them: by their first cones. The scene and the edges must stay.
+    /// Edges as a problem lists them: by their first cones. The scene and the edges must outlive this object.
     NearEdges(const Scene& scene, std::span<const ProblemEdge> edges, double reach_m);
 
-    /// The later edges, ascending, without a cone of this one, that come within reach of it or cross it, and
-    /// some others. To be asked in ascending order; good until the next call.
+    /// The later edges, ascending, without a cone of this edge, that come within reach of it or cross it, and
+    /// some others. Call it in ascending order; the result is valid until the next call.
     [[nodiscard]] std::span<const std::size_t> after(std::size_t edge);
 
   private:
@@ -59,11 +60,11 @@ class NearEdges {
     double max_length_m_ = 0.0;
     std::vector<std::size_t> first_edge_;    ///< by cone, the first edge that begins at it or at a later one
     std::vector<unsigned> codes_;            ///< by cone
-    std::size_t around_ = kNone;             ///< the cone around which those below are gathered
-    std::span<const std::size_t> cones_;     ///< later ones
+    std::size_t around_ = kNone;             ///< the cone around which the following are gathered
+    std::span<const std::size_t> cones_;     ///< cones with larger indices
     std::span<const std::size_t> gathered_;  ///< edges between these cones
 
-    // Room for lists: one more than they may hold.
+    // Capacity of the lists: one more than their largest length.
     std::vector<unsigned char> is_gathered_;  ///< by later cone
     std::vector<std::size_t> cone_list_;
     std::vector<std::size_t> gathered_list_;

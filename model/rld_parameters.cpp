@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMaxLength_m = 1000.0;
 constexpr double kMaxWeight = 1e6;
-/// What a difference is divided by [m] or [rad]. By less than a millimetre, costs hang on rounding.
+/// What a difference is divided by [m] or [rad]. Below a millimetre, costs depend on rounding.
 constexpr double kMinThreshold = 1e-3;
 using P = RldParameters;
 

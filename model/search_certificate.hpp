@@ -10,17 +10,17 @@
 
 namespace conelane {
 
-/// What a whole search leaves behind, so that a plainer program can repeat its proof that no lane graph costs
-/// less than `bound`. Lagrange multipliers as in BoundCertificate, as whole numbers of 2^-24, stage by stage:
-/// with those of a stage, arcs and turns whose cheapest walks reach the bound are dropped, and the next stage
-/// starts from what is left. What is left after the last stage is enumerated, with the last stage's
+/// What a simpler program needs to repeat the proof of a search that no lane graph costs less than `bound`.
+/// It holds Lagrange multipliers as in BoundCertificate, as multiples of 2^-24, in stages: with the
+/// multipliers of a stage, arcs and turns whose cheapest walks reach the bound are dropped, and the next
+/// stage starts from the rest. What remains after the last stage is enumerated, with the last stage's
 /// multipliers as a bound.
 struct SearchCertificate {
     static constexpr int kFractionBits = 24;
-    using Units = std::int64_t;  ///< of 2^-24
-    /// A larger multiplier is none. Where one would have to be, the enumeration is left with more to do.
+    using Units = std::int64_t;  ///< multiples of 2^-24
+    /// Larger multipliers are not allowed; without one, the enumeration has more to do.
     static constexpr Units kMaxUnits = Units{1} << 62;
-    /// A bound or an objective of that size has no certificate: verifiers keep sums in 128 bits.
+    /// A bound or an objective of this size has no certificate: verifiers keep sums in 128 bits.
     static constexpr double kMaxBound = 1e12;
 
     struct Stage {
@@ -30,8 +30,8 @@ struct SearchCertificate {
     };
     /// All pairs of legs of one kind.
     struct Part {
-        /// Both legs go from near to far cones. With it, pairing `paper`: one leg joins two near cones and
-        /// the other goes from this far one to a far one of higher index.
+        /// If absent, both legs go from near to far cones. Otherwise, for the pairing `paper`: one leg joins
+        /// two near cones, and the other goes from this far cone to a far cone of higher index.
         std::optional<std::size_t> far_start;
         std::vector<std::vector<Edge>> cliques;  ///< of edges pairwise excluded
         std::vector<Stage> stages;               ///< at least one
@@ -39,7 +39,7 @@ struct SearchCertificate {
     std::vector<Part> parts;
     std::optional<LaneGraph> lane_graph;  ///< the best one found
     std::optional<double> objective;      ///< of it
-    /// No lane graph costs less; infinite where none exists.
+    /// No lane graph costs less; infinite if none exists.
     double bound = 0.0;
 };
 

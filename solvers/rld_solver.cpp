@@ -30,7 +30,7 @@ std::string fault(const LaneGraphProblem& problem, const SolveLimits& limits, co
         return claims_lane_graph ? "there is no lane graph" : "there is a lane graph without such a status";
     }
     if (report.status == SolveStatus::infeasible && known) {
-        return "the problem is said to have no lane graph, but the start is one";
+        return "the problem is claimed to have no lane graph, but the start is one";
     }
     if (report.bound && std::isnan(*report.bound)) return "the bound is not a number";
     std::optional<double> cheapest = known;
@@ -80,7 +80,7 @@ RldReport RldSolver::solve(const LaneGraphProblem& problem, const SolveLimits& l
     } catch (const std::exception& error) {
         fail(error.what());
     } catch (...) {
-        fail("the backend threw what is no std::exception");
+        fail("the backend threw something other than std::exception");
     }
     if (report.status != SolveStatus::error) {
         if (const std::string wrong = fault(problem, limits, report, known); !wrong.empty()) {

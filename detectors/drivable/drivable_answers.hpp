@@ -6,19 +6,18 @@
 
 namespace conelane {
 
-/// The same detector with answers that can be driven: a lane is `found` only where `drivable` gives it a
-/// point at least. Where it gives none, the status is `stopped` with a message: the detector's best lane is
-/// no lane to drive, which proves nothing of the others.
+/// The same detector, with answers that can be driven: a lane is `found` only if `drivable` gives it a point.
+/// Otherwise the status is `stopped` with a message: the detector's best lane cannot be driven, and nothing
+/// is proven about other lanes.
 ///
-/// A boundary that is seen alone may wander to the other one behind a gap, so that no lane lies beside it.
-/// Where that leaves no point, the boundary is cut before its first gap.
+/// A single boundary may wander to the opposite side behind a gap, so that no lane is beside it. If that
+/// leaves no point, the boundary is cut before its first gap.
 ///
-/// A lane without LaneAnswer::trusted_m gets one by rule, since nothing is known of its probability: up to
-/// where it leaves what was seen, and 10 m at most. That is the shortest of its length, the way to the first
-/// gap that is bridged, and that limit.
+/// A lane without LaneAnswer::trusted_m gets one by a rule, since its probability is unknown: the smallest of
+/// its length, the distance to the first bridged gap, and 10 m.
 ///
-/// It costs one call of `drivable`: about 0.1 ms for a view of 30 m, more for longer lanes. That call has the
-/// rest of the time limit, and 0.5 ms at least; where it takes longer the status is `stopped` by time.
+/// It costs one call of `drivable`: about 0.1 ms for a view of 30 m, more for longer lanes. That call gets
+/// the rest of the time limit, and at least 0.5 ms; if it takes longer, the status is `stopped` by time.
 [[nodiscard]] std::unique_ptr<LaneDetector> answer_drivable_lanes(std::unique_ptr<LaneDetector> detector);
 
 }  // namespace conelane

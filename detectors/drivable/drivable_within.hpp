@@ -7,7 +7,7 @@
 
 namespace conelane {
 
-/// The same as `drivable`; nothing where the deadline passes first, which is asked at least every half
+/// The same as `drivable`; nothing if the deadline passes first. The deadline is checked at least every half
 /// millisecond for lanes of up to a kilometre.
 [[nodiscard]] std::optional<DrivableLane> drivable_within(const Lane& lane, const Scene& scene,
                                                           const DrivableOptions& options,

@@ -7,11 +7,10 @@
 
 namespace conelane {
 
-/// The other boundary of a lane that is `width_m` wide and of which one boundary alone is known: a point
-/// across from every half metre of it, in driving order. Directions are taken over several metres, so that
-/// the inferred boundary does not leap where a cone turns the known one. Where a bend is so narrow that the
-/// points across run backwards or near the known boundary, they are left out. Precondition: the boundary is
-/// open.
+/// The unknown boundary of a lane that is `width_m` wide: a point opposite to every half metre of the known
+/// boundary, in driving order. Directions are averaged over several metres, so the inferred boundary does not
+/// jump where a cone turns the known one. In narrow bends, points that run backwards or come near the known
+/// boundary are left out. Precondition: the boundary is open.
 [[nodiscard]] std::vector<Point> inferred_boundary(const LaneBoundary& known, bool known_is_left,
                                                    double width_m);
 

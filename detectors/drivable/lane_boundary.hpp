@@ -8,11 +8,11 @@
 
 namespace conelane {
 
-/// One boundary of a lane as a polyline measured along its length. Places on it are arc lengths from its
-/// first vertex, on a closed one modulo its length.
+/// One boundary of a lane as a polyline, measured along its length. Positions on it are arc lengths from its
+/// first vertex; on a closed boundary modulo its length.
 class LaneBoundary {
   public:
-    /// Vertices at one place are taken together. Precondition: at least one vertex.
+    /// Vertices at one place are merged. Precondition: at least one vertex.
     LaneBoundary(const std::vector<Point>& vertices, bool closed);
 
     [[nodiscard]] const std::vector<Point>& vertices() const { return vertices_; }
@@ -25,20 +25,20 @@ class LaneBoundary {
     [[nodiscard]] double segment_end_m(std::size_t i) const { return arc_m_[i + 1]; }
     [[nodiscard]] double length_m() const { return arc_m_.back(); }
 
-    /// Distance of a point from what of the boundary is within `reach_m` of a place, measured along it.
+    /// Distance of a point from the part of the boundary within `reach_m` of a position, measured along it.
     [[nodiscard]] double distance_m(const Point& query, double place_m, double reach_m) const;
 
-    /// Distance along a ray to the first place where it meets that part of the boundary; touching counts.
+    /// Distance along a ray to its first intersection with that part of the boundary; touching counts.
     [[nodiscard]] std::optional<double> ray_hit_m(const Point& from, const Point& unit_direction,
                                                   double place_m, double reach_m) const;
 
   private:
-    /// Calls `visit` with the index of each segment that lies in part within `reach_m` of a place.
+    /// Calls `visit` with the index of each segment that is partly within `reach_m` of a position.
     template <typename Visit>
     void for_segments_near(double place_m, double reach_m, const Visit& visit) const;
 
     std::vector<Point> vertices_;
-    std::vector<double> arc_m_;  ///< at each vertex, of a closed boundary also back at the first
+    std::vector<double> arc_m_;  ///< at each vertex; for a closed boundary also back at the first one
     bool closed_;
 };
 

@@ -4,10 +4,10 @@
 
 namespace conelane {
 
-/// Thrown where the time for a drivable lane is over.
+/// Thrown when the time for a drivable lane is over.
 struct OutOfTime {};
 
-/// Ends what is at work by OutOfTime once the deadline has passed; without one it does nothing.
+/// Throws OutOfTime once the deadline has passed; does nothing without a deadline.
 class TimeCheck {
   public:
     TimeCheck() = default;
@@ -18,7 +18,7 @@ class TimeCheck {
     }
 
   private:
-#ifdef __wasi__  // there are no exceptions: what is at work, some milliseconds at most, ends by itself
+#ifdef __wasi__  // no exceptions here: the computation, some milliseconds at most, runs to its end
     static constexpr bool kEnds = false;
 #else
     static constexpr bool kEnds = true;

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-// The files beside this one, byte by byte as they were when the library was configured.
+// The files beside this one, byte by byte, embedded when the library was configured.
 extern const std::string_view kN12File;
 extern const std::string_view kContextFile;
 extern const std::string_view kShapeFile;

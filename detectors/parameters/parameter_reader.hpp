@@ -10,9 +10,9 @@
 
 namespace conelane {
 
-/// Sets the parameters that a flat JSON object has, and returns their keys. `fields`: what has `key` and
-/// `value`, a pointer to a member. `read_other(json, key)`: reads the value of another key, false where there
-/// is none. Throws InvalidInput naming the key, or the line of what is no JSON.
+/// Sets the parameters that a flat JSON object has, and returns their keys. An element of `fields` has `key`
+/// and `value`, a pointer to a member. `read_other(json, key)` reads the value of another key and returns
+/// false for an unknown key. Throws InvalidInput naming the key, or the line that is not JSON.
 template <typename Parameters, typename Fields, typename ReadOther>
 std::set<std::string, std::less<>> read_parameters(std::string_view file, const Fields& fields,
                                                    Parameters& parameters, const ReadOther& read_other) {
@@ -24,7 +24,7 @@ std::set<std::string, std::less<>> read_parameters(std::string_view file, const 
         if (field != std::ranges::end(fields)) {
             parameters.*(field->value) = json.number();
         } else if (!read_other(json, key)) {
-            throw InvalidInput(key, "is no parameter");
+            throw InvalidInput(key, "is not a parameter");
         }
     });
     json.require_end();

@@ -14,23 +14,23 @@
 
 namespace conelane {
 
-/// The cones of a run: where they stand on the average of what was seen, and how sure they are.
+/// The cones of a run: their mean positions, and how certain each one is.
 ///
-/// A cone is known again by its id, or by its place where it has none or a new one. Where all cones have
-/// moved at once, the memory moves with them and says so.
+/// A cone is recognised by its id, or by its place if it has no id or a new one. If all cones have moved at
+/// once, the memory moves with them and reports the shift.
 class ConeMemory {
   public:
     explicit ConeMemory(const ConeMemorySettings& settings = {}, const ShiftSettings& shift_settings = {});
 
-    /// Takes a frame in. Precondition: it is valid. Returns the shift of the map that it shows.
+    /// Adds a frame. Precondition: it is valid. Returns the shift of the map that it shows.
     std::optional<RigidShift> observe(const Frame& frame);
 
-    /// What a detector is given: the cones seen in the last frame, and those seen twice at least that stand
-    /// ahead or little behind. Their ids are the memory's own, all negative, the same as long as the cone is
-    /// remembered.
+    /// The cones for a detector: those seen in the last frame, and those seen at least twice that are ahead
+    /// or a little behind. Their ids are the memory's own, all negative, and stay the same as long as the
+    /// cone is remembered.
     [[nodiscard]] Scene scene(const Pose& pose) const;
 
-    /// The id that the car gave a cone; the memory's own where it gave none.
+    /// The id that the car gave a cone; the memory's own id if it gave none.
     [[nodiscard]] ConeId given_id(ConeId own) const;
 
     struct RememberedCone {
@@ -39,7 +39,7 @@ class ConeMemory {
         Point position{0.0, 0.0};
         int sightings = 1;
         double evidence = 1.0;
-        std::int64_t last_seen = 0;   ///< frame
+        std::int64_t last_seen = 0;   ///< number of the frame
         double confidence = 1.0;      ///< mean
         std::array<int, 4> colors{};  ///< sightings in each color
     };
@@ -59,10 +59,10 @@ class ConeMemory {
     std::vector<RememberedCone> cones_;  ///< by id
     std::int64_t frame_ = 0;
     ConeId next_id_ = kNoId + 1;
-    double range_m_ = 0.0;  ///< of the last frame: the farthest cone
+    double range_m_ = 0.0;  ///< of the last frame: distance of the farthest cone
 };
 
-/// The color that was seen most; unknown where none was.
+/// The color that was seen most often; unknown if none was seen.
 [[nodiscard]] ConeColor color_of(const ConeMemory::RememberedCone& cone);
 
 }  // namespace conelane

@@ -10,24 +10,24 @@
 
 namespace conelane {
 
-/// The centre line where the car has driven: once it has come round, the closed course.
+/// The centre line where the car has driven; after a lap, the closed course.
 ///
-/// It always holds the last lap: what the car passes replaces what was there, so that a changed course is
-/// known after the car has driven it once.
+/// It always holds the last lap: the lane at the car replaces the old part of the course, so a changed course
+/// is known after it was driven once more.
 class CourseMemory {
   public:
     CourseMemory(const CourseSettings& settings, double step_m) : settings_(settings), step_m_(step_m) {}
 
-    /// Takes in the lane at the car. `lane` begins at the car; without points the record is interrupted.
+    /// Adds the lane at the car. `lane` begins at the car; a lane without points interrupts the record.
     void record(const DrivableLane& lane);
     void move_along(const RigidShift& shift);
     void clear();
 
     [[nodiscard]] bool closed() const { return closed_; }
-    /// The circuit from its first recorded point on; absent before it is closed.
+    /// The circuit from its first recorded point on; absent until it is closed.
     [[nodiscard]] std::optional<DrivableLane> course() const;
-    /// The course from the car on, laid through where the lane is at the car; no points before it is closed,
-    /// or where the car is off it.
+    /// The course from the car on, shifted to the lane at the car; no points until it is closed, or if the
+    /// car is off it.
     [[nodiscard]] DrivableLane ahead(const Pose& pose, double length_m) const;
 
   private:

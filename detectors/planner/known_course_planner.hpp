@@ -6,14 +6,14 @@
 
 namespace conelane {
 
-/// Acceleration and skidpad: courses whose shape the rules give. The shape is registered to the cones, and
-/// the lane is the route of the rules from the car on, 1.5 m wide to either side (acceleration: as wide as
+/// Acceleration and skidpad: the rules give the shape of the course. The shape is registered to the cones,
+/// and the lane is the route of the rules from the car on, 1.5 m wide to each side (acceleration: as wide as
 /// the cones show).
 ///
-/// The detector runs only until the registration is trusted; `Plan::answer` has its default afterwards.
-/// `Plan::lap` counts the circles of the skidpad that are complete, and is 0 in acceleration.
-/// `PlannerOptions::laps` must be absent. A frame that is not later than the last one changes nothing: it has
-/// the last plan, as bridging instead of following where it is older.
+/// The detector runs only until the registration is trusted; after that `Plan::answer` has its default.
+/// `Plan::lap` counts the completed circles of the skidpad, and is 0 in acceleration. `PlannerOptions::laps`
+/// must be absent. A frame that is not later than the last one changes nothing: the last plan is returned, as
+/// bridging instead of following if the frame is older.
 [[nodiscard]] std::unique_ptr<Planner> make_known_course_planner(const PlannerOptions& options);
 
 }  // namespace conelane

@@ -8,33 +8,33 @@
 
 namespace conelane {
 
-/// Where the lines of an acceleration are along its lane: its boundaries do not tell.
+/// Finds the lines of an acceleration along its lane, which the boundaries do not determine.
 ///
-/// A gate is two cones behind each other at either side, orange ones where colors are known. Each frame says
-/// of places along the lane how much of a gate stands there; what is known of the start counts too. Places
-/// are x coordinates of the registration, which must not change along x.
+/// A gate is two cones behind each other on each side, orange ones if colors are known. Each frame adds
+/// evidence for gates at places along the lane; knowledge of the start counts too. Places are x coordinates
+/// of the registration, which must not change along x.
 class GateEvidence {
   public:
-    /// `finish_m`: from start line to finish.
+    /// `finish_m`: distance from start line to finish.
     explicit GateEvidence(double finish_m);
 
     /// Counts the cones of one frame.
     void observe(const Registration& registration, const Frame& frame, const SeenView& seen);
 
-    /// Where the start line is, as an x coordinate; the likeliest place. Ties: the smaller one.
+    /// x coordinate of the start line: the likeliest place. Ties: the smaller one.
     [[nodiscard]] double start_line_m() const { return start_line_m_; }
-    /// A gate has been seen at the finish, where start_line_m() says that it is.
+    /// Whether a gate was seen at the finish that belongs to start_line_m().
     [[nodiscard]] bool has_seen_finish() const { return has_seen_finish_; }
 
     void clear();
 
   private:
-    /// What was seen at one place along the lane.
+    /// Evidence at one place along the lane.
     struct Place {
         double x_m = 0.0;
-        double cones = 0.0;   ///< of a gate here, weighted sum over the frames
-        double weight = 0.0;  ///< of these frames; 0: never in view
-        double off_m = 0.0;   ///< of their mean from x_m, likewise
+        double cones = 0.0;   ///< cones of a gate here, weighted sum over the frames
+        double weight = 0.0;  ///< weight of these frames; 0: never in view
+        double off_m = 0.0;   ///< mean offset of these cones from x_m, weighted likewise
 
         [[nodiscard]] bool is_known() const;
         [[nodiscard]] double mean_cones() const { return cones / weight; }
@@ -42,7 +42,7 @@ class GateEvidence {
     void decide();
 
     double finish_m_;
-    /// How far frames looked so far: where no cone stands behind a gate, its own frame does not tell.
+    /// How far frames have looked so far: a frame without a cone behind a gate does not show it.
     double range_m_ = 0.0;
     double bearing_rad_ = 0.0;
     std::vector<Place> start_;

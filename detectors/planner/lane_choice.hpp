@@ -8,21 +8,20 @@
 
 namespace conelane {
 
-/// Decides between the lane driven by and a new one that jumps away from it near the car.
+/// Decides between the lane driven so far and a new one that jumps away from it near the car.
 ///
-/// Each frame speaks for a lane with a weight, the probability that its detector gives. What spoke for the
-/// lane driven by, settings.max_support at most, has to be outweighed by what speaks for the new one, in two
-/// frames at least. So frames that are little sure lead nowhere, and a wrong lane is left after some frames.
+/// Each frame supports a lane with a weight, the probability that its detector gives. The support of a new
+/// lane, from at least two frames, has to exceed that of the lane driven so far, which is at most
+/// settings.max_support. So uncertain frames change nothing, and a wrong lane is left after some frames.
 class LaneChoice {
   public:
     explicit LaneChoice(const LaneChoiceSettings& settings) : settings_(settings) {}
 
-    /// Whether a lane goes on where the one driven by went, or that has too little left to say. `left`: what
-    /// is left of the lane driven by; without points there is none.
+    /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
+    /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
-    /// Whether `fresh`, for which the frame speaks with `weight`, is driven by from now on. `kept_weight`:
-    /// with which the frame speaks for the lane driven by where `fresh` does not agree with it, 0 where it
-    /// does not.
+    /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
+    /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.
     [[nodiscard]] bool take(const DrivableLane& fresh, const DrivableLane& left, double weight = 1.0,
                             double kept_weight = 0.0);
     void move_along(const RigidShift& shift);
@@ -32,7 +31,7 @@ class LaneChoice {
     [[nodiscard]] bool is_spent(const DrivableLane& left) const;
 
     LaneChoiceSettings settings_;
-    double support_ = 0.0;  ///< weights of the frames that spoke for the lane driven by
+    double support_ = 0.0;  ///< weights of the frames that support the lane driven so far
     std::optional<DrivableLane> challenger_;
     double challenger_support_ = 0.0;
     int challenger_frames_ = 0;

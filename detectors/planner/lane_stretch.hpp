@@ -7,37 +7,37 @@
 
 namespace conelane {
 
-/// The place of a car on a lane: the nearest point that runs within 90 degrees of the car's heading.
+/// The place of a car on a lane: the nearest point whose direction is within 90 degrees of the car's heading.
 struct LaneFoot {
     double s_m = 0.0;
     double offset_m = 0.0;  ///< distance of the car
 };
-/// Among what lies between two arc lengths; nothing where no point of it runs with the car.
+/// The same in a range of arc lengths; nothing if no point of it runs with the car.
 [[nodiscard]] std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m,
                                               double to_s_m);
 
-/// The point at an arc length: between two points straight on, on a closed lane around. Precondition: the
-/// lane has a point.
+/// The point at an arc length, interpolated linearly; a closed lane is periodic. Precondition: the lane has a
+/// point.
 [[nodiscard]] DrivablePoint point_at(const DrivableLane& lane, double s_m);
 
-/// What of a lane lies between two arc lengths, as an open lane that begins at 0; of a closed one once around
-/// at most. No points where that is shorter than a step.
+/// The lane restricted to a range of arc lengths, as an open lane that begins at 0; at most once around a
+/// closed lane. No points if the range is shorter than a step.
 [[nodiscard]] DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, double step_m);
 
-/// How far apart two open lanes are within an arc length of the first one, as far as both go [m].
+/// Distance of two open lanes within an arc length of the first one, where both exist [m].
 [[nodiscard]] double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m);
 
-/// The lane with a beginning at the car where it begins ahead: along `before`, the lane driven so far, where
-/// that leads to it, else in one bend from the car. Nothing where it is too far ahead or aside to be joined.
+/// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
+/// leads to it, else in one bend from the car. Nothing if it is too far ahead or aside to be joined.
 [[nodiscard]] std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
                                                        const DrivableLane* before, double step_m);
 
-/// The lane, and where it ends what `before` knows to follow, if that runs into it smoothly.
+/// The lane, extended at its end by `before`, if that continues it smoothly.
 [[nodiscard]] DrivableLane extended(const DrivableLane& lane, const DrivableLane& before, double step_m);
 
-/// The lane, its first metres drawn halfway aside to `before`, the lane driven so far, where both run nearly
-/// the same way: what noise moves from frame to frame moves half as much. Where they are far apart, and where
-/// the lane would come near a boundary, it stays.
+/// The lane with its first metres moved halfway towards `before`, the lane driven so far, where both have
+/// nearly the same direction: this halves the noise from frame to frame. It stays where they are far apart,
+/// and where it would come near a boundary.
 [[nodiscard]] DrivableLane steadied(const DrivableLane& lane, const DrivableLane& before, double step_m);
 
 }  // namespace conelane

@@ -12,19 +12,19 @@ namespace conelane {
 
 /// Counts the start lines that the car crosses.
 ///
-/// The line is the gate of orange cones that the first lane passes, else the place of the first pose, across
-/// its heading. It counts when the car passes it in its direction, and again after the car was away.
+/// The line is the gate of orange cones that the first lane passes, or else the place of the first pose,
+/// across its heading. It counts when the car passes it in its direction, and again after the car was away.
 class LapCounter {
   public:
     explicit LapCounter(const CourseSettings& settings) : settings_(settings) {}
 
-    /// Takes in where the car is now. `lane`: the lane ahead; without points it is not known.
+    /// Adds the car's pose. `lane`: the lane ahead; without points it is unknown.
     void observe(const Pose& pose, const DrivableLane& lane, const ConeMemory& memory);
     void move_along(const RigidShift& shift);
     void clear();
 
     [[nodiscard]] int laps() const { return laps_; }
-    /// Driven since the last line that counted [m].
+    /// Distance driven since the last counted line [m].
     [[nodiscard]] double since_line_m() const { return since_line_m_; }
 
   private:

@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// Trackdrive and autocross: laps of a course that is not known before.
+/// Trackdrive and autocross: laps of a course that is not known in advance.
 [[nodiscard]] std::unique_ptr<Planner> make_lap_planner(const PlannerOptions& options);
 
 }  // namespace conelane

@@ -6,56 +6,57 @@ namespace conelane {
 
 /// The constants of the memory of cones.
 struct ConeMemorySettings {
-    double place_gate_m = 0.5;    ///< a cone without id is the remembered one that stands this near
-    double new_id_gate_m = 0.3;   ///< the same, of a cone whose id is new: two true cones stand farther apart
-    double same_id_gate_m = 1.5;  ///< farther from the place remembered, an id means another cone
-    double doubled_m = 0.35;      ///< remembered cones that stand this near are one cone
-    int averaged_sightings = 12;  ///< over which a position is averaged; fewer follow drift sooner
-    double max_evidence = 4.0;    ///< sightings that count; a cone that was taken away is kept for so long
-    double missed_evidence = 0.5;  ///< what a miss takes away; a cone without evidence is forgotten
+    double place_gate_m = 0.5;     ///< a cone without id is the remembered cone within this distance
+    double new_id_gate_m = 0.3;    ///< the same for a cone with a new id: two true cones are farther apart
+    double same_id_gate_m = 1.5;   ///< farther from the remembered place, an id means another cone
+    double doubled_m = 0.35;       ///< remembered cones within this distance are one cone
+    int averaged_sightings = 12;   ///< number of sightings in a mean position; fewer follow drift sooner
+    double max_evidence = 4.0;     ///< largest number of counted sightings; so long a removed cone is kept
+    double missed_evidence = 0.5;  ///< cost of a miss in sightings; a cone without evidence is forgotten
     double sure_view_share =
         0.85;                  ///< of the farthest cone and the widest bearing seen: a cone within is in view
-    double blind_m = 2.0;      ///< about the car no cone is expected to be seen
-    int fleeting_frames = 10;  ///< a cone seen once is forgotten after so many frames
-    double max_range_m = 30.0;     ///< of the scene that a detector is given
-    double behind_m = 5.0;         ///< of the car, cones are in the scene still
-    std::size_t max_cones = 3000;  ///< remembered; those seen longest ago are forgotten first
+    double blind_m = 2.0;      ///< within this distance of the car no cone is expected to be seen
+    int fleeting_frames = 10;  ///< a cone seen once is forgotten after this many frames
+    double max_range_m = 30.0;  ///< range of the scene for the detector
+    double behind_m = 5.0;      ///< cones up to this distance behind the car are in the scene
+    std::size_t max_cones =
+        3000;  ///< largest number of remembered cones; those seen longest ago are forgotten first
 };
 
 /// The constants of a shift of all cones at once.
 struct ShiftSettings {
-    double reach_m = 1.25;     ///< the farthest shift that is looked for
-    double inlier_m = 0.3;     ///< a cone moved with the others to within this
-    double min_shift_m = 0.2;  ///< a smaller one is left to the averages
+    double reach_m = 1.25;     ///< largest shift that is searched
+    double inlier_m = 0.3;     ///< a cone within this distance has moved with the others
+    double min_shift_m = 0.2;  ///< smaller shifts are left to the averages
     std::size_t min_cones = 5;
-    double min_share = 0.6;  ///< of the cones compared
+    double min_share = 0.6;  ///< share of the compared cones
 };
 
 /// The constants of the choice between a new lane and the last one.
 struct LaneChoiceSettings {
-    double near_m = 8.0;         ///< a jump within this arc length ahead of the car needs a second opinion
-    double jump_m = 0.9;         ///< between the lines of two frames: half the narrowest lane, less the noise
-    double max_support = 6.0;    ///< weights of frames that speak for a lane: so much replaces it
-    double unsure_weight = 0.4;  ///< of a frame whose detector gives no probability
-    double min_kept_weight = 0.02;  ///< a candidate that is less probable says nothing
-    double course_weight = 0.3;     ///< of the lap before, in each frame
-    double course_ahead_m = 20.0;   ///< of it that is looked at
-    double min_left_m = 3.0;        ///< a lane of which less is left holds nothing back
-    double max_offset_m = 2.5;      ///< car to path: farther away it is not on it
+    double near_m = 8.0;  ///< a jump within this arc length ahead of the car has to be confirmed
+    double jump_m = 0.9;  ///< distance of the lines of two frames: half the narrowest lane, less the noise
+    double max_support = 6.0;       ///< largest support of a lane, in weights of frames
+    double unsure_weight = 0.4;     ///< weight of a frame whose detector gives no probability
+    double min_kept_weight = 0.02;  ///< a less probable candidate does not count
+    double course_weight = 0.3;     ///< weight of the lap before, in each frame
+    double course_ahead_m = 20.0;   ///< length of the lap before that is compared
+    double min_left_m = 3.0;        ///< a lane with a shorter rest does not resist a new one
+    double max_offset_m = 2.5;      ///< distance from car to path: farther away, the car is off it
 };
 
 /// The constants of the course and of laps.
 struct CourseSettings {
-    double step_m = 0.5;           ///< between the points recorded
-    double min_length_m = 40.0;    ///< shorter ones are no circuit
+    double step_m = 0.5;           ///< between recorded points
+    double min_length_m = 40.0;    ///< shorter circuits do not count
     double max_length_m = 2000.0;  ///< the rules allow 500 m a lap in trackdrive and 1.5 km in autocross
-    double closing_m = 1.5;        ///< of the lane from the course recorded, along closing_length_m
-    double closing_rad = 0.6;      ///< and of its heading
+    double closing_m = 1.5;        ///< distance of the lane from the recorded course, along closing_length_m
+    double closing_rad = 0.6;      ///< and difference of their headings
     double closing_length_m = 6.0;
-    double line_half_width_m = 4.0;  ///< of the start line, from its middle
-    double line_away_m = 8.0;        ///< from the line before it counts again
-    double gate_within_m = 20.0;     ///< of the first pose: farther orange cones are no start line
-    double stop_m = 30.0;            ///< after the last line, by the rules
+    double line_half_width_m = 4.0;  ///< half width of the start line, from its middle
+    double line_away_m = 8.0;        ///< distance from the line before it counts again
+    double gate_within_m = 20.0;  ///< distance from the first pose: farther orange cones are not a start line
+    double stop_m = 30.0;         ///< length to stop after the last line, by the rules
 };
 
 }  // namespace conelane

@@ -9,21 +9,21 @@
 
 namespace conelane {
 
-/// The lane that the car drives by, and what is left of it.
+/// The lane that the car drives by, and its remaining part.
 class PathMemory {
   public:
     explicit PathMemory(const LaneChoiceSettings& settings, double step_m, double max_age_s)
         : settings_(settings), step_m_(step_m), max_age_s_(max_age_s) {}
 
-    /// Takes a lane that begins at the car.
+    /// Sets the lane, which begins at the car.
     void remember(const DrivableLane& lane, double time_s);
     void move_along(const RigidShift& shift);
     void forget() { lane_.reset(); }
 
-    /// The lane from the car on: no points where there is none, it is too old, or the car is off it or at its
+    /// The lane from the car on: no points if there is none, it is too old, or the car is off it or at its
     /// end.
     [[nodiscard]] DrivableLane left(const Pose& pose, double time_s);
-    /// Of the frame that the lane stems from.
+    /// Age of the frame that the lane is from.
     [[nodiscard]] double time_s() const { return time_s_; }
 
   private:
@@ -32,7 +32,7 @@ class PathMemory {
     double max_age_s_;
     std::optional<DrivableLane> lane_;
     double time_s_ = 0.0;
-    double reached_m_ = 0.0;  ///< along it
+    double reached_m_ = 0.0;  ///< arc length that the car has reached
 };
 
 }  // namespace conelane

@@ -10,7 +10,7 @@
 
 namespace conelane {
 
-/// A movement of the map: a turn about a place, then a translation.
+/// A movement of the map: a rotation about a place, then a translation.
 struct RigidShift {
     Point about{0.0, 0.0};
     double turn_rad = 0.0;
@@ -22,19 +22,18 @@ struct RigidShift {
 /// The same lane in the moved map.
 void move(DrivableLane& lane, const RigidShift& shift);
 
-/// A place as remembered and as seen now.
+/// The place of a cone as remembered and as seen now.
 struct PlacePair {
     Point remembered;
     Point seen;
 };
 
-/// The shift that most of the pairs share, where it is above what noise explains; absent where the cones
-/// stand where they stood, are too few, or moved apart.
+/// The shift that most of the pairs share, if it exceeds noise; absent if the cones have not moved, are too
+/// few, or moved differently.
 [[nodiscard]] std::optional<RigidShift> common_shift(std::span<const PlacePair> pairs,
                                                      const ShiftSettings& settings);
 
-/// The same where nothing says which cone is which: the translation that brings most of the seen cones onto
-/// remembered ones.
+/// The same without known pairs: the translation that brings most of the seen cones onto remembered ones.
 [[nodiscard]] std::optional<RigidShift> common_shift(std::span<const Point> remembered,
                                                      std::span<const Point> seen,
                                                      const ShiftSettings& settings);

@@ -7,28 +7,28 @@
 
 namespace conelane {
 
-/// A cone as it was seen in one frame or more.
+/// A cone seen in one or more frames.
 struct SeenCone {
     Point position{0.0, 0.0};              ///< mean, map frame
-    ConeColor color = ConeColor::unknown;  ///< the last one seen that is known
+    ConeColor color = ConeColor::unknown;  ///< the last known color seen
     int sightings = 0;
-    double last_s = 0.0;  ///< time of the last frame that had it
+    double last_s = 0.0;  ///< time of the last frame with it
 };
 
-/// Where a frame looked, as far as its cones tell.
+/// The region that a frame looked at, estimated from its cones.
 struct SeenView {
     Pose pose;
-    double range_m = 0.0;      ///< of the farthest cone
-    double bearing_rad = 0.0;  ///< of the cone farthest from the heading
+    double range_m = 0.0;      ///< distance of the farthest cone
+    double bearing_rad = 0.0;  ///< bearing of the cone farthest from the heading
 
-    /// Whether a cone there would be in view beyond doubt.
+    /// Whether a cone at this place would certainly be in view.
     [[nodiscard]] bool covers(const Point& place) const;
 };
 
 /// The view of a frame.
 [[nodiscard]] SeenView view_of(const Frame& frame);
 
-/// Cones of the last frames, told apart by their places: ids may change.
+/// Cones of the last frames, identified by their places: ids may change.
 class SeenCones {
   public:
     void observe(const Frame& frame);

@@ -179,7 +179,7 @@ class Verification {
         for (const std::vector<Edge>& clique : part.cliques) {
             for (std::size_t k = 0; k < clique.size(); ++k) {
                 const auto edge = exact_.find(clique[k]);
-                if (!edge) return "a clique holds what is no edge";
+                if (!edge) return "a clique holds an invalid edge";
                 for (std::size_t l = 0; l < k; ++l) {
                     if (!exact_.excluded[*edge][exact_.find(clique[l]).value()])
                         return "a clique holds two edges that may go together";
@@ -187,7 +187,8 @@ class Verification {
             }
         }
         for (const SearchCertificate::Stage& stage : part.stages) {
-            if (stage.cone.size() != scene_.cones.size()) return "there is not one multiplier for each cone";
+            if (stage.cone.size() != scene_.cones.size())
+                return "the number of multipliers differs from the number of cones";
             const auto bad = [](SearchCertificate::Units units) {
                 return units < 0 || units > SearchCertificate::kMaxUnits;
             };
@@ -197,7 +198,7 @@ class Verification {
             }
             if (std::ranges::any_of(stage.clique,
                                     [&](const auto& price) { return price.first >= part.cliques.size(); })) {
-                return "a multiplier is of no clique";
+                return "a multiplier belongs to no clique";
             }
         }
         return {};

@@ -13,27 +13,29 @@
 
 namespace conelane {
 
-/// A whole number of 2^-60; throws std::overflow_error and std::range_error instead of wrapping around.
+/// A multiple of 2^-60; throws std::overflow_error and std::range_error instead of wrapping around.
 using Exact = boost::multiprecision::checked_int128_t;
 inline constexpr int kExactFractionBits = 60;
 
 /// The number, rounded down. Precondition: finite.
 [[nodiscard]] Exact exact_below(double value);
 
-/// A scene as rational numbers: what may be part of a lane graph, and at least what it costs. An arc is an
-/// edge with a direction, 2 e from its cone of lower index to the other one and 2 e + 1 back.
+/// A scene as rational numbers: the edges and turns that a lane graph may have, and lower bounds of their
+/// costs. An arc is an edge with a direction: 2 e from its cone of lower index to the other one, and 2 e + 1
+/// back.
 struct ExactScene {
     struct Succession {
         std::size_t arc;  ///< the next one
         Exact cost;       ///< of the turn
     };
 
-    std::vector<Edge> edges;  ///< that alone violate nothing for good
+    std::vector<Edge> edges;  ///< edges that break no final constraint by themselves
     std::vector<Exact> edge_cost;
-    std::vector<bool> along_heading;                   ///< (9)
-    std::vector<boost::dynamic_bitset<>> excluded;     ///< by edge: those that no lane graph has with it
+    std::vector<bool> along_heading;  ///< (9)
+    std::vector<boost::dynamic_bitset<>>
+        excluded;  ///< by edge: edges that no lane graph has together with it
     std::vector<std::vector<Succession>> successions;  ///< by arc
-    std::vector<Exact> end_cost;                       ///< by cone, where a path ends there
+    std::vector<Exact> end_cost;                       ///< by cone: the cost if a path ends there
     std::vector<bool> near;
     std::vector<std::vector<bool>> partners;  ///< by two far cones: within d_max of each other (17)
 
@@ -43,7 +45,7 @@ struct ExactScene {
     [[nodiscard]] std::size_t head(std::size_t arc) const {
         return arc % 2 == 0 ? edges[arc / 2].j : edges[arc / 2].i;
     }
-    /// At least what an edge costs, if it may be part of a lane graph.
+    /// A lower bound of the cost of an edge that may be part of a lane graph.
     [[nodiscard]] std::optional<std::size_t> find(const Edge& edge) const;
     /// More than any lane graph costs.
     [[nodiscard]] Exact cost_limit() const;

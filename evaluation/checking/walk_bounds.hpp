@@ -9,11 +9,12 @@
 
 namespace conelane {
 
-/// Where the two legs of a pair begin and end. One kind where both legs are alike, else a kind each.
+/// Where the two legs of a pair begin and end. One kind if both legs are alike, else two.
 struct LegKinds {
     std::vector<std::vector<bool>> start;  ///< by kind and cone
     std::vector<std::vector<bool>> end;
-    const std::vector<std::vector<bool>>* partners = nullptr;  ///< of ends; any go together where absent
+    const std::vector<std::vector<bool>>* partners =
+        nullptr;  ///< of ends; if absent, any two ends may be combined
 
     [[nodiscard]] std::size_t count() const { return start.size(); }
     [[nodiscard]] std::size_t other(std::size_t kind) const { return count() == 1 ? 0 : 1 - kind; }
@@ -26,20 +27,20 @@ struct WalkPrices {
     Exact offset = 0;  ///< constant part of the relaxed constraints
 };
 
-/// Arcs and turns that walks may use. The arcs stand in the order in which walks from a start reach them.
+/// Arcs and turns that walks may use, in the order in which walks from a start reach them.
 struct WalkGraph {
     struct Turn {
-        std::size_t to;  ///< place of the next arc
+        std::size_t to;  ///< position of the next arc
         Exact cost;
     };
-    std::vector<std::size_t> arc;  ///< of the exact scene, by place
+    std::vector<std::size_t> arc;  ///< arc of the exact scene, by position
     std::vector<std::vector<Turn>> turns;
 };
 
-/// All that a start reaches, breadth first.
+/// All arcs that a start reaches, breadth first.
 [[nodiscard]] WalkGraph all_walks(const ExactScene& scene, const LegKinds& kinds);
 
-/// The cost of a walk; nothing where there is none.
+/// The cost of a walk; nothing if there is none.
 using WalkCost = std::optional<Exact>;
 [[nodiscard]] inline WalkCost sum(const WalkCost& a, const Exact& b) {
     return a ? WalkCost(*a + b) : std::nullopt;
@@ -47,22 +48,22 @@ using WalkCost = std::optional<Exact>;
 [[nodiscard]] inline WalkCost sum(const WalkCost& a, const WalkCost& b) {
     return b ? sum(a, *b) : std::nullopt;
 }
-/// Whether the first is the cheaper one.
+/// Whether the first one is cheaper.
 [[nodiscard]] inline bool cheaper(const WalkCost& a, const WalkCost& b) {
     return a && (!b || *a < *b);
 }
 
-/// Cheapest walks by the rounds of Bellman and Ford.
+/// Cheapest walks, by the rounds of Bellman and Ford.
 class WalkBounds {
   public:
     WalkBounds(const ExactScene& scene, const LegKinds& kinds, WalkPrices prices);
 
-    /// False where a walk gains from a cycle. The graph must stay while the results are used.
+    /// Returns false if a walk gains from a cycle. The graph must outlive the use of the results.
     bool find(const WalkGraph& graph);
 
-    /// No pair of walks costs less; the most that an Exact holds where there is none.
+    /// No pair of walks costs less; the largest Exact if there is none.
     [[nodiscard]] Exact bound() const;
-    /// What may be part of a pair of walks that costs less than the limit.
+    /// Arcs and turns that may be part of a pair of walks that costs less than the limit.
     [[nodiscard]] WalkGraph below(const WalkGraph& graph, const Exact& limit) const;
 
     [[nodiscard]] const Exact& offset() const { return prices_.offset; }
@@ -72,7 +73,7 @@ class WalkBounds {
     [[nodiscard]] WalkCost start(std::size_t kind, std::size_t place) const;
     /// What ending a leg with the arc costs.
     [[nodiscard]] WalkCost end(std::size_t kind, std::size_t place) const;
-    /// Cheapest way on from the arc to an end, whatever the other leg does.
+    /// Cheapest continuation from the arc to an end, for any other leg.
     [[nodiscard]] std::vector<WalkCost> onward(std::size_t kind) const;
     [[nodiscard]] const WalkCost& forward(std::size_t kind, std::size_t place) const {
         return forward_[kind][place];

@@ -10,13 +10,13 @@
 
 namespace conelane {
 
-/// A file that appears under its name whole or not at all: it is written under a temporary name in the same
-/// folder and renamed by `commit`. Destroyed without `commit`, or where a signal ends the program, it leaves
-/// the target as it was. A target that is no regular file, such as a pipe or /dev/stdout, is written
+/// A file that appears under its name complete or not at all: it is written under a temporary name in the
+/// same folder and renamed by `commit`. If it is destroyed without `commit`, or a signal ends the program,
+/// the target stays unchanged. A target that is not a regular file, such as a pipe or /dev/stdout, is written
 /// directly.
 class AtomicFile {
   public:
-    /// Throws InputError naming the target where it cannot be written.
+    /// Throws InputError naming the target if it cannot be written.
     explicit AtomicFile(const std::filesystem::path& target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -24,19 +24,19 @@ class AtomicFile {
 
     [[nodiscard]] std::ostream& stream() { return stream_; }
 
-    /// Closes the file, which is then whole under its temporary name. Throws InputError naming the target
-    /// where it could not be written to its end, be it that the disk is full.
+    /// Closes the file, which is then complete under its temporary name. Throws InputError naming the target
+    /// if it could not be written completely, for example on a full disk.
     void finish();
-    /// Finishes the file and gives it its name. Throws InputError naming the target where that fails.
+    /// Finishes the file and gives it its name. Throws InputError naming the target if that fails.
     void commit();
-    /// Finishes all files, and only then gives them their names, in their order. No signal comes in between.
-    /// Where one cannot have its name, those before it get back what was there.
+    /// Finishes all files, and then gives them their names, in their order. Signals are held back meanwhile.
+    /// If one rename fails, the earlier targets get their old content back.
     friend void commit_together(std::span<AtomicFile* const> files);
 
   private:
     std::filesystem::path target_;     ///< as the caller spelled it, for messages
     std::filesystem::path place_;      ///< where the file goes: the target with symbolic links followed
-    std::filesystem::path temporary_;  ///< empty where the target is written directly or is in place
+    std::filesystem::path temporary_;  ///< empty if the target is written directly or is complete
     std::optional<ClearOnInterruption> clearing_;  ///< of the temporary file
     bool is_open_ = true;
     OutputStream stream_;
@@ -44,12 +44,12 @@ class AtomicFile {
 
 void commit_together(std::span<AtomicFile* const> files);
 
-/// Removes what a program that was killed left in a folder under temporary names. Precondition: no other
-/// program writes there.
+/// Removes temporary files that a killed program left in a folder. Precondition: no other program writes
+/// there.
 void remove_abandoned_files(const std::filesystem::path& folder);
 
-/// Throws InputError as writing the target would, and leaves it as it was. Pipes and devices are left alone:
-/// opening one may end what reads it.
+/// Throws InputError as writing the target would, without changing it. Pipes and devices are not opened:
+/// opening one may end its reader.
 void require_writable(const std::filesystem::path& target);
 
 }  // namespace conelane

@@ -34,7 +34,7 @@ CertificateRecord read_record(const JsonNode& json) {
     const auto infeasible = json.find("infeasible");
     if (bound) record.bound = bound->number();
     if (infeasible && infeasible->boolean()) {
-        if (bound) bound->fail("must be left out where the scene is called infeasible");
+        if (bound) bound->fail("must be left out if the scene is called infeasible");
         record.bound = kInfinity;
     }
     if (const auto nearest = json.find("nearest")) {

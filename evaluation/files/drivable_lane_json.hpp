@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// Adds `trusted_m` and `inferred` where they are known, `bridged` and `points` to an object.
+/// Adds `trusted_m` and `inferred` if they are known, `bridged` and `points` to an object.
 void put_drivable_lane(nlohmann::ordered_json& json, const DrivableLane& lane);
 
 }  // namespace conelane

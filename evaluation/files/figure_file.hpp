@@ -12,11 +12,11 @@ namespace conelane {
 /// JSON Lines of figures that a command measured, each with commit, compiler and machine.
 class FigureFile {
   public:
-    /// Throws InputError naming the file where it cannot be written, here and in `commit`.
+    /// Throws InputError naming the file if it cannot be written, here and in `commit`.
     explicit FigureFile(const std::filesystem::path& file) : output_(file), origin_(provenance()) {}
 
     void add(nlohmann::ordered_json figures);
-    /// Gives the file its name; without it there is none.
+    /// Gives the file its name; without this call there is no file.
     void commit() { output_.commit(); }
 
   private:

@@ -10,7 +10,7 @@
 
 namespace conelane {
 
-/// The whole file. Throws InputError naming it where it cannot be read.
+/// The whole file. Throws InputError naming it if it cannot be read.
 [[nodiscard]] inline std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
@@ -19,7 +19,7 @@ namespace conelane {
     return text.str();
 }
 
-/// `parse(text)` of the file, whose InvalidInput comes out as an InputError in that file.
+/// `parse(text)` of the file; its InvalidInput is rethrown as an InputError in that file.
 template <typename Parse>
 auto parsed_file(const std::filesystem::path& file, const Parse& parse) {
     try {

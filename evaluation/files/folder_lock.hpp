@@ -5,11 +5,12 @@
 
 namespace conelane {
 
-/// The only one that writes into a folder, until destroyed or until the process ends, however it ends. The
-/// empty file `.lock` that carries the lock stays there: removing it would let two hold a lock of that name.
+/// Exclusive right to write into a folder, until destroyed or until the process ends in any way. The empty
+/// file `.lock` carries the lock and stays there: removing it would let two processes hold a lock of that
+/// name.
 class FolderLock {
   public:
-    /// Throws InputError naming the folder where another process, or another lock of this one, has it.
+    /// Throws InputError naming the folder if another process, or another lock of this process, has it.
     explicit FolderLock(const std::filesystem::path& folder);
     ~FolderLock();
     FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}

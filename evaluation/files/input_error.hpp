@@ -7,10 +7,10 @@
 
 namespace conelane {
 
-/// Bad input in a file: what() is one line "FILE:LINE: KEY: REASON" (parts without a value left out).
+/// Bad input in a file: what() is one line "FILE:LINE: KEY: REASON", without absent parts.
 class InputError : public std::runtime_error {
   public:
-    /// `line` counts from 1; 0 stands for none.
+    /// `line` counts from 1; 0 for no line.
     InputError(const std::filesystem::path& file, std::size_t line, const std::string& key,
                const std::string& reason)
         : std::runtime_error(message(file, line, key, reason)) {}

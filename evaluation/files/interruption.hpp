@@ -6,8 +6,8 @@
 
 namespace conelane {
 
-/// Something to clear away should a signal end the program, from its making to its destruction. `clear` runs
-/// in another thread while `hold_interruption` is held there.
+/// Cleans up if a signal ends the program, from its construction to its destruction. `clear` runs in another
+/// thread, never while `hold_interruption` is held.
 class ClearOnInterruption {
   public:
     explicit ClearOnInterruption(std::function<void()> clear);
@@ -19,14 +19,13 @@ class ClearOnInterruption {
     std::list<std::function<void()>>::iterator entry_;
 };
 
-/// While it is held, no signal ends the program: for making a temporary file and saying so in one step.
+/// While it is held, no signal ends the program: for making and registering a temporary file in one step.
 [[nodiscard]] std::unique_lock<std::recursive_mutex> hold_interruption();
 
-/// From here on SIGINT, SIGTERM and SIGHUP clear away what was registered, print one line on stderr and end
-/// the program by that signal; those that the program was started to ignore are left ignored. Call it once,
-/// before any other thread starts: the signals are blocked in all threads and waited for in one of its own,
-/// so that no handler of a library sees them. Programs that are started meanwhile are started with them
-/// blocked.
+/// From here on SIGINT, SIGTERM and SIGHUP run the registered cleanup, print one line on stderr and end the
+/// program by that signal; signals that the program was started to ignore stay ignored. Call it once, before
+/// any other thread starts: the signals are blocked in all threads and one thread waits for them, so no
+/// handler of a library sees them. Programs started later inherit the blocked signals.
 void end_cleanly_on_signals();
 
 }  // namespace conelane

@@ -1,4 +1,4 @@
-// Private to the readers and writers of experiments/: the one header that includes all of nlohmann's.
+// Private to the readers and writers: the only header that includes all of nlohmann's.
 #pragma once
 
 #include "conelane/invalid_input.hpp"
@@ -21,11 +21,11 @@ namespace conelane {
 
 struct JsonOrigin {
     std::filesystem::path file;
-    std::size_t line = 0;  ///< 0 where a value is not tied to a line
+    std::size_t line = 0;  ///< 0 if a value has no line
 };
 
-/// A JSON value and how it was reached, so that every error names file, line and key. Refers to the value and
-/// its origin, which must outlive it. All readings throw InputError where the value is not what they say.
+/// A JSON value and the path to it, so that every error names file, line and key. Refers to the value and its
+/// origin, which must outlive it. All readers throw InputError if the value has another type.
 class JsonNode {
   public:
     JsonNode(const nlohmann::json& value, const JsonOrigin& origin, std::string key = {})
@@ -46,8 +46,7 @@ class JsonNode {
     [[nodiscard]] const std::string& string() const;
     /// Index of the name that the JSON spells.
     [[nodiscard]] std::size_t index_in(std::span<const std::string_view> names) const;
-    /// The value out of `choices` that `to_string`, found by argument-dependent look-up, spells like the
-    /// JSON.
+    /// The value of `choices` that `to_string`, found by argument-dependent look-up, spells like the JSON.
     template <typename Choice, std::size_t count>
     [[nodiscard]] Choice one_of(const std::array<Choice, count>& choices) const;
     void require_object() const;
@@ -72,11 +71,11 @@ Choice JsonNode::one_of(const std::array<Choice, count>& choices) const {
     return choices[index_in(names)];
 }
 
-/// Calls `read` with the object of each line that is not blank, in order. Throws InputError where the file
-/// cannot be read or a line is no JSON object.
+/// Calls `read` with the object of each line that is not blank, in order. Throws InputError if the file
+/// cannot be read or a line is not a JSON object.
 void for_each_json_line(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
-/// The same for one line that was read already, by its number. `file` is named in errors.
+/// The same for one line that was read before, with its number. Errors name `file`.
 void with_json_line(std::string_view text, const std::filesystem::path& file, std::size_t line,
                     const std::function<void(const JsonNode&)>& read);
 
@@ -86,24 +85,24 @@ void with_json_file(const std::filesystem::path& file, const std::function<void(
 /// The same for a file that holds a list.
 void with_json_list_file(const std::filesystem::path& file, const std::function<void(const JsonNode&)>& read);
 
-/// The same for a text that stands for the file.
+/// The same for a text in place of the file.
 void with_json_text(std::string_view text, const std::filesystem::path& file,
                     const std::function<void(const JsonNode&)>& read);
 
-/// Whether a line holds nothing; such lines are passed over.
+/// Whether a line is blank; blank lines are skipped.
 [[nodiscard]] bool is_blank(std::string_view line);
 
-/// JSON on one line, keys in their order, bytes that are no UTF-8 replaced.
+/// JSON on one line, keys in their order; bytes that are not UTF-8 are replaced.
 [[nodiscard]] std::string to_line(const nlohmann::ordered_json& json);
 
-/// What an InvalidInput says without its key.
+/// The reason of an InvalidInput, without its key.
 [[nodiscard]] std::string reason_of(const InvalidInput& error);
 
-/// The value itself. Throws InvalidInput naming `key` where it is not finite: JSON has no such number.
+/// The value itself. Throws InvalidInput naming `key` if it is not finite: JSON has no such number.
 [[nodiscard]] double require_finite(double value, const std::string& key);
 
-/// Sets `json["bound"]` to a proven lower bound, or leaves it out where that is minus infinity. `key` names
-/// it in the InvalidInput that any other number without a finite value gives.
+/// Sets `json["bound"]` to a proven lower bound, or leaves it out if that is minus infinity. For any other
+/// number that is not finite it throws InvalidInput naming `key`.
 void put_bound(nlohmann::ordered_json& json, double bound, const std::string& key);
 
 }  // namespace conelane

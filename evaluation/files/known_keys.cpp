@@ -51,8 +51,9 @@ void require_known_keys(const JsonNode& object, std::span<const std::string_view
     for (const std::string& key : object.keys()) {
         if (std::ranges::find(keys, key) != keys.end()) continue;
         const std::string_view meant = closest_name(key, keys);
-        object.member(key).fail(meant.empty() ? fmt::format("is no key here, only {}", fmt::join(keys, ", "))
-                                              : fmt::format("is no key here; {} is", meant));
+        object.member(key).fail(meant.empty()
+                                    ? fmt::format("is not a key here, only {}", fmt::join(keys, ", "))
+                                    : fmt::format("is not a key here; {} is", meant));
     }
 }
 

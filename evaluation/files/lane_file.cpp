@@ -103,7 +103,7 @@ void read_answer(const JsonNode& json, bool may_be_without_shape, LaneRecord& re
     const bool found = answer.status == LaneStatus::found;
     read_shape(json, !found && may_be_without_shape, record);
     if (!found) {
-        const std::string reason = "must be empty where status is " + std::string(to_string(answer.status));
+        const std::string reason = "must be empty if status is " + std::string(to_string(answer.status));
         if (!answer.lane.left.empty()) json.member("left").fail(reason);
         if (!answer.lane.right.empty()) json.member("right").fail(reason);
         if (record.points && !record.points->left.empty()) json.member("left_points").fail(reason);

@@ -8,8 +8,8 @@
 
 namespace conelane {
 
-/// The parameters of a detector from a text that stands for the file: one flat object, a number for each of
-/// delaunay_beam_fields(). Throws InputError naming file and key where one is missing or out of its range.
+/// The parameters of a detector from the text of a file: one flat object, a number for each of
+/// delaunay_beam_fields(). Throws InputError naming file and key if one is missing or out of its range.
 [[nodiscard]] DelaunayBeamParameters parse_delaunay_beam_parameters(std::string_view text,
                                                                     const std::filesystem::path& file);
 /// The same for astar_lane_fields().

@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// Like std::ofstream, but it remembers why a write failed.
+/// Like std::ofstream, but keeps the reason of a failed write.
 class OutputStream : public std::ostream {
   public:
     OutputStream() : std::ostream(nullptr) { rdbuf(&buffer_); }
@@ -15,15 +15,14 @@ class OutputStream : public std::ostream {
     void open(const std::filesystem::path& file, std::ios::openmode mode);
     [[nodiscard]] bool is_open() const { return buffer_.is_open(); }
     void close();
-    /// Throws InputError naming `file` where a write, a flush or the closing failed, with the reason that the
-    /// system gave.
+    /// Throws InputError naming `file` if a write, a flush or the closing failed, with the system's reason.
     void require_written(const std::filesystem::path& file) const;
 
   private:
     class Buffer : public std::filebuf {
       public:
         [[nodiscard]] int reason() const { return reason_; }
-        /// Runs a write, and keeps errno where it is the first that failed.
+        /// Runs a write, and keeps errno if it is the first failure.
         template <typename Write, typename Succeeded>
         auto watched(const Write& write, const Succeeded& succeeded);
 
@@ -33,7 +32,7 @@ class OutputStream : public std::ostream {
         int sync() override;
 
       private:
-        int reason_ = 0;  ///< errno of the first failure; 0 where there was none
+        int reason_ = 0;  ///< errno of the first failure; 0 without a failure
     };
     Buffer buffer_;
 };

@@ -13,8 +13,8 @@ namespace conelane {
 
 class JsonNode;
 
-/// By which parameters a claim was made, so that nobody checks it by others. Files of earlier versions and of
-/// other programs may not say it: then a part is absent.
+/// The parameters of a claim, so that it is not checked with others. Files of earlier versions and of other
+/// programs may lack parts of it.
 struct ParameterTag {
     std::optional<std::string> name;  ///< for people: a shipped set or a file, `default` without --params
     std::optional<std::string> hash;  ///< of all parameters but the pairing, 16 hexadecimal digits

@@ -9,7 +9,7 @@ namespace conelane {
 
 /// Free-format MPS with the names of the labels; integer columns between INTORG and INTEND markers, all
 /// bounds written out. Numbers are the shortest text that reads back as the same double. Throws InvalidInput
-/// where the program has no column or two columns, or two rows, have one name.
+/// if the program has no column, or two columns or two rows have the same name.
 void write_mps(std::ostream& out, const BinaryProgram& program, std::string_view name);
 
 /// CPLEX LP format; integer columns in the section Binaries. Columns appear in their order, also those

@@ -90,7 +90,7 @@ class Lines {
             if (remarks_.status == Status::unknown && word != "unknown")
                 fail("=status= must be optimal, feasible, infeasible or unknown");
         } else {
-            fail("is no line of a solution: " + key);
+            fail("is not a line of a solution: " + key);
         }
     }
 
@@ -144,7 +144,7 @@ SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
     if (head.starts_with("Optimal")) {
         solution.status = Status::optimal;
     } else if (head.starts_with("Stopped")) {
-        // "Stopped on time (no integer solution - continuous used)": what follows is no incumbent.
+        // "Stopped on time (no integer solution - continuous used)": the rest is not an incumbent.
         if (head.find("no integer solution") != std::string::npos) return solution;
         solution.status = Status::feasible;
     } else {
@@ -337,7 +337,7 @@ SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) 
     } else if (has_remarks || text.starts_with('#') || names_a_column(text, program)) {
         solution = read_miplib(lines, program);
     } else {
-        lines.fail("is no first line of a solution by CBC, GLPK, HiGHS or SCIP, nor of a MIPLIB .sol");
+        lines.fail("is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
     }
     while (lines.next()) {  // what stands behind the last line that its format has
     }

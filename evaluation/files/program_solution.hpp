@@ -10,11 +10,11 @@
 
 namespace conelane {
 
-/// What a solver's program wrote into a solution file.
+/// The content of a solution file.
 struct SolutionFile {
     enum class Status { optimal, feasible, infeasible, unknown };
     Status status = Status::unknown;
-    std::vector<double> point;        ///< by column of the program; empty without one
+    std::vector<double> point;        ///< by column of the program; empty without a point
     std::optional<double> objective;  ///< as written
     std::optional<double> bound;      ///< as written: a lower bound of the program's optimum
     std::optional<std::int64_t> nodes;
@@ -33,12 +33,12 @@ struct SolutionFile {
 /// status
 ///   is feasible.
 ///
-/// Lines =KEY= VALUE may stand anywhere: =obj= VALUE and =infeas= as in MIPLIB, and what a format cannot say:
-/// =status= optimal|feasible|infeasible|unknown, which goes before the format's, =bound= VALUE, =nodes=
-/// COUNT, =ms= MILLISECONDS, =solver= NAME VERSION. A file of such lines alone is a solution too.
+/// Lines =KEY= VALUE may be anywhere: =obj= VALUE and =infeas= as in MIPLIB, and for what a format cannot
+/// express: =status= optimal|feasible|infeasible|unknown, which replaces the format's, =bound= VALUE, =nodes=
+/// COUNT, =ms= MILLISECONDS, =solver= NAME VERSION. A file with only such lines is a solution too.
 ///
-/// Columns that are not named are 0. Throws InvalidInput whose key is "line N" where the text is none of
-/// these, speaks of columns that the program does not have, names one twice, or has a value that is no finite
+/// Unnamed columns are 0. Throws InvalidInput whose key is "line N" if the text has none of these formats,
+/// names a column that the program does not have or a column twice, or has a value that is not a finite
 /// number.
 [[nodiscard]] SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program);
 

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// Where a result comes from.
+/// Origin of a result.
 struct Provenance {
     std::string
         commit;  ///< of the sources; ends in "-dirty" where they were changed, "unknown" outside a checkout

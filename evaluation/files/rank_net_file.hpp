@@ -14,7 +14,7 @@ namespace conelane {
 [[nodiscard]] RankNetWeights parse_rank_net(std::string_view json);
 
 /// The file, such that parse_rank_net gives the same weights to the last bit. `training`: a JSON object.
-/// Throws InvalidInput where the weights are none that make_rank_net takes or `training` is no JSON.
+/// Throws InvalidInput if make_rank_net refuses the weights or `training` is not JSON.
 [[nodiscard]] std::string rank_net_json(const RankNetWeights& weights, std::string_view training);
 
 }  // namespace conelane

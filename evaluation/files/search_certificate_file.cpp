@@ -75,7 +75,7 @@ Record read_record(const JsonNode& json) {
     const auto infeasible = json.find("infeasible");
     record.bound = bound ? bound->number() : -kInfinity;
     if (infeasible && infeasible->boolean()) {
-        if (bound) bound->fail("must be left out where the scene is called infeasible");
+        if (bound) bound->fail("must be left out if the scene is called infeasible");
         record.bound = kInfinity;
     }
     const JsonNode parts = json.member("parts");

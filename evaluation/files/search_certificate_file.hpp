@@ -33,30 +33,30 @@ struct SearchCertificateRecord {
     std::string scene;
     std::optional<std::vector<EdgeById>> edges;  ///< of the lane graph
     std::optional<double> objective;
-    /// Infinite where it is claimed that no lane graph exists, minus infinity where nothing is claimed.
+    /// Infinite if it is claimed that no lane graph exists, minus infinity if nothing is claimed.
     double bound = 0.0;
     std::vector<Part> parts;
-    std::optional<std::size_t> nearest;  ///< size of the cone set; absent: all cones, or it is not said
-    ParameterTag parameters = {};        ///< of the costs that it is about
-    std::size_t line = 0;                ///< in the file that was read; 0 where no file was read
+    std::optional<std::size_t> nearest;  ///< size of the cone set; absent: all cones, or unknown
+    ParameterTag parameters = {};        ///< parameters of the costs
+    std::size_t line = 0;                ///< line in the file that was read; 0 without a file
 };
 
 [[nodiscard]] SearchCertificateRecord to_search_record(const Scene& scene,
                                                        const SearchCertificate& certificate);
 
-/// Nothing where the record names a cone that is not in the scene; `missing` is then its id.
+/// Nothing if the record names a cone that is not in the scene; `missing` is then its id.
 [[nodiscard]] std::optional<SearchCertificate> from_search_record(const Scene& scene,
                                                                   const SearchCertificateRecord& record,
                                                                   ConeId& missing);
 
-/// Whether the first record is one of a whole search; false where there is none, or no file.
+/// Whether the first record is one of a whole search; false without a record or a file.
 [[nodiscard]] bool holds_search_certificates(const std::filesystem::path& file);
 
 /// Records in the order of the file. Throws InputError naming file, line and key.
 [[nodiscard]] std::vector<SearchCertificateRecord> read_search_certificates(
     const std::filesystem::path& file);
 
-/// Throws InputError where the file cannot be written. An old file then stays as it was.
+/// Throws InputError if the file cannot be written. An old file then stays unchanged.
 void write_search_certificates(const std::filesystem::path& file,
                                std::span<const SearchCertificateRecord> records);
 

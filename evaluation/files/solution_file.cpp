@@ -41,7 +41,7 @@ SolutionRecord read_record(const JsonNode& json) {
     record.status = status.string() == kOldStopped ? kStopped : kStatuses[status.index_in(kStatuses)];
     record.edges = read_edges(json.member("edges"));
     if (!record.edges.empty() && record.status != "optimal" && record.status != "feasible") {
-        json.member("edges").fail("must be empty where status is " + record.status);
+        json.member("edges").fail("must be empty if status is " + record.status);
     }
     if (const auto message = json.find("message")) record.message = message->string();
     if (const auto objective = json.find("objective")) record.objective = objective->number();

@@ -13,10 +13,10 @@ namespace conelane {
 [[nodiscard]] StepScores parse_step_scores(std::string_view json);
 
 /// The file, such that parse_step_scores gives the same scores to the last bit. `training`: a JSON object.
-/// Throws InvalidInput where the scores are not valid or `training` is no JSON.
+/// Throws InvalidInput if the scores are invalid or `training` is not JSON.
 [[nodiscard]] std::string step_scores_json(const StepScores& scores, std::string_view training);
 
-/// The `training` of such a file. Throws as parse_step_scores, of which it reads no more.
+/// The `training` of such a file. Throws as parse_step_scores, but reads only this part.
 [[nodiscard]] std::string step_scores_training(std::string_view json);
 
 /// The file of the scores that come with the library.

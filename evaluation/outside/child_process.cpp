@@ -268,7 +268,7 @@ std::string fault_of(ChildProcess::Outcome outcome, double limit_ms) {
         case ChildProcess::Outcome::too_long:
             return fmt::format("more than {} bytes without a newline", ChildProcess::kMaxLine);
         case ChildProcess::Outcome::closed_input:
-            return "the program reads no more";
+            return "the program does not read its input";
         case ChildProcess::Outcome::closed_output:
             return "the program ended";
         case ChildProcess::Outcome::line:

@@ -5,14 +5,15 @@
 
 namespace conelane {
 
-/// Makes the program of a problem whole: adds columns and rows of a flow that stand for the rows that are
-/// otherwise added on demand, no cycles (5) and the pairing, of which there are too many to write them out.
+/// Completes the program of a problem: columns and rows of a flow replace the rows that are otherwise added
+/// on demand, no cycles (5) and the pairing, which are too many to write them all.
 ///
-/// Each cone of degree A_i takes A_i / 2 of a flow that runs along chosen edges only (y_i_j, from cone i to
-/// cone j) and comes from the ends of paths (s_i), under the pairing near_far from near ones alone. A cycle
-/// has no end and takes, and so does a path between two far ends: neither can be fed. Two per edge and one
-/// per possible source, all continuous, so the program's integer points are the lane graphs, each with its
-/// cost. Precondition: `program` was built from the problem, in either formulation (columns a_i_j).
+/// Each cone of degree A_i takes A_i / 2 of a flow that runs along chosen edges (y_i_j, from cone i to cone
+/// j) and comes from the ends of paths (s_i); with the pairing near_far only from near ends. A cycle has no
+/// end but takes flow, and so does a path between two far ends: both are infeasible. There are two columns
+/// for each edge and one for each possible source, all continuous, so the program's integer points are the
+/// lane graphs with their costs. Precondition: `program` was built from the problem, in either formulation
+/// (columns a_i_j).
 void add_connecting_flow(BinaryProgram& program, const LaneGraphProblem& problem);
 
 }  // namespace conelane

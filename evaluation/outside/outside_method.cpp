@@ -122,7 +122,7 @@ std::optional<OutsideMethod> parse_outside_method(std::string_view text) {
     method.source = text.substr(equals + 1);
     if (!is_name(method.name)) {
         throw InvalidInput("method",
-                           fmt::format("'{}' is no name for {}: letters, digits and ._+- only, at most {}",
+                           fmt::format("'{}' is not a name for {}: letters, digits and ._+- only, at most {}",
                                        method.name, form, kMaxName));
     }
     if (const auto card = card_path(method)) method.card = read_method_card(*card);

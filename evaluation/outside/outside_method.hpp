@@ -8,7 +8,7 @@
 
 namespace conelane {
 
-/// What the author of a method says of it in a file `*.method.json`. What is not said is absent.
+/// The description of a method by its author, in a file `*.method.json`. Missing keys are absent.
 struct MethodCard {
     std::optional<std::string> name;
     std::optional<std::string> address;
@@ -17,7 +17,7 @@ struct MethodCard {
     std::optional<bool> history_used;  ///< from scene to scene of a lap
     std::optional<std::vector<std::string>> training_courses;
 
-    /// One line for a table's foot: "ft-fsd-path-planning; MIT; no color; ...".
+    /// One line below a table: "ft-fsd-path-planning; MIT; no color; ...".
     [[nodiscard]] std::string summary() const;
 };
 
@@ -35,24 +35,24 @@ struct OutsideMethod {
     [[nodiscard]] bool is_program() const { return kind == Kind::program; }
 };
 
-/// What `exec:NAME=COMMAND` or `lanes:NAME=FILE` names, with its card; nothing where the text is neither.
-/// Throws InvalidInput where the name is missing or has other letters than a file name may have; InputError
-/// where the card is wrong.
+/// The method that `exec:NAME=COMMAND` or `lanes:NAME=FILE` names, with its card; nothing for other texts.
+/// Throws InvalidInput if the name is missing or has characters that a file name may not have; InputError if
+/// the card is wrong.
 [[nodiscard]] std::optional<OutsideMethod> parse_outside_method(std::string_view text);
 
-/// Methods as a user lists them: split at commas, but `exec:` takes the rest of its text, so that a command
-/// may hold commas.
+/// Methods as a user lists them: separated by commas, but `exec:` takes the rest of its text, so a command
+/// may contain commas.
 [[nodiscard]] std::vector<std::string> split_methods(const std::vector<std::string>& texts);
 
-/// The card of a method: X.method.json beside the lanes file X.lanes.jsonl, or beside a file X.ANYTHING that
-/// a word of the command names, the first where there is one. Nothing where there is none.
+/// The card of a method: X.method.json beside the lanes file X.lanes.jsonl, or beside the first file
+/// X.ANYTHING in the command that has one. Nothing if there is none.
 [[nodiscard]] std::optional<std::filesystem::path> card_path(const OutsideMethod& method);
 
 /// Throws InputError naming file and key.
 [[nodiscard]] MethodCard read_method_card(const std::filesystem::path& file);
 
-/// For the record of a run: one method, or the array of methods that a record holds under "methods", of which
-/// those from outside are returned.
+/// For the record of a run: a method as JSON, and the methods from outside in the array "methods" of a
+/// record.
 [[nodiscard]] std::string outside_method_json(const OutsideMethod& method);
 [[nodiscard]] std::vector<OutsideMethod> outside_methods_of_record(const std::string& run_record);
 

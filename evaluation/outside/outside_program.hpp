@@ -14,24 +14,23 @@
 
 namespace conelane {
 
-/// How long a program from outside is waited for [ms].
+/// Limits for waiting for a program from outside [ms].
 struct OutsideLimits {
     double answer_ms = 2000.0;
     double start_ms = 20000.0;  ///< from its start to its first answer, which is not counted
     double end_ms = 1000.0;     ///< from the end of its input to its own end
-    /// A program that answers nothing any more is left alone for the rest of the lap after so many failures
-    /// in a row, or when they have taken so long.
+    /// After this many failures in a row, or failures of this duration, a program is not asked for the rest
+    /// of the lap.
     int failures = 20;
     double lost_ms = 20000.0;
 };
 
 /// A program that answers scene after scene over standard input and output (see
-/// docs/methods-from-outside.md). Whatever it does, each scene gets an answer: one of status error where the
-/// program crashed, was late, wrote nonsense or named cones that there are not. Then it is started again for
-/// the next scene.
+/// docs/methods-from-outside.md). Each scene gets an answer: one of status error if the program crashed, was
+/// late, wrote an invalid line or named unknown cones. It is then started again for the next scene.
 ///
-/// Each start is followed by an untimed answer to the scene at hand, so that no latency holds the loading of
-/// code, and by a reset.
+/// After each start the current scene is asked once without timing, so no latency includes the loading of
+/// code, and a reset follows.
 class OutsideProgram {
   public:
     OutsideProgram(std::string name, std::string command, const OutsideLimits& limits = {});
@@ -42,11 +41,11 @@ class OutsideProgram {
     /// Latency is the round trip: from the scene in memory to the lane in memory. A scene that was not asked
     /// counts with the limit.
     [[nodiscard]] LaneRecord answer(const Scene& scene);
-    /// What follows is another lap.
+    /// Another lap begins.
     void reset();
 
   private:
-    /// An answer, or what went wrong.
+    /// An answer, or the reason of a failure.
     struct Attempt {
         std::optional<LaneRecord> record;
         std::string fault;
@@ -63,21 +62,21 @@ class OutsideProgram {
     std::unique_ptr<ChildProcess> child_;
     std::int64_t asked_ = 0;  ///< the ids that the program sees are this running number
     int failures_ = 0;        ///< since its last answer
-    double lost_ms_ = 0.0;    ///< by these
+    double lost_ms_ = 0.0;    ///< time lost by these failures
     std::string last_fault_;
     bool has_answered_ = false;
     bool is_left_alone_ = false;
-    int laps_to_wait_ = 0;  ///< until it is tried again
-    int next_wait_ = 1;     ///< doubles with each lap that it is tried in vain
+    int laps_to_wait_ = 0;  ///< number of laps until it is tried again
+    int next_wait_ = 1;     ///< doubles with each lap in which it fails again
 };
 
-/// The processes of one program, as many as threads ask at a time.
+/// The processes of one program: as many as threads use at a time.
 class OutsideProgramPool {
   public:
     OutsideProgramPool(std::string name, std::string command)
         : name_(std::move(name)), command_(std::move(command)) {}
 
-    /// One that nobody uses; it is told of the next lap.
+    /// An unused process; it is told of the next lap.
     [[nodiscard]] std::unique_ptr<OutsideProgram> take();
     void give_back(std::unique_ptr<OutsideProgram> program);
 

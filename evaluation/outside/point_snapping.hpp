@@ -8,23 +8,22 @@
 
 namespace conelane {
 
-/// A point this near to a cone stands for the cone [m].
+/// A point within this distance of a cone represents the cone [m].
 inline constexpr double kSnapReach_m = 0.3;
 
-/// Turns boundaries that are points into cones where every point of both is within kSnapReach_m of one: the
-/// nearest, of two equally near the one that comes first in the scene; a cone that its boundary has already
-/// is not taken again. Where a point is at no cone, the record keeps its points. Other records stay as they
-/// are.
+/// Turns boundaries that are points into cones if every point of both is within kSnapReach_m of a cone: the
+/// nearest cone, ties by their order in the scene; no cone twice in a boundary. If a point is at no cone, the
+/// record keeps its points. Other records stay unchanged.
 void snap_to_cones(LaneRecord& record, const Scene& scene);
 
-/// What makes an answer from outside no answer to the scene: a cone that is not there, one that is twice in a
-/// boundary, more than kMaxPoints points, a point beyond kMaxCoordinate_m. Empty where nothing does.
+/// Why an answer from outside is invalid for the scene: an unknown cone, a cone twice in a boundary, more
+/// than kMaxPoints points, a point beyond kMaxCoordinate_m. Empty if it is valid.
 inline constexpr std::size_t kMaxPoints = 1000;
 inline constexpr double kMaxCoordinate_m = 1e7;
 [[nodiscard]] std::string fault_of(const LaneRecord& record, const Scene& scene);
 
-/// That the edges of the boundaries meet more than kMaxMeetings times, neighbours not counted; empty where
-/// they do not. Such a tangle is no lane, and its area takes minutes. Precondition: fault_of finds nothing.
+/// Whether the edges of the boundaries cross more than kMaxMeetings times, without neighbours; empty if not.
+/// Such a tangle is not a lane, and its area takes minutes. Precondition: fault_of finds nothing.
 inline constexpr std::size_t kMaxMeetings = 500;
 [[nodiscard]] std::string tangle_of(const LaneRecord& record, const Scene& scene);
 

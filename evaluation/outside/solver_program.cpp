@@ -89,7 +89,7 @@ void require_known_placeholders(const std::string& command) {
         std::string names;
         for (const auto& [name, value] : known) names += (names.empty() ? "" : " ") + std::string(name);
         throw InvalidInput("solver",
-                           fmt::format("{} is no placeholder of a command; there are {}", word, names));
+                           fmt::format("{} is not a placeholder of a command; there are {}", word, names));
     }
 }
 
@@ -130,7 +130,7 @@ Told read_line(const std::string& line, SolutionFile& told) {
             return;
         }
         const auto message = json.find("message");
-        said.error = message ? message->string() : "it says no more than 'error'";
+        said.error = message ? message->string() : "it gives no message with 'error'";
     });
     return said;
 }

@@ -15,23 +15,24 @@
 
 namespace conelane {
 
-/// How long a solver's program is waited for, beyond the limit that it was told [ms].
+/// Limits for waiting for a solver's program, beyond the limit that it was told [ms].
 struct SolverPatience {
-    double late_ms = 1000.0;    ///< until it is killed
-    double start_ms = 20000.0;  ///< more for the first answer of a conversation: interpreters load packages
-    double end_ms = 1000.0;     ///< from the end of its input to its own end
-    /// A program that fails so many times in a row, or loses so much time by it, is asked no more.
+    double late_ms = 1000.0;  ///< until it is killed
+    double start_ms =
+        20000.0;  ///< more for the first answer of a program that stays: interpreters load packages
+    double end_ms = 1000.0;  ///< from the end of its input to its own end
+    /// After this many failures in a row, or failures of this duration, a program is not asked again.
     int failures = 10;
     double lost_ms = 60000.0;
 };
 
-/// What a solver's program is told with a program.
+/// What a solver's program gets beside the program.
 struct SolverQuestion {
     double time_limit_ms = std::numeric_limits<double>::infinity();
     double absolute_gap = 1e-9;
     unsigned threads = 1;
     std::uint64_t seed = 0;
-    std::optional<double> cutoff{};  ///< only points of a lower objective are wanted
+    std::optional<double> cutoff{};  ///< only points with a lower objective are of use
 };
 
 /// A program of others that solves binary programs (docs/solvers-from-outside.md). COMMAND is run by
@@ -43,12 +44,13 @@ struct SolverQuestion {
 ///   absolute_gap, threads, seed, cutoff; it answers each by a line: an object with any of status (as in
 ///   =status=, or error), message, bound, nodes, ms and solver, which go before what the solution file says.
 ///
-/// Whatever it does, no call waits longer than its limit and the patience, and what it has started is killed.
-/// Its files are in a folder of their own, which goes with the object or where a signal ends this program.
+/// For any behaviour of the program, no call waits longer than its limit and the patience, and all processes
+/// that it started are killed. Its files are in a folder of their own, which is removed with the object or
+/// when a signal ends this program.
 class SolverProgram {
   public:
-    /// Throws std::filesystem::filesystem_error where there is no place for temporary files, InvalidInput
-    /// where that place has characters that a shell would read or the command has an unknown placeholder.
+    /// Throws std::filesystem::filesystem_error if there is no folder for temporary files, InvalidInput if
+    /// its name has characters that a shell would interpret or the command has an unknown placeholder.
     explicit SolverProgram(std::string command, const SolverPatience& patience = {});
     ~SolverProgram();
     SolverProgram(const SolverProgram&) = delete;
@@ -56,7 +58,7 @@ class SolverProgram {
 
     struct Answer {
         SolutionFile solution;
-        std::string fault;  ///< what went wrong, in words; nothing is known of the program then
+        std::string fault;  ///< what went wrong, in words; the other members are then unknown
     };
     [[nodiscard]] Answer solve(const BinaryProgram& program, const SolverQuestion& question);
 

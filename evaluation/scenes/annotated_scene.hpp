@@ -10,17 +10,17 @@
 
 namespace conelane {
 
-/// A scene with what only the scoring may see.
+/// A scene with data that only the scoring may see.
 struct AnnotatedScene {
     Scene scene;
     std::optional<Lane> ground_truth;
-    std::string track;  ///< empty where the scene comes from no track
+    std::string track;  ///< empty if the scene comes from no track
     std::optional<double> false_positive_rate;
     std::optional<double> range_m;
     std::optional<std::uint64_t> seed;  ///< the base seed
-    std::string condition;              ///< empty where none was named
-    /// Map points in view that the car does not see, in the map's order. Recorded where a condition was named
-    /// or false positives persist, and of runs, whose map may not hold them yet.
+    std::string condition;              ///< empty without a named condition
+    /// Map points in view that the car does not see, in the map's order. Recorded for named conditions, for
+    /// persistent false positives, and for runs, whose map may lack them.
     std::vector<Cone> missed;
     std::optional<double> travelled_m;  ///< along the path of a run
 };

@@ -6,9 +6,9 @@
 
 namespace conelane {
 
-/// What lies between the map of a course and what a car sees of it.
+/// Disturbances between the map of a course and the cones that a car sees.
 struct Condition {
-    std::string name;                   ///< empty where none was named
+    std::string name;                   ///< empty without a name
     double noise_sigma_m = 0.0;         ///< Gaussian, on each coordinate of a seen map point
     double pose_noise_lateral_m = 0.0;  ///< Gaussian, across the heading
     double pose_noise_yaw_rad = 0.0;    ///< Gaussian
@@ -16,8 +16,7 @@ struct Condition {
     bool persistent = false;            ///< false positives keep id and place along a lap
 };
 
-/// The conditions that have a name, so that tables can be compared: `paper`, where nothing is disturbed,
-/// `car` and `harsh`.
+/// The named conditions, so that tables can be compared: `paper`, without disturbances, `car` and `harsh`.
 [[nodiscard]] std::span<const Condition> named_conditions();
 
 /// How names of conditions and ids of scenes spell the disturbances: "noise_0.1", "pose_noise_0.3_0.09",
@@ -25,7 +24,7 @@ struct Condition {
 [[nodiscard]] std::string noise_text(const Condition& condition);
 [[nodiscard]] std::string pose_noise_text(const Condition& condition);
 [[nodiscard]] std::string miss_text(const Condition& condition);
-/// The texts of those that the condition has, and "persist", in the order of ids.
+/// The texts of the condition's disturbances, and "persist", in the order of ids.
 [[nodiscard]] std::vector<std::string> disturbances(const Condition& condition);
 
 }  // namespace conelane

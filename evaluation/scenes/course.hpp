@@ -16,42 +16,42 @@
 
 namespace conelane {
 
-/// From where, and by which map, a scene is seen.
+/// A place and the map from which a scene is seen.
 struct Viewpoint {
     Pose pose;
-    const RunFrame* frame = nullptr;  ///< of a run; else all cones of the track are on the map
+    const RunFrame* frame = nullptr;  ///< of a run; absent: all cones of the track are on the map
 };
 
-/// What all scenes of a track share.
+/// Data that all scenes of a track share.
 struct Course {
     const Track& track;
     TrackBoundaries polylines;
     std::vector<Cone> cones;  ///< of the track, with the ids and colors that scenes show
     std::unordered_set<ConeId> boundary_ids;
-    std::vector<Viewpoint> lap;  ///< along the whole course; empty where no false positives persist
+    std::vector<Viewpoint> lap;  ///< along the whole course; empty without persistent false positives
 };
 
 /// Ids and colors are drawn by the options' seed. No lap yet.
 [[nodiscard]] Course make_course(const Track& track, const SceneOptions& options);
 
-/// How many ids there are for the cones of a track's scenes, false positives included.
+/// Number of ids for the cones of a track's scenes, with false positives.
 [[nodiscard]] std::int64_t id_space(const Track& track);
-/// An id of the first `space` that is not in use, which it is from then on.
+/// An unused id of the first `space` ids; it is then in use.
 [[nodiscard]] ConeId draw_new_id(SceneGenerator& generator, std::int64_t space,
                                  std::unordered_set<ConeId>& used);
 
 [[nodiscard]] std::vector<Viewpoint> viewpoints_at(std::span<const Pose> poses);
-/// Along the centre line of a track, or of a run its frames, one every so many metres of travel. Nothing
-/// where no pose of the track can have a ground truth.
+/// Viewpoints along the centre line of a track every so many metres of travel, or the frames of a run.
+/// Nothing if no pose of the track can have a ground truth.
 [[nodiscard]] std::vector<Viewpoint> viewpoints_along(const Track& track, double every_m);
 
-/// Where the map of a viewpoint has each cone of the course, nothing where it lacks it.
+/// Position of each cone of the course on the map of a viewpoint; nothing for a cone that it lacks.
 [[nodiscard]] std::vector<std::optional<Point>> places_of(const Course& course, const Viewpoint& viewpoint);
 
-/// What becomes of a cone of the course in a scene.
+/// How a cone of the course appears in a scene.
 enum class Sight { out_of_view, unmapped, missed, seen };
 
-/// Both runs of seen cones (see generate_scenes), whose far ends are not evened. `sights`: of each cone of
+/// Both runs of seen cones (see generate_scenes), before the far ends are evened. `sights`: for each cone of
 /// the course.
 [[nodiscard]] Lane seen_lane(const Course& course, const std::vector<Sight>& sights, const Point& car);
 

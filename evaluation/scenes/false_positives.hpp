@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-/// Draws id and, with colors, color of false positives of a course.
+/// Draws ids and, with colors, colors of false positives of a course.
 class FalsePositives {
   public:
     FalsePositives(const Course& course, bool with_color);
@@ -22,10 +22,10 @@ class FalsePositives {
     std::unordered_set<ConeId> used_;
 };
 
-/// How many false positives there are to so many points seen: k / (seen + k) = rate.
+/// Number of false positives for this many seen points: k / (seen + k) = rate.
 [[nodiscard]] long false_positives_to(double seen, double rate);
 
-/// Those that persist along a lap of the course, none where the condition's do not.
+/// The false positives that persist along a lap of the course; none if the condition has none.
 [[nodiscard]] std::vector<Cone> persistent_false_positives(const Course& course, const SceneOptions& options,
                                                            const Condition& condition, double rate,
                                                            double range_m);

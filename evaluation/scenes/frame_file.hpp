@@ -12,12 +12,12 @@
 
 namespace conelane {
 
-/// A frame of a run as a file or a stream has it, or what stands in its place.
+/// A line of a file or stream of frames: a frame, a reset or a fault.
 struct FrameLine {
     std::size_t number = 0;      ///< line, blank ones counted, or place in a list; from 1
-    std::optional<Frame> frame;  ///< absent where the line is no frame
-    bool reset = false;          ///< {"reset": true}: what follows is another run
-    std::string fault;           ///< what is wrong with a line that is neither; of a stream only
+    std::optional<Frame> frame;  ///< absent if the line is not a frame
+    bool reset = false;          ///< {"reset": true}: another run begins
+    std::string fault;           ///< what is wrong with any other line; only in a stream
 };
 
 /// The frames of a run: JSON Lines, or the JSON list of a run of ft-fsd (see read_run_log). A line is a frame
@@ -29,8 +29,8 @@ struct FrameLine {
 /// above 0.
 [[nodiscard]] std::vector<FrameLine> read_frames(const std::filesystem::path& file, double interval_s);
 
-/// Calls `use` with each line of a stream that is not blank, before the next one is read. A line that is
-/// wrong is passed on as such.
+/// Calls `use` with each line of a stream that is not blank, before the next one is read. An invalid line is
+/// passed on with its fault.
 void for_each_frame_line(std::istream& stream, double interval_s,
                          const std::function<void(const FrameLine&)>& use);
 

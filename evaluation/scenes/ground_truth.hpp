@@ -8,8 +8,8 @@
 
 namespace conelane {
 
-/// The ground truth of the scene that holds only its `nearest` cones ahead (see cut_to_nearest). Nothing
-/// where a side keeps fewer than two cones or the scene has no ground truth.
+/// The ground truth of the scene with only its `nearest` cones ahead (see cut_to_nearest). Nothing if a side
+/// keeps fewer than two cones or the scene has no ground truth.
 [[nodiscard]] std::optional<Lane> ground_truth_of_nearest(const AnnotatedScene& scene, std::size_t nearest);
 
 }  // namespace conelane

@@ -9,15 +9,15 @@
 
 namespace conelane {
 
-/// What a car is to see of the points that persist along a lap, from one place of it.
+/// The wanted number of persistent points in view from one place.
 struct PersistentView {
     HalfDisc view;
     double expected_points = 0.0;
 };
 
-/// Points drawn once in the world that `views` cover. Their density at a place is the mean of what the views
-/// that contain it ask for, so each view is expected to hold about what it asks for, exactly where all ask
-/// for the same. All views have one radius, the first one's.
+/// Points drawn once in the world that `views` cover. Their density at a place is the mean of the densities
+/// that the views containing it want, so each view is expected to hold about its number, exactly so if all
+/// want the same. All views have one radius, that of the first.
 [[nodiscard]] std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
                                                         boost::random::mt19937_64& random);
 

@@ -12,8 +12,8 @@ namespace conelane {
 
 using SceneGenerator = boost::random::mt19937_64;
 
-/// A generator for one purpose, so that a draw for one does not move those for another: FNV-1a over the text,
-/// then the finaliser of splitmix64.
+/// A generator for one purpose, so that draws for one purpose do not change those for another: FNV-1a over
+/// the text, then the finaliser of splitmix64.
 inline SceneGenerator generator_for(std::string_view text) {
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (const char c : text) {
@@ -28,7 +28,7 @@ inline SceneGenerator generator_for(std::string_view text) {
     return SceneGenerator(hash);
 }
 
-/// Drawn numbers are rounded: the last bits of sine, cosine and logarithm differ between C libraries.
+/// Drawn numbers are rounded, because the last bits of sine, cosine and logarithm differ between C libraries.
 inline double rounded(double value, double steps_per_unit) {
     return std::round(value * steps_per_unit) / steps_per_unit;
 }

@@ -13,30 +13,29 @@
 
 namespace conelane {
 
-/// The scenes that a car sees along a track, with their ground truth; those with none (a run below two cones)
-/// or a degenerate one are left out. Where the track has but a driven path, all scenes with a cone are made.
-/// Order: condition, range, rate, pose, so that the scenes of a lap follow one another.
+/// The scenes that a car sees along a track, with their ground truth; scenes without a ground truth (a run
+/// below two cones) or with a degenerate one are left out. If the track has only a driven path, all scenes
+/// with a cone are made. Order: condition, range, rate, pose, so the scenes of a lap follow one another.
 ///
-/// The pose with index i in `poses` gives the scene "TRACK/pose_i/fp_RATE/range_RANGE", with a part more for
-/// the condition (but `paper`), else for each disturbance, and for `nearest`. Its content depends on nothing
-/// but the track, that pose, its index, and the options that it shows: neither on other rates, ranges and
-/// poses nor on the number of threads. A cone of the track keeps its id in all scenes of one base seed; ids
-/// and order tell nothing of what a cone is.
+/// The pose with index i in `poses` gives the scene "TRACK/pose_i/fp_RATE/range_RANGE", followed by the
+/// condition (except `paper`), or else by each disturbance, and by `nearest`. Its content depends only on the
+/// track, the pose, its index and the options in its name: not on other rates, ranges and poses, nor on the
+/// number of threads. A cone of the track keeps its id in all scenes of one base seed; ids and order do not
+/// reveal what a cone is.
 ///
-/// False positives that persist are drawn once for a track, condition, range and rate, in the world that the
-/// car has in view on a lap of the centre line, wherever `poses` are: about as many in view as there would be
-/// of fresh ones.
+/// Persistent false positives are drawn once for a track, condition, range and rate, in the area that the car
+/// sees on a lap of the centre line, for any `poses`: about as many in view as without persistence.
 ///
-/// Throws InvalidInput on options out of range, on a track or pose that is not finite or beyond 1e8 m, and
-/// where false positives persist on a track without a centre line or are more than there are ids.
+/// Throws InvalidInput for options out of range, for a track or pose that is not finite or beyond 1e8 m, and
+/// if false positives persist on a track without a centre line or exceed the number of ids.
 [[nodiscard]] std::vector<AnnotatedScene> generate_scenes(const Track& track, std::span<const Pose> poses,
                                                           const SceneOptions& options);
 
 struct Course;
 struct Viewpoint;
 
-/// The scenes of `generate_scenes` lap by lap, for who does not want all of them in memory. A lap is one
-/// condition, range and rate; `track` and `options` must outlive the object.
+/// The scenes of `generate_scenes` lap by lap, to keep only one lap in memory. A lap is one condition, range
+/// and rate; `track` and `options` must outlive the object.
 class TrackLaps {
   public:
     /// Both throw like generate_scenes.
@@ -47,9 +46,10 @@ class TrackLaps {
     TrackLaps& operator=(const TrackLaps&) = delete;
 
     [[nodiscard]] std::size_t size() const;  ///< conditions times ranges times rates
-    /// The scenes of a lap by pose, maybe none, degenerate ground truths absent. Precondition: lap < size().
+    /// The scenes of a lap by pose, possibly none, without degenerate ground truths. Precondition: lap <
+    /// size().
     [[nodiscard]] std::vector<AnnotatedScene> make(std::size_t lap) const;
-    /// Whether `make` would give none with a ground truth, found out with as few scenes as possible.
+    /// Whether `make` would give none with a ground truth, determined with as few scenes as possible.
     [[nodiscard]] bool is_empty(std::size_t lap) const;
 
   private:
@@ -58,7 +58,7 @@ class TrackLaps {
     std::vector<Viewpoint> viewpoints_;
     const SceneOptions& options_;
     std::vector<Condition> conditions_;
-    std::unique_ptr<const Course> course_;  ///< none where no pose of the track can have a ground truth
+    std::unique_ptr<const Course> course_;  ///< absent if no pose of the track can have a ground truth
 };
 
 /// The same along the track's centre line, a pose every `every_m` of travel (see centre_line_poses, whose

@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-/// What the scenes of one lap share.
+/// Data that the scenes of one lap share.
 struct Lap {
     Condition condition;
     double rate;
@@ -17,8 +17,8 @@ struct Lap {
     std::vector<Cone> persistent;  ///< false positives in the world
 };
 
-/// What the car sees from a viewpoint. Nothing where a run of the ground truth has fewer than two cones, or
-/// no cone is seen. A degenerate ground truth is left out of its scene.
+/// The scene from a viewpoint. Nothing if a run of the ground truth has fewer than two cones, or no cone is
+/// seen. A degenerate ground truth is left out of its scene.
 [[nodiscard]] std::optional<AnnotatedScene> make_scene(const Course& course, const SceneOptions& options,
                                                        const Lap& lap, const Viewpoint& viewpoint,
                                                        std::size_t pose_index);

@@ -85,7 +85,8 @@ std::vector<Condition> conditions_of(const SceneOptions& options) {
         if (known == named_conditions().end()) {
             std::vector<std::string> names;
             for (const Condition& condition : named_conditions()) names.push_back(condition.name);
-            throw InvalidInput("condition", fmt::format("'{}' is none of {}", name, fmt::join(names, ", ")));
+            throw InvalidInput("condition",
+                               fmt::format("'{}' is not one of {}", name, fmt::join(names, ", ")));
         }
         if (std::ranges::count(options.conditions, name) > 1) {
             throw InvalidInput("condition", fmt::format("{} is there twice", name));

@@ -9,8 +9,8 @@
 
 namespace conelane {
 
-/// Writes a scenes file and its companion beside it, with what was left out of the scenes: both whole, or
-/// both stay as they were. Throws like write_scenes.
+/// Writes a scenes file and its companion beside it, with the scenes left out: both completely, or both stay
+/// unchanged. Throws like write_scenes.
 void write_scene_pair(const std::filesystem::path& file, std::span<const AnnotatedScene> scenes,
                       const TrackBoundariesByName& tracks, const LeftOutScenes& left_out);
 

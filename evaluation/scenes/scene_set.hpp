@@ -24,8 +24,8 @@ struct Shard {
 };
 
 /// Every pose on the centre line of every track that the SPECs of load_tracks name, under every rate and
-/// range; of these the laps of the shard, which may have none. Takes the memory and nearly only the time of
-/// these. Throws InputError where a track is named twice or no scene of any shard has a ground truth.
+/// range; of these the laps of the shard, possibly none. Takes memory, and nearly all time, only for these
+/// laps. Throws InputError if a track is named twice or no scene of any shard has a ground truth.
 [[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
                                       const SceneOptions& options, const Shard& shard = {});
 

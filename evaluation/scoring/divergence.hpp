@@ -16,7 +16,7 @@ inline constexpr double kOffBoundary_m = 1.0;
 inline constexpr double kFootBack_m = 2.0;
 inline constexpr double kFootPerChord = 2.0;
 inline constexpr double kFootAhead_m = 3.0;
-/// The foot point of the first vertex may lie -8 m to 12 m from the first ground-truth cone.
+/// The foot point of the first vertex may be -8 m to 12 m from the first ground-truth cone.
 inline constexpr double kFirstFootBack_m = 8.0;
 inline constexpr double kFirstFootAhead_m = 12.0;
 
@@ -26,27 +26,27 @@ struct BoundaryDivergence {
     std::size_t vertex_off;  ///< index of the first vertex that is off
 };
 
-/// The first vertex of one predicted boundary that is off; nothing where none is.
+/// The first vertex of one predicted boundary that is off; nothing if none is.
 ///
-/// Walks `predicted` outward. A vertex is off when it is more than kOffBoundary_m from the whole `annotated`
-/// polyline, or when its foot point there leaps along the polyline; the limits themselves are not off. On a
-/// closed boundary a foot point has no unique position: it is taken at the first one past the lower limit, so
-/// passing the seam and driving several rounds are no leaps. The distance runs along the boundary from the
-/// foot of `first_ground_truth_cone` to that of the last vertex before the first one off, 0 where there is
-/// none or it lies behind that cone.
-/// Throws InvalidInput where `annotated` has no vertex and `predicted` has one.
+/// Walks `predicted` outward. A vertex is off if it is more than kOffBoundary_m from the whole `annotated`
+/// polyline, or if its foot point there leaps along the polyline; the limits themselves are not off. On a
+/// closed boundary a foot point has no unique position: the first one past the lower limit is taken, so
+/// passing the seam and driving several rounds are not leaps. The distance runs along the boundary from the
+/// foot of `first_ground_truth_cone` to that of the last vertex before the first one off; 0 if there is no
+/// such vertex or it is behind that cone.
+/// Throws InvalidInput if `annotated` has no vertex and `predicted` has one.
 [[nodiscard]] std::optional<BoundaryDivergence> boundary_divergence(std::span<const Point> predicted,
                                                                     std::span<const Point> annotated,
                                                                     bool closed,
                                                                     const Point& first_ground_truth_cone);
-/// The divergence distance alone.
+/// Only the divergence distance.
 [[nodiscard]] std::optional<double> boundary_divergence_m(std::span<const Point> predicted,
                                                           std::span<const Point> annotated, bool closed,
                                                           const Point& first_ground_truth_cone);
 
-/// Divergence distance [m] of a lane: the smaller one of the sides that are off; nothing where neither is.
-/// Each side is held against the annotated boundary of that side only, so a lane with swapped sides diverges
-/// at 0. Whether the lane itself is closed makes no difference.
+/// Divergence distance [m] of a lane: the smaller one of the sides that are off; nothing if neither is. Each
+/// side is compared only with the annotated boundary of that side, so a lane with swapped sides diverges at
+/// 0. It does not matter whether the lane is closed.
 /// Precondition: both sides of `ground_truth` have a vertex.
 [[nodiscard]] std::optional<double> divergence_m(const LaneOutline& predicted,
                                                  const LaneOutline& ground_truth,

@@ -4,8 +4,8 @@
 
 namespace conelane {
 
-/// What the papers print, in per cent and milliseconds, to stand beside this project's own figures. They were
-/// measured on other machines and, for RLD, on other data: to compare with, not to reproduce digit by digit.
+/// Figures that the papers print, in per cent and milliseconds, to show beside this project's figures. They
+/// were measured on other machines and, for RLD, on other data: for comparison, not for exact reproduction.
 
 /// CLC paper, Table I (VIII-D; both ranges, 30 m and 50 m, together) and Table II (VIII-E). The text of
 /// VIII-D gives 2.6 % critical failures at a rate of 50 % where the table has 5.0 %; the table is taken.

@@ -138,8 +138,8 @@ struct SceneScore {
 [[nodiscard]] SceneScore score_centre_line(const AnnotatedScene& scene, std::span<const Point> centre_line,
                                            double latency_ms, const TrackBoundaries* boundaries);
 
-/// Means over scenes; shares are in [0, 1]. No failure leaves a mean: a scene without a lane counts with IoU
-/// 0, as not accurate and not steady, and an answer without optimality, enumeration or candidates, where
+/// Means over scenes; shares are in [0, 1]. Failures count in every mean: a scene without a lane counts with
+/// IoU 0, as not accurate and not steady, and an answer without optimality, enumeration or candidates, where
 /// others of the sample have them, as not solved, not complete, best IoU 0. A measure that no scene has is
 /// absent.
 struct ScoreSummary {

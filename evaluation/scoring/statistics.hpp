@@ -9,9 +9,9 @@ inline constexpr double kRealTimeBudget_ms = 50.0;
 /// Shift of the shifted geometric mean of times [ms].
 inline constexpr double kGeometricMeanShift_ms = 1.0;
 
-/// Every function of a sample throws InvalidInput where the sample is empty. Values need not be sorted.
+/// Every function throws InvalidInput if the sample is empty. Values need not be sorted.
 
-/// The middle value; of an even count the mean of the middle two.
+/// The middle value; for an even count, the mean of the two middle values.
 [[nodiscard]] double median(std::span<const double> sample);
 
 /// Nearest-rank quantile: the smallest value that at least `share` of the sample does not exceed, so always

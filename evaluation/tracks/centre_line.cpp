@@ -203,7 +203,7 @@ std::vector<Pose> centre_line_poses(const TrackBoundaries& boundaries, double ev
     const Polyline midpoints = closed ? closed_midpoints(std::move(left), std::move(right))
                                       : open_midpoints(std::move(left), std::move(right));
     if (!(polyline_length_m(midpoints, closed) > 0.0)) {
-        throw InvalidInput("left", "bounds no lane with the right boundary");
+        throw InvalidInput("left", "has no lane between it and the right boundary");
     }
     constexpr auto kReach = static_cast<std::size_t>(kSmoothing_m / kCentreSample_m / 2.0);
     const MeasuredLine line(smoothed(resampled(midpoints, closed, kCentreSample_m), closed, kReach), closed);

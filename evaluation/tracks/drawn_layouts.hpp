@@ -9,8 +9,8 @@
 
 namespace conelane {
 
-/// Names of the layouts that each seed draws anew, for what recorded courses show and the fixed layouts do
-/// not:
+/// Names of the layouts that each seed draws, with properties of recorded courses that the fixed layouts do
+/// not have:
 /// - `legs`: four parallel legs or six, their boundaries 3 to 6 m apart;
 /// - `tight_hairpins`: the same with a lane of 2.8 to 3.2 m, cones every 1.5 to 2 m, radii of about 3 m;
 /// - `gates`: a loop with two gates of big orange cones, each in a gap of the boundaries of 10 to 12 m;

@@ -213,7 +213,7 @@ std::vector<std::size_t> append_boundary(Track& track, const RoundedPath& path, 
     return boundary;
 }
 
-/// Cones outside the lane, drawn anew until they are clear of every section and of each other.
+/// Cones outside the lane, drawn again until they are clear of every section and of each other.
 void append_strays(Track& track, const RoundedPath& path, const TrackLayout& layout, Draw& draw) {
     const double nearest_m = layout.style.mean_width_m / 2.0 + kStrayOutside_m;  // to the centre line
     std::vector<Point> centre_line;
@@ -242,7 +242,7 @@ TrackLayout layout_of(const std::string& name, std::uint64_t seed) {
         return draw_layout(name, seed);
     }
     throw InvalidInput("generated track",
-                       fmt::format("'{}' is none of {}", name, fmt::join(generated_track_names(), ", ")));
+                       fmt::format("'{}' is not one of {}", name, fmt::join(generated_track_names(), ", ")));
 }
 
 }  // namespace

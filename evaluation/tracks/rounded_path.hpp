@@ -12,12 +12,11 @@ struct Corner {
     double radius_m;
 };
 
-/// A path of straights and tangent arcs: a polyline whose corners are rounded off. A closed path starts where
-/// the arc of its first corner ends; an open one starts and ends in its outer vertices, whose radius counts
-/// for nothing.
+/// A path of straights and tangent arcs: a polyline with rounded corners. A closed path starts where the arc
+/// of its first corner ends; an open path starts and ends in its outer vertices, whose radius is ignored.
 class RoundedPath {
   public:
-    /// Throws InvalidInput where a radius is not positive, the path turns back on itself or the arcs of two
+    /// Throws InvalidInput if a radius is not positive, the path turns back on itself or the arcs of two
     /// neighbouring corners need more than the distance between them.
     RoundedPath(const std::vector<Corner>& corners, bool closed);
 

@@ -8,13 +8,13 @@
 
 namespace conelane {
 
-/// Where a cone stands on the map of one moment.
+/// Position of a cone on the map of one moment.
 struct MapPlace {
     std::size_t cone = 0;
     Point position;
 };
 
-/// What a car knew at one moment of a recorded run.
+/// Pose and map of a car at one moment of a recorded run.
 struct RunFrame {
     Pose pose;
     double travelled_m = 0.0;
@@ -25,14 +25,16 @@ struct RunFrame {
 /// false positives of the recording and stay visible.
 struct Track {
     std::string name;                ///< as scene ids and result tables show it, such as "fsd_1"
-    std::vector<Cone> cones;         ///< ids are those of the source where it has any, else the index
+    std::vector<Cone> cones;         ///< ids of the source if it has any, else the index
     std::vector<std::size_t> left;   ///< driving order
     std::vector<std::size_t> right;  ///< driving order
     bool closed = true;
-    /// Of a recorded run, in its order; then `cones` is all that its maps ever held, at their last places.
+    /// Frames of a recorded run, in order; then `cones` are all cones that its maps ever held, at their last
+    /// places.
     std::vector<RunFrame> frames{};
-    std::vector<Point> driven{};          ///< the path of a run without boundaries
-    std::vector<std::string> warnings{};  ///< what a user should know of the recording, a sentence each
+    std::vector<Point> driven{};  ///< the path of a run without boundaries
+    std::vector<std::string>
+        warnings{};  ///< facts about the recording that a user should know, a sentence each
 };
 
 /// The annotated boundaries as polylines.

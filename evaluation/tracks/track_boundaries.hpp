@@ -8,13 +8,12 @@
 
 namespace conelane {
 
-/// The whole annotated boundaries of a track in driving order, from which the centre line is made and
-/// divergence is measured.
+/// The whole annotated boundaries of a track in driving order, for the centre line and for divergence.
 struct TrackBoundaries {
     std::vector<Point> left;
     std::vector<Point> right;
     bool closed = true;
-    /// The path that was driven, where a run has no annotated boundaries; these are empty then.
+    /// The driven path of a run without annotated boundaries, which are then empty.
     std::vector<Point> driven = {};
 };
 

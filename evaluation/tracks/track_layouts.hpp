@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-/// How wide a lane is and how its cones stand.
+/// Width of a lane and arrangement of its cones.
 struct TrackStyle {
     double mean_width_m = 4.0;
     double slow_swell_m = 0.5;             ///< amplitude of the width's two or three swells a lap
@@ -21,7 +21,7 @@ struct TrackStyle {
     std::size_t gates = 0;
 };
 
-/// The drawing of a generated track: its centre line, and how many cones of no boundary lie around.
+/// The drawing of a generated track: its centre line, and the number of cones of no boundary around it.
 struct TrackLayout {
     std::string name;
     bool closed;

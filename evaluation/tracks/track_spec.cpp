@@ -140,7 +140,7 @@ std::vector<Track> load_tracks(const std::string& spec) {
     } catch (const fs::filesystem_error& error) {
         fail(spec, error.code().message());
     }
-    fail(spec, fmt::format("'{}' is none of generated, fsd, pacsim, eufs and ftlog", kind));
+    fail(spec, fmt::format("'{}' is not one of generated, fsd, pacsim, eufs and ftlog", kind));
 }
 
 }  // namespace conelane

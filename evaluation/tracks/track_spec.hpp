@@ -10,9 +10,9 @@ namespace conelane {
 /// The tracks that a SPEC of the command line names, without doubled cones:
 /// - `generated:NAME[@SEED][,NAME[@SEED]...]`, seed 0 unless given;
 /// - `fsd:DIR`, all numbers found there in ascending order, or `fsd:DIR:1,2`;
-/// - `pacsim:FILE`, `eufs:FILE` and `ftlog:FILE`, or a folder in place of the file: all that it holds of such
-///   (.yaml, .csv and .json), by name.
-/// Throws InputError, with the SPEC as key where it is not the fault of a file.
+/// - `pacsim:FILE`, `eufs:FILE` and `ftlog:FILE`, or a folder in place of the file: all its files of that
+/// type (.yaml, .csv and .json), by name.
+/// Throws InputError, with the SPEC as key if no file is at fault.
 [[nodiscard]] std::vector<Track> load_tracks(const std::string& spec);
 
 }  // namespace conelane

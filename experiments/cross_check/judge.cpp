@@ -129,7 +129,7 @@ class Judgement {
         all.push_back({"an answer without its last edge", std::move(shorter)});
         LaneGraph with_gone = *known;
         with_gone.edges.push_back({cones - 1, cones});
-        all.push_back({"an answer with a cone that is gone", std::move(with_gone)});
+        all.push_back({"an answer with a cone that the scene does not have", std::move(with_gone)});
         return all;
     }
 
@@ -171,7 +171,7 @@ class Judgement {
             report.status == SolveStatus::optimal || report.status == SolveStatus::feasible;
         if (wants_graph != report.lane_graph.has_value() || wants_graph != report.objective.has_value())
             return find("{}: {} with{} a lane graph", answer.by, status, report.lane_graph ? "" : "out");
-        if (report.bound && std::isnan(*report.bound)) find("{}: a bound that is no number", answer.by);
+        if (report.bound && std::isnan(*report.bound)) find("{}: a bound that is not a number", answer.by);
         if (report.status == SolveStatus::optimal && !report.bound)
             find("{}: optimal without a bound", answer.by);
         if (!report.lane_graph) return;
@@ -255,7 +255,7 @@ std::vector<Contestant> make_contestants(std::span<const std::string> names, For
     for (const std::string& name : names) {
         const RldSolverEntry* const entry = find_rld_solver(name);
         if (entry == nullptr || !entry->exact)
-            throw InvalidInput("--solvers", "'" + name + "' is no exact solver of this build");
+            throw InvalidInput("--solvers", "'" + name + "' is not an exact solver of this build");
         const std::shared_ptr<RldSolver> solver = entry->make(formulation);
         contestants.push_back(
             {entry->uses_formulation ? fmt::format("{} ({})", name, to_string(formulation)) : name,

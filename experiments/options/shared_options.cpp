@@ -35,7 +35,7 @@ std::string seed_fault(const std::string& text) {
     const char* const end = text.data() + text.size();
     const auto [rest, error] = std::from_chars(text.data(), end, seed);
     if (error == std::errc{} && rest == end) return {};
-    return fmt::format("'{}' is no non-negative integer of 64 bits", text);
+    return fmt::format("'{}' is not a non-negative integer of 64 bits", text);
 }
 
 /// Why a file cannot be written, nothing where it can.
@@ -124,13 +124,15 @@ void collect_options(CLI::App& app, std::vector<CLI::Option*>& options) {
 std::string time_limit_fault(const std::string& text) {
     double limit_ms = 0.0;
     if (CLI::detail::lexical_cast(text, limit_ms) && limit_ms > 0.0) return {};
-    return fmt::format("'{}' is no number above 0", text);
+    return fmt::format("'{}' is not a number above 0", text);
 }
 
 }  // namespace
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
-    command.add_option("--fp", options.false_positive_rates, "false positives / all points of a scene")
+    command
+        .add_option("--fp", options.false_positive_rates,
+                    "share of false positives among all points of a scene")
         ->delimiter(',')
         ->capture_default_str();
     command.add_option("--range", options.ranges_m, "radius of the visible half disc [m]")
@@ -138,12 +140,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->capture_default_str();
     command.add_option("--every", options.every_m, "travel between poses [m]")->capture_default_str();
     command
-        .add_option(
-            "--condition", options.conditions,
-            "paper, car and harsh, separated by commas: a lap in each. paper: nothing disturbed; "
-            "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
-            "0.5 m and 8 degrees, 0.1, --persist. Where one of these is given beside it, it holds in all "
-            "of them, and their names say so, such as car+no_persist")
+        .add_option("--condition", options.conditions,
+                    "paper, car and harsh, separated by commas: a lap in each. paper: nothing disturbed; "
+                    "car: --noise 0.1, --pose-noise 0.3 m and 5 degrees, --miss 0.05, --persist; harsh: 0.2, "
+                    "0.5 m and 8 degrees, 0.1, --persist. If one of these options is given too, it replaces "
+                    "its part in every condition, and the names say so, such as car+no_persist")
         ->delimiter(',')
         ->capture_default_str();
     command.add_option_function<double>(
@@ -163,7 +164,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         "--miss", [&options](double rate) { options.miss_rate = rate; }, "share of the cones not seen");
     command.add_flag_function(
         "--persist,!--no-persist", [&options](std::int64_t count) { options.persistent = count > 0; },
-        "false positives keep id and place along a lap; else they are drawn anew at each pose");
+        "false positives keep id and place along a lap; without it they are drawn at each pose");
     command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
     command.add_option("--color-error", options.color_error_rate,
                        "with --color: share of the cones seen in the other boundary's colour");

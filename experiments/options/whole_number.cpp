@@ -14,7 +14,7 @@ CLI::Validator whole_number(std::size_t least, std::size_t most) {
         const char* const end = text.data() + text.size();
         const auto [rest, error] = std::from_chars(text.data(), end, number);
         if (error == std::errc{} && rest == end && number >= least && number <= most) return {};
-        return fmt::format("'{}' is no whole number from {} to {}", text, least, most);
+        return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
     };
     return {fault, fmt::format("in [{} - {}]", least, most)};
 }

@@ -49,7 +49,7 @@ struct RaceCourse {
 [[nodiscard]] RaceCourse mission_course(Mission mission, const Track& track);
 [[nodiscard]] RaceCourse mission_course(Mission mission);
 
-/// Acceleration or skidpad as an event might set it up, drawn anew for each seed: width, spacing, gates,
+/// Acceleration or skidpad as an event might set it up, another one for each seed: width, spacing, gates,
 /// entry and exit as the rules leave room, cones some decimetres off their place, missing ones, and some
 /// that are no part of the course. The frame is as above, the start within 1.5 m of that of the rules. The
 /// big cones of an acceleration's finish are always there.

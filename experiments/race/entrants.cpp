@@ -135,7 +135,7 @@ std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, With
         if (with_planner != WithPlanner::only) all.push_back({text, text});
         if (with_planner != WithPlanner::no) {
             if (!is_of_library(text)) {
-                throw InvalidInput("--planner", "'" + text + "' is no detector of the library");
+                throw InvalidInput("--planner", "'" + text + "' is not a detector of the library");
             }
             all.push_back({text + "+planner", text, true});
         }

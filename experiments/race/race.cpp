@@ -556,7 +556,7 @@ RaceFault race_fault(std::string_view name) {
         if (to_string(fault) == name) return fault;
     }
     throw InvalidInput(
-        "--fault", "'" + std::string(name) + "' is none of none, jump, late, twice, order, blackout, ids");
+        "--fault", "'" + std::string(name) + "' is not one of none, jump, late, twice, order, blackout, ids");
 }
 
 std::string_view to_string(RaceEnd end) {

@@ -38,11 +38,11 @@ class World {
   public:
     World(const RaceCourse& course, const SightOptions& options);
 
-    /// What the car believes of its pose: noise drawn anew at each call, in the frame of the world.
+    /// The pose that the car believes, in the frame of the world: each call draws new noise.
     [[nodiscard]] Pose disturbed(const Pose& truth);
 
-    /// The cones that are seen, in the map frame. `believed` is in the frame of the world. Each cone is
-    /// missed and moved by noise drawn anew; false positives that persist likewise.
+    /// The cones that are seen, in the map frame. `believed` is in the frame of the world. Each call draws
+    /// which cones and persistent false positives are missed, and their noise.
     [[nodiscard]] Frame look(const Pose& believed, const MapFrame& map, double time_s);
 
     /// Every point in the world gets another id.

@@ -53,7 +53,7 @@ def _recommended(results, samples):
 
 def _sentence(results):
     """The method to run among those that keep the real-time budget, and where it carries its last lane along also the
-    best of those that do not: false positives drawn anew at every pose reward memory more than a track would."""
+    best of those that do not: false positives drawn at every pose reward memory more than a track would."""
     in_time = [sample for sample in results.samples
                if np.mean(sample.latency <= REAL_TIME_BUDGET_MS) >= _IN_TIME_SHARE]
     best, text_of_best = _recommended(results, in_time)

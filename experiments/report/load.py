@@ -317,7 +317,7 @@ def load_results(directory):
         return os.path.join(directory, name)
 
     if not os.path.isdir(directory):
-        raise InputError(f"{directory}: is no directory")
+        raise InputError(f"{directory}: is not a directory")
     run = read_object(path("run.json"))
     rows = _read_rows(path("results.jsonl"))
     samples = _read_samples(path("scores.jsonl"))

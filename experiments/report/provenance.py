@@ -35,7 +35,7 @@ def _conditions(results, conditions):
                 f"{math.degrees(condition['pose_yaw_rad']):.0f}° off (one sigma each), "
                 f"{100 * condition['miss_rate']:g} % of the cones missed" if disturbed else "nothing disturbed")
         strays = ("false positives stay where they are along a lap" if condition["persistent"] else
-                  "false positives are drawn anew at every pose")
+                  "false positives are drawn at every pose")
         pieces.append(f"<b>{escape(condition['name'])}</b>: {what}; {strays}")
     return f"<li>Conditions. {'. '.join(pieces)}.</li>" if pieces else ""
 

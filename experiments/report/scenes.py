@@ -259,7 +259,7 @@ def _read_frames(results, scenes_file, wanted, noise_of):
     try:
         boundaries = {track: boundary_points(of_track) for track, of_track in results.tracks.items()}
     except (KeyError, TypeError, ValueError, AttributeError):
-        raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are no lists of points") from None
+        raise InputError(f"{results.path('scenes.tracks.json')}: boundaries are not lists of points") from None
     frames, poses, indices = {}, {}, {}
     for number, line in read_lines(scenes_file, wanted):
         scene = line.get("id", str(number))

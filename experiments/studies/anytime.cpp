@@ -66,11 +66,11 @@ nlohmann::ordered_json row_to_json(const AnytimeRow& row) {
 class AnytimeStudy : public Study {
   public:
     AnytimeStudy()
-        : Study(
-              {"anytime", "what does path-pair know when its time is up?",
-               "All cones of each scene, solved anew under each limit, wall clock, one thread. Gap: from the "
-               "bound to the best lane graph known under any limit, divided by the larger of 1 and its "
-               "cost's size. An incumbent is close where it costs within 1 % of that lane graph."}) {}
+        : Study({"anytime", "what does path-pair know when its time is up?",
+                 "All cones of each scene, solved again under each limit, wall clock, one thread. Gap: from "
+                 "the "
+                 "bound to the best lane graph known under any limit, divided by the larger of 1 and its "
+                 "cost's size. An incumbent is close where it costs within 1 % of that lane graph."}) {}
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);

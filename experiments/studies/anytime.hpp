@@ -15,7 +15,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// What path-pair knows of a scene when a limit strikes: incumbent and proven bound.
+/// What path-pair knows of a scene when the time limit ends: incumbent and proven bound.
 [[nodiscard]] std::unique_ptr<Study> make_anytime_study();
 
 struct AnytimeOptions {

@@ -249,12 +249,12 @@ class BackendsStudy : public Study {
         add_input_options(command, input_);
         command
             .add_option("--solvers", solvers_,
-                        "exact ones: SOLVER or SOLVER/FORMULATION, parted by commas; all for every one; or "
-                        "exec:NAME=COMMAND, a program from outside, in an argument of its own")
+                        "exact solvers: SOLVER or SOLVER/FORMULATION, separated by commas; all for every "
+                        "solver; or exec:NAME=COMMAND, a program from outside, in an argument of its own")
             ->capture_default_str();
         command
             .add_option("--formulations", formulations_,
-                        "what solvers that use one, and name none, are run on")
+                        "formulations for solvers that use one and do not name one")
             ->delimiter(',')
             ->check(CLI::IsMember({"tight", "paper"}))
             ->capture_default_str();
@@ -270,16 +270,16 @@ class BackendsStudy : public Study {
         command.add_flag("--all-rows", all_rows_,
                          "each program from outside also on files with all rows, asked once");
         command
-            .add_option(
-                "--permutations", options_.permutations,
-                "times more each scene is solved from nothing, its cones, rows and columns in other orders")
+            .add_option("--permutations", options_.permutations,
+                        "number of additional runs of each scene without a start, with cones, rows and "
+                        "columns in other orders")
             ->check(whole_number(0, 1000))
             ->capture_default_str();
         command.add_option("--seed", options_.seed, "of the permutations")->capture_default_str();
         command
             .add_option(
                 "--gap-limits", options_.gap_limits_ms,
-                "milliseconds, ascending: each scene is solved anew under each, for the gap over time")
+                "time limits [ms], ascending: each scene is solved again under each, for the gap over time")
             ->delimiter(',')
             ->check(CLI::Range(0.1, 1e7));
         add_time_limit_option(command, options_.time_limit_ms);

@@ -40,9 +40,8 @@ void note_processor_time(int /*signal*/) {
     limit_struck = 1;
 }
 
-/// Interrupts the thread that made it when a limit strikes, to read the thread's processor time there: what
-/// the thread spends from then on is the fault of what it runs, while its wall clock goes on when others have
-/// the processor.
+/// Interrupts the thread that made it when a limit expires, to read the thread's processor time then. Time
+/// that the thread spends after it is an overrun of its code; wall clock also passes while other threads run.
 class LimitProbe {
   public:
     LimitProbe() {
@@ -67,7 +66,7 @@ class LimitProbe {
         limit_struck = 0;
         set(limit_ms);
     }
-    /// The processor time spent since the limit struck; nothing where it has not.
+    /// The processor time spent since the limit expired; nothing if it has not.
     std::optional<double> stop() {
         const double now_ms = thread_cpu_ms();
         set(0.0);
@@ -147,7 +146,7 @@ class DeadlinesStudy : public Study {
     DeadlinesStudy()
         : Study({"deadlines", "by how much do methods overrun their time limits?",
                  "Every scene under every limit, one thread, methods by name and solvers on all cones. "
-                 "Overruns are those of the calls that were still running when the limit struck: wall clock "
+                 "Overruns are those of the calls that were still running when the limit expired: wall clock "
                  "from the limit to the answer, and the thread's processor time between the two, which other "
                  "programs do not lengthen. Quantiles by nearest rank: p99.9 of fewer than 1000 calls is the "
                  "largest."}) {
@@ -164,7 +163,7 @@ class DeadlinesStudy : public Study {
             ->delimiter(',')
             ->check(CLI::Range(0.1, 1e6))
             ->capture_default_str();
-        command.add_option("--repeats", options_.repeats, "calls for each scene and limit")
+        command.add_option("--repeats", options_.repeats, "number of calls for each scene and limit")
             ->check(whole_number(1, 1'000'000))
             ->capture_default_str();
         command

@@ -33,7 +33,7 @@ struct OverrunStatistics {
 /// Zeros where the sample is empty.
 [[nodiscard]] OverrunStatistics overrun_statistics(std::span<const double> overruns_ms);
 
-/// One method under one limit. Statistics are of the calls that were still running when the limit struck.
+/// One method under one limit. Statistics are of the calls that were still running when the limit expired.
 struct DeadlineRow {
     std::string method;
     double limit_ms = 0.0;

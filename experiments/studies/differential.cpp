@@ -173,7 +173,7 @@ std::vector<DifferentialRow> differential_rows(std::span<const AnnotatedScene> s
     if (scenes.empty()) throw InvalidInput("--scenes", "hold no scene");
     const RldSolverEntry* const entry = find_rld_solver(options.reference);
     if (entry == nullptr || !entry->exact || entry->max_cones)
-        throw InvalidInput("--reference", "'" + options.reference + "' is no exact solver of any size");
+        throw InvalidInput("--reference", "'" + options.reference + "' is not an exact solver for all sizes");
     const std::unique_ptr<RldSolver> path_pair = find_rld_solver("path-pair")->make(Formulation::tight);
     const std::unique_ptr<RldSolver> reference = entry->make(Formulation::tight);
     std::vector<DifferentialRow> rows;

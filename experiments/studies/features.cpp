@@ -39,7 +39,8 @@ class FeaturesStudy : public Study {
                  "Features of the problem (cones, candidate edges, conflicts) and of the tight program's "
                  "linear "
                  "relaxation by Clp (size, fractional edges, degeneracy), each group timed on its own, one "
-                 "thread. The gap of the relaxation takes the optimum, by path-pair; it is no feature."}) {}
+                 "thread. The gap of the relaxation needs the optimum, by path-pair, so it is not a "
+                 "feature."}) {}
 
     void add_options(CLI::App& command) override {
         options_.sizes = {12, 20, 30};

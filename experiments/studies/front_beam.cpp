@@ -165,17 +165,17 @@ class FrontBeamStudy : public Study {
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl; *.tracks.json beside it")->required();
-        command.add_option("--weights", weights_, "of front (JSON); those of the library without");
-        command.add_option("--beams", options_.beams, "states kept at each level")
+        command.add_option("--weights", weights_, "weights of front (JSON); those of the library without it");
+        command.add_option("--beams", options_.beams, "numbers of states kept at each level")
             ->delimiter(',')
             ->capture_default_str();
-        command.add_option("--reference-beam", options_.reference_beam, "of the last row")
+        command.add_option("--reference-beam", options_.reference_beam, "beam of the last row")
             ->capture_default_str();
-        command.add_option("--reference-drop", options_.reference_drop, "of the last row [score]")
+        command.add_option("--reference-drop", options_.reference_drop, "drop of the last row [score]")
             ->capture_default_str();
         command
             .add_option("--exhaustive", options_.exhaustive_ms,
-                        "a row for each: the search that leaves out nothing, stopped after so long [ms]")
+                        "time limits [ms]: a row for each, by the search that leaves out nothing")
             ->delimiter(',')
             ->check(CLI::PositiveNumber);
     }

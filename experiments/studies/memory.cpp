@@ -87,10 +87,12 @@ class MemoryStudy : public Study {
         command.add_option("--methods", methods_, "methods, and solvers of the registry")
             ->delimiter(',')
             ->capture_default_str();
-        command.add_option("--calls", options_.calls, "of each method")
+        command.add_option("--calls", options_.calls, "number of calls of each method")
             ->check(whole_number(2, 100'000'000))
             ->capture_default_str();
-        command.add_option("--time-limit", options_.time_limit_ms, "of each call [ms]; none where not given")
+        command
+            .add_option("--time-limit", options_.time_limit_ms,
+                        "time limit of each call [ms]; without it none")
             ->check(CLI::Range(0.1, 1e6));
     }
 

@@ -199,7 +199,7 @@ class OptimalityStudy : public Study {
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);
-        command.add_option("--method", options_.method, "one that enumerates")->capture_default_str();
+        command.add_option("--method", options_.method, "a method that enumerates")->capture_default_str();
         add_nearest_option(command, options_.nearest, "the N nearest cones ahead only; all without it");
         add_time_limit_option(command, options_.time_limit_ms);
         add_threads_option(command, options_.threads, "nothing is timed");

@@ -17,11 +17,11 @@ struct LaneBounds {
     double w_max_m = 6.5;                       ///< C_width
 };
 
-/// Whether the search may give up on a lane that violates C_width by a vertex that is too far from what has
-/// been built of the other boundary.
+/// Whether the search may give up a lane that violates C_width by a vertex that is too far from the other
+/// boundary as built so far.
 enum class WidthBacktracking {
-    proven,      ///< only where no extension at all can satisfy the constraint: nothing feasible is missed
-    left_behind  ///< also where both boundaries have passed the vertex: the fixed matchings of Lemma 3
+    proven,      ///< only if no extension can satisfy the constraint: no feasible lane is missed
+    left_behind  ///< also if both boundaries have passed the vertex: the fixed matchings of Lemma 3
 };
 
 /// The constraint decider CD and the backtracking decider BTD, kept up to date while a lane grows and shrinks
@@ -29,17 +29,16 @@ enum class WidthBacktracking {
 ///
 /// Lemma 1, Lemma 2 and the second case of Lemma 3 hold as printed. Its first case does not hold for the
 /// width that equations (11) to (13) define: a boundary that turns back may come near a vertex it has passed.
-/// With WidthBacktracking::left_behind such lanes are given up as the paper does, otherwise they are
-/// followed.
+/// With WidthBacktracking::left_behind such lanes are given up, as in the paper; otherwise they are followed.
 class LaneConstraints {
   public:
     struct State {
         bool feasible = false;  ///< CD
-        /// BTD, whichever sides can still be extended.
+        /// BTD, for any sides that can still be extended.
         bool hopeless = false;
         /// By side: whether the lane can become feasible only by extending this side.
         std::array<bool, 2> needs{false, false};
-        /// The line between the last points meets another segment: extending any side may satisfy C_poly.
+        /// The line between the last points meets another segment: extending either side may satisfy C_poly.
         bool end_line_meets = false;
 
         /// BTD, given which sides can still be extended.
@@ -52,7 +51,7 @@ class LaneConstraints {
     /// Starts a lane of one point a side.
     void reset(const Point& left, const Point& right, const LaneBounds& bounds, WidthBacktracking rule);
     /// Extends a side. `turn_allowed`: the new segment's turning angle is below phi_max; true for the first
-    /// one of a side, which no angle limits. The segment must have a length.
+    /// segment of a side, which has no angle limit. The segment must have a length.
     void push(Side side, const Point& point, bool turn_allowed);
     /// Undoes the last push, which was on `side`.
     void pop(Side side);

@@ -13,15 +13,15 @@
 
 namespace conelane {
 
-/// What the ranking of candidates sees of a lane, and where it stands in LaneFeatures. The first eight are
-/// those of section VII of the CLC paper, in its order: length, the mean of both boundaries' [m]; number of
-/// cones; variance of the lane width, over W(L, R) of equation (12) with every query counted [m^2]; variance
-/// of the segment lengths [m^2]; variance of the signed turning angles between consecutive segments [rad^2].
-/// Variances are those of the whole population, 0 where there is nothing to vary. The others are this
-/// project's. lane_feature_names gives the units. Features of a pair of sides stand left, right: kConesLeft +
+/// What the ranking of candidates sees of a lane, as positions in LaneFeatures. The first eight are those of
+/// section VII of the CLC paper, in its order: length, the mean of both boundaries' [m]; number of cones;
+/// variance of the lane width, over W(L, R) of equation (12) with every query counted [m^2]; variance of the
+/// segment lengths [m^2]; variance of the signed turning angles between consecutive segments [rad^2].
+/// Variances are those of the whole population, 0 if there are too few values. The others are this project's.
+/// lane_feature_names gives the units. Features of a pair of sides are in the order left, right: kConesLeft +
 /// side.
 enum LaneFeature : std::size_t {
-    // Those of the paper.
+    // The features of the paper.
     kLength,
     kConesLeft,
     kConesRight,
@@ -30,23 +30,23 @@ enum LaneFeature : std::size_t {
     kSegmentLengthVarianceRight,
     kTurnVarianceLeft,
     kTurnVarianceRight,
-    // Length over that of the longest candidate of the scene.
+    // Length relative to the longest candidate of the scene.
     kMaxShare,
-    // Of the two first cones, as StartVertexRules has them.
+    // Of the two first cones, as in StartVertexRules.
     kStartAsymmetry,
     kStartDistance,
     // Of the scene.
     kSceneCones,
     // Of |theta_r - theta_l| at the far ends, equation (4), as advance_deviation has it.
     kEndDeviation,
-    // Inside of the lane: no cone should lie there. As the triangles see them that the lane grows by.
+    // Cones inside the lane, where none should be: inside the triangles by which the lane grows.
     kConesInside,
     // Neighbours of its cones in the search graph.
     kMeanDegree,
     kSharpestTurn,
     kSharpestTurnChange,
     kMaxSegment,
-    // Chord between the direction of a segment and that of the last one opposite when it was added, squared.
+    // Squared chord between the directions of a new segment and of the last one opposite to it.
     kMeanSquaredSkew,
     // Between the two last cones after each step.
     kMeanAcross,
@@ -60,21 +60,21 @@ enum LaneFeature : std::size_t {
     kMinSegment,
     // Largest chord between the direction of a first segment and the car's heading.
     kStartSkew,
-    // Within kBeside_m of a segment, not on the lane: a cone that the boundary should have gone through.
+    // Within kBeside_m of a segment but not on the lane: cones that the boundary may have skipped.
     kConesBeside,
     // At the far ends: the sharper turn, the longer segment, the last change of a turn.
     kEndTurn,
     kEndSegment,
     kEndTurnChange,
-    // Vertices off where the two on each side of them would have one; skew as above.
+    // Offset of a vertex from the place that the two vertices on each side of it suggest; skew as above.
     kMaxOffset,
     kRmsOffset,
     kMaxSkew,
-    // Of the widths at the vertices; a change is from a vertex to the next of its side.
+    // Of the widths at the vertices; a change is between successive vertices of a side.
     kMinWidth,
     kMaxWidth,
     kMaxWidthChange,
-    // Of the near part alone.
+    // Of the near part only.
     kNearSharpestTurn,
     kNearSharpestTurnChange,
     kNearRmsTurnChange,
@@ -89,7 +89,7 @@ enum LaneFeature : std::size_t {
     kNearCurvatureDifference,
     kNearConesInside,
     kNearConesBeside,
-    // Within kClose_m of a segment; with a weight that falls from 1 on it to 0 at kBeside_m.
+    // Within kClose_m of a segment; weighted from 1 on the segment to 0 at kBeside_m.
     kNearConesClose,
     kNearCloseness,
     kNearVertices,
@@ -99,8 +99,8 @@ enum LaneFeature : std::size_t {
     kNearWidthDeviation,
     kNearLargestWidthChange,
     kNearRmsWidthChange,
-    // Of the two first cones again: where a false one stands in the place of one of them, a lane may be
-    // right in all the rest.
+    // Of the two first cones again: if a false cone replaces one of them, the rest of a lane may still be
+    // right.
     kStartLead,
     kStartShift,
     kStartNearestSide,
@@ -120,7 +120,7 @@ using LaneFeatures = std::array<double, kLaneFeatureCount>;
 [[nodiscard]] PaperFeatures paper_features(std::span<const Point> left, std::span<const Point> right,
                                            bool closed = false);
 
-/// Count, sum and sum of squares of what a variance is taken of.
+/// Count, sum and sum of squares for a variance.
 struct Moments {
     double count = 0.0;
     double sum = 0.0;
@@ -131,19 +131,19 @@ struct Moments {
         sum += value;
         sum_of_squares += value * value;
     }
-    /// 0 where nothing was added, and so are the others.
+    /// 0 if nothing was added; so are the others.
     [[nodiscard]] double mean() const { return count == 0.0 ? 0.0 : sum / count; }
     [[nodiscard]] double mean_of_squares() const { return count == 0.0 ? 0.0 : sum_of_squares / count; }
     [[nodiscard]] double variance() const;
 };
 
-/// A step of a boundary from one vertex to the next belongs to the near part of the lane where it begins
-/// within this distance along the boundary [m]. A lane that is wrong there is a critical failure, and what
-/// is wrong with one vertex is lost in a figure of the whole lane.
+/// A step of a boundary belongs to the near part of the lane if it begins within this distance along the
+/// boundary [m]. A lane that is wrong there is a critical failure, and a fault at one vertex hardly shows in
+/// a mean over the whole lane.
 inline constexpr double kNearPart_m = 20.0;
 
-/// What the features need to know of a lane, brought up to date while it grows vertex by vertex. A value: the
-/// search keeps one for each lane that it may come back to.
+/// State for the features of a lane, updated while it grows vertex by vertex. It is a value: the search keeps
+/// a copy for each lane that it may return to.
 class LaneGrowth {
   public:
     /// A lane of one vertex a side, neither of which has a direction yet. `heading`: the car's, a unit
@@ -152,16 +152,16 @@ class LaneGrowth {
     /// Extends a side.
     void push(const SearchGraph& graph, Side side, Vertex vertex);
 
-    /// All features but those of the width, which add_width_features sets, and what belongs to the scene
-    /// (kMaxShare, kSceneCones, of kStart* all but kStartSkew); these are left 0.
+    /// All features except those of the width, which add_width_features sets, and those that depend on the
+    /// scene (kMaxShare, kSceneCones, all of kStart* but kStartSkew); these are 0.
     [[nodiscard]] LaneFeatures features() const;
-    /// By side, the vertices of the near part, its first one included.
+    /// By side, the vertices of the near part, with its first one.
     [[nodiscard]] std::array<std::size_t, 2> near_vertices() const;
 
   private:
     struct Boundary {
         Vertex last = 0;
-        Point direction{0.0, 0.0};  ///< unit vector of the last segment; zero where there is none
+        Point direction{0.0, 0.0};  ///< unit vector of the last segment; zero if there is none
         std::array<Point, 3> before_tip{Point(0.0, 0.0), Point(0.0, 0.0),
                                         Point(0.0, 0.0)};  ///< nearest first
         std::size_t vertices = 1;
@@ -175,7 +175,8 @@ class LaneGrowth {
     struct Stretch {
         Moments skew;  ///< chords between the directions of a new segment and the other side's last one
         Moments turn_changes;
-        Moments offsets_m;  ///< across the boundary, from where the two vertices on each side put a vertex
+        Moments
+            offsets_m;  ///< across the boundary, from the place that the two vertices on each side suggest
         Moments segment_changes_m;
         double largest_skew = 0.0;
         double sharpest_turn_rad = 0.0;
@@ -189,7 +190,7 @@ class LaneGrowth {
         std::array<std::size_t, 2> steps{0, 0};
         Neighbourhood cones;
     };
-    /// One step, as a Stretch counts it; where a boundary is too short for a figure, it is negative.
+    /// One step, as a Stretch counts it; a value is negative if the boundary is too short for it.
     struct Step;
     static void add(const Step& step, Side side, Stretch& stretch);
 
@@ -204,8 +205,8 @@ class LaneGrowth {
     double last_turn_change_rad_ = 0.0;
 };
 
-/// Sets the features of a lane that its widths decide: all in `lane` that LaneGrowth leaves 0 but those of
-/// the scene. `near_vertices`: by side, at least one.
+/// Sets the features that depend on widths: all that LaneGrowth leaves 0 in `lane`, except those of the
+/// scene. `near_vertices`: by side, at least one.
 void add_width_features(const OnlineLaneWidth& width, const std::array<std::size_t, 2>& near_vertices,
                         LaneFeatures& lane);
 

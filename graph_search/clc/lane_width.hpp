@@ -12,15 +12,15 @@
 
 namespace conelane {
 
-/// The widths W(L, R) of equation (12) of the CLC paper [m], by query: how far each vertex and each segment
-/// of a boundary is from the nearest point of the other boundary.
+/// The widths W(L, R) of equation (12) of the CLC paper [m], by query: distance of each vertex and each
+/// segment of a boundary from the nearest point of the other boundary.
 struct LaneWidths {
     std::array<std::vector<double>, 2> of_vertex_m;   ///< by side, one for each vertex
     std::array<std::vector<double>, 2> of_segment_m;  ///< by side, one for each segment
 };
 
-/// Equations (8) to (12) as printed, each query on its own. A boundary may be a single point; closed ones
-/// also have the segment from the last vertex to the first. Precondition: no boundary is empty.
+/// Equations (8) to (12) as printed, each query by itself. A boundary may be a single point; closed ones also
+/// have the segment from the last vertex to the first. Precondition: no boundary is empty.
 [[nodiscard]] LaneWidths lane_widths(std::span<const Point> left, std::span<const Point> right,
                                      bool closed = false);
 
@@ -30,7 +30,7 @@ struct BoundaryArrays {
     std::vector<double> dx, dy;  ///< of the segments, end minus begin
     std::vector<double> inverse_squared_length;
     std::size_t size = 0;  ///< vertices in use
-    /// The arrays are longer by so many numbers at least, so that loops may end in whole steps.
+    /// Padding of the arrays, so that loops may end in whole steps.
     static constexpr std::size_t kSpare = 8;
 
     void push(const Point& point);
@@ -39,30 +39,30 @@ struct BoundaryArrays {
     [[nodiscard]] Segment segment(std::size_t i) const { return {vertex(i), vertex(i + 1)}; }
 };
 
-/// Lane width while boundaries grow vertex by vertex and shrink again: what Algorithm 3 is for.
+/// Lane width while boundaries grow vertex by vertex and shrink again: the purpose of Algorithm 3.
 ///
-/// Algorithm 3 as printed calls every matching before the first one (in lexicographic order) that meets an
-/// end of a boundary fixed, and never looks at it again. That is not what equations (11) to (13) define: a
-/// later segment may come nearer to an early query (tests/graph_search/clc/lane_width_test.cpp follows an
-/// example by hand). What does hold is (21) and (22): extending the other boundary never makes a width
-/// larger, and extending its own changes it not at all. So each query keeps its width so far, and a new
-/// segment is measured once against every query and every old segment. From this follows what never changes:
-///   - a width that is not above w_min stays so, whatever is added;
-///   - a width below w_max stays below, whatever is added;
-///   - a width of w_max or more is changed only by extending the *other* boundary.
+/// Algorithm 3 as printed fixes every matching before the first one (in lexicographic order) that meets an
+/// end of a boundary, and never revises it. That is not what equations (11) to (13) define: a later segment
+/// may come nearer to an early query (tests/graph_search/clc/lane_width_test.cpp has an example). (21) and
+/// (22) do hold: extending the other boundary never makes a width larger, and extending its own boundary does
+/// not change it. So each query keeps its width so far, and a new segment is measured once against every
+/// query and every old segment. It follows that these properties are final:
+/// - a width not above w_min stays so;
+/// - a width below w_max stays below;
+/// - a width of w_max or more changes only if the *other* boundary is extended.
 /// The widths equal those of `lane_widths` after every step as long as the boundaries have no point in
-/// common; lane_constraints sees to that before it measures.
+/// common; lane_constraints checks this before it measures.
 class OnlineLaneWidth {
   public:
-    /// What the constraint C_width, equation (13), needs to know of the lane.
+    /// What the constraint C_width, equation (13), needs of the lane.
     struct State {
         double narrowest_squared = std::numeric_limits<double>::infinity();  ///< [m^2]
-        /// By side: vertices whose width is w_max or more. Those of segments need no count: no segment is
-        /// farther from the other boundary than its ends.
+        /// By side: vertices whose width is w_max or more. Segments need no count: no segment is farther from
+        /// the other boundary than its ends.
         std::array<std::uint32_t, 2> too_wide{0, 0};
-        /// Some vertex with a width of w_max or more has been left behind by both boundaries: it is not the
-        /// last of its side, and what is nearest to it is not the end of the other. These are the violations
-        /// that the paper calls fixed.
+        /// Some vertex with a width of w_max or more was passed by both boundaries: it is not the last of its
+        /// side, and the point nearest to it is not the end of the other. The paper calls these violations
+        /// fixed.
         bool too_wide_behind = false;
     };
 
@@ -70,8 +70,8 @@ class OnlineLaneWidth {
     void reset(const Point& left, const Point& right, double w_max_m);
     /// Precondition: the new segment has a length and meets no segment of the other boundary.
     void push(Side side, const Point& point);
-    /// Adds a vertex without measuring, for a lane that can no longer become feasible: until it is popped
-    /// again, the state stays as before and widths must not be read.
+    /// Adds a vertex without measuring, for a lane that cannot become feasible: until it is popped again, the
+    /// state stays unchanged and widths must not be read.
     void push_unmeasured(Side side, const Point& point);
     void pop(Side side);
 
@@ -85,13 +85,13 @@ class OnlineLaneWidth {
     [[nodiscard]] double variance() const;
 
   private:
-    /// Widths of one side's queries, a row for each length that the other boundary has had, one after the
-    /// other. The row in use is the last one: a push on the other side starts a new row, a push on the own
-    /// side appends to it, and undoing either is dropping the end.
+    /// Widths of one side's queries, a row for each length of the other boundary, one after the other. The
+    /// last row is in use: a push on the other side starts a new row, a push on its own side appends to it,
+    /// and undoing a push drops the end.
     struct Rows {
         std::vector<double> vertex_squared;   ///< [m^2]
         std::vector<double> segment_squared;  ///< [m^2]; entry i: the segment that ends at vertex i
-        std::vector<std::int64_t> at_end;  ///< 1 where the last vertex of the other side is nearest, else 0
+        std::vector<std::int64_t> at_end;     ///< 1 if the last vertex of the other side is nearest, else 0
         std::vector<std::size_t> begins;
 
         void make_room(std::size_t size);
@@ -101,8 +101,8 @@ class OnlineLaneWidth {
     std::array<Rows, 2> rows_;
     std::vector<State> states_;
     std::vector<double> to_new_segment_;  ///< squared distances from the other side's vertices
-    std::vector<double> foot_;            ///< where on the new segment those are attained, in [0, 1]
-    std::vector<double> to_new_vertex_;   ///< squared distances from the other side's segments
+    std::vector<double> foot_;           ///< where on the new segment these distances are attained, in [0, 1]
+    std::vector<double> to_new_vertex_;  ///< squared distances from the other side's segments
     double squared_w_max_ = 0.0;
 };
 

@@ -12,21 +12,21 @@ inline constexpr double kBeside_m = 1.2;
 /// ... and within this one close to it [m].
 inline constexpr double kClose_m = 0.6;
 
-/// What vertices stand around a new segment of a boundary, from `tip` to `point`.
+/// Vertices around a new segment of a boundary, from `tip` to `point`.
 struct Neighbourhood {
     double inside =
-        0.0;  ///< in the triangle with the other side's last vertex, `facing`; its edges do not count
+        0.0;  ///< in the triangle with the last vertex of the other side, `facing`; its edges do not count
     double beside = 0.0;
     double close = 0.0;
-    double closeness = 0.0;  ///< of those beside, with a weight that falls from 1 on the segment to 0
+    double closeness = 0.0;  ///< sum over those beside, weighted from 1 on the segment to 0
 };
 
-/// Counts among the neighbours of `vertex`, which should be one of the segment's ends. Vertices at `left_out`
-/// and at `left_out_too` do not count as beside the segment.
+/// Counts among the neighbours of `vertex`, which should be an end of the segment. Vertices at `left_out` and
+/// at `left_out_too` do not count as beside the segment.
 [[nodiscard]] Neighbourhood neighbourhood(const SearchGraph& graph, Vertex vertex, const Point& tip,
                                           const Point& facing, const Point& point, const Point& left_out,
                                           const Point& left_out_too);
-/// All of them count.
+/// The same with all neighbours.
 [[nodiscard]] inline Neighbourhood neighbourhood(const SearchGraph& graph, Vertex vertex, const Point& tip,
                                                  const Point& facing, const Point& point) {
     constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();

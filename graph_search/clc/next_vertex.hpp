@@ -10,7 +10,7 @@
 namespace conelane {
 
 /// A number that grows with the absolute angle between two directions: 0 for straight on, 1 for a right
-/// angle, 2 for a turn back; 0 where a direction has no length. Cheaper than the angle and as exact.
+/// angle, 2 for a turn back; 0 if a direction has no length. Cheaper than the angle and as exact.
 [[nodiscard]] double turning_measure(const Point& before, const Point& after);
 /// turning_measure of an absolute angle in [0, pi] rad.
 [[nodiscard]] double turning_measure(double angle_rad);
@@ -18,19 +18,18 @@ namespace conelane {
 /// A vertex that may come next on a boundary.
 struct NextVertex {
     Vertex vertex;
-    SearchGraph::DirectedEdge edge;  ///< that leads to it
-    double turning;                  ///< turning_measure of the angle that the boundary takes
-    double cost;                     ///< what decides the order
+    SearchGraph::DirectedEdge edge;  ///< the edge that leads to it
+    double turning;                  ///< turning_measure of the boundary's angle at it
+    double cost;                     ///< decides the order
 };
 
-/// Next-vertex decider NVD, equation (3) of the CLC paper: neighbours of a boundary's last vertex in the
-/// order of the absolute angle they make with its last segment, the smallest first; equal ones by vertex. The
-/// order depends on the last two vertices only, so it is computed once for each directed edge that the search
-/// meets.
+/// Next-vertex decider NVD, equation (3) of the CLC paper: neighbours of a boundary's last vertex by the
+/// absolute angle to its last segment, smallest first; ties by vertex. The order depends only on the last two
+/// vertices, so it is computed once for each directed edge that the search meets.
 ///
-/// With a distance weight the cost is not the angle's turning_measure alone: the vertex's distance as a share
-/// of d_max, times the weight, is added. Of vertices almost straight on the nearest then comes first, while
-/// equation (3), weight 0, goes past it as easily, and takes a false positive far off for a bend's next cone.
+/// With a distance weight, the cost is the turning_measure plus the vertex's distance as a share of d_max,
+/// times the weight. Then the nearest of several vertices almost straight ahead comes first. Equation (3),
+/// weight 0, may skip it, and may take a false positive far off for the next cone of a bend.
 class NextVertexDecider {
   public:
     /// A range of `options`.
@@ -39,7 +38,7 @@ class NextVertexDecider {
         std::uint32_t end;
     };
 
-    /// Forgets everything; `graph` must outlive the use of this object.
+    /// Clears the cache; `graph` must outlive the use of this object.
     void reset(const SearchGraph& graph, double distance_weight_per_m = 0.0);
 
     /// Neighbours of a first vertex, ordered by their angle with the car's heading (a unit vector).
@@ -50,7 +49,7 @@ class NextVertexDecider {
             ranges_[edge] = sorted(to, graph_->position(to) - graph_->position(from));
         return ranges_[edge];
     }
-    /// Of all ranges so far.
+    /// Size of all ranges so far.
     [[nodiscard]] std::size_t option_count() const { return options_.size(); }
     [[nodiscard]] const NextVertex& option(std::uint32_t index) const { return options_[index]; }
 

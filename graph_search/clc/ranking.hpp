@@ -9,8 +9,8 @@
 
 namespace conelane {
 
-/// A judge of candidate lanes: the higher the score, the likelier the lane. Stateless, so one object may
-/// serve many threads.
+/// Scores candidate lanes: a higher score means a likelier lane. Stateless, so one object may serve many
+/// threads.
 class LaneRanking {
   public:
     virtual ~LaneRanking() = default;
@@ -18,9 +18,9 @@ class LaneRanking {
     virtual void score(std::span<const LaneFeatures> lanes, std::span<double> scores) const = 0;
 };
 
-/// Writes what a network sees of a lane: its first inputs.size() features, of which those that come as a pair
-/// of sides are replaced by the mean of both and half their distance. So a lane and its mirror image look
-/// alike. Precondition: both sides of a pair are in, or neither.
+/// Writes the inputs of a network for a lane: its first inputs.size() features, with each pair of sides
+/// replaced by the mean and half the distance of its values. So a lane and its mirror image have the same
+/// inputs. Precondition: both sides of a pair are included, or neither.
 void network_inputs(const LaneFeatures& lane, std::span<double> inputs);
 
 /// The network of section VII: standardised inputs, rectified linear units, one output. The paper has 8
@@ -33,8 +33,8 @@ struct RankNetWeights {
     Eigen::VectorXf output;
     float output_bias = 0.0F;
 };
-/// Throws InvalidInput where sizes do not fit, the number of inputs is neither that of the paper's features
-/// nor of all, a number is not finite or a deviation is not positive.
+/// Throws InvalidInput if sizes do not fit, the number of inputs is neither that of the paper's features nor
+/// of all, a number is not finite or a deviation is not positive.
 [[nodiscard]] std::shared_ptr<const LaneRanking> make_rank_net(const RankNetWeights& weights);
 
 }  // namespace conelane

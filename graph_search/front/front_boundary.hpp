@@ -9,8 +9,8 @@
 
 namespace conelane {
 
-/// What a single boundary may look like. Chosen by hand: the networks of the front judge a boundary by the
-/// other one, and have learned from scenes with both.
+/// Rules for a single boundary. Chosen by hand: the networks of the front judge a boundary by the other one,
+/// and have learned from scenes with both.
 struct BoundaryRules {
     // Of the first cone, in the frame of the car.
     double start_behind_m = 0.6;
@@ -28,22 +28,21 @@ struct BoundaryRules {
     double usual_distance_m = 1.75;  ///< half a usual lane
     std::size_t fewest_cones = 3;
     std::size_t max_cones = 100;
-    // Of all segments together, and of their mean: three cones must be nearly perfect, more need not.
+    // Of all segments together, and of their mean: three cones must be nearly perfect, more cones need not.
     double least_score = 1.6;
     double least_mean_score = 0.6;
     std::size_t beam_width = 64;
 };
 
-/// Finds the boundary that a scene shows where it shows but one: the longest smooth chain of cones that
-/// begins beside the car. A segment counts 1, less for uneven spacing, for a turn and for a change of it,
-/// less for being shorter than 2 m. The side is that on which it passes the car: the arc through its first
-/// three cones is followed back to where the car stands, so in a bend the outer boundary may begin on the
-/// other side of the heading. From the third cone on cones are bridged, by up to kMaxSegment_m. Keeps
-/// memory from call to call.
+/// Finds the boundary of a scene that shows only one: the longest smooth chain of cones that begins beside
+/// the car. A segment counts 1, less for uneven spacing, for a turn, for a change of turn, and for being
+/// shorter than 2 m. The side is the one on which the chain passes the car: the arc through its first three
+/// cones is followed back to the car, so in a bend the outer boundary may begin on the other side of the
+/// heading. From the third cone on, gaps of up to kMaxSegment_m are bridged. Keeps memory from call to call.
 class BoundarySearch {
   public:
-    /// Puts the boundary into `cones` and returns its side. Returns nothing where there is none, or where the
-    /// budget was spent before the end. A deterministic beam; of equal chains the one found first.
+    /// Puts the boundary into `cones` and returns its side. Returns nothing if there is none, or if the
+    /// budget is spent before the end. A deterministic beam search; of equal chains, the one found first.
     std::optional<Side> find(FrontMap& map, SearchBudget& budget, std::vector<Vertex>& cones);
 
   private:

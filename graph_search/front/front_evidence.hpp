@@ -9,23 +9,22 @@
 
 namespace conelane {
 
-/// What the last lane of a lap says about the next scene. A cone that was on a boundary of it, found again by
-/// its id, earns a bonus wherever a lane has it on that side. New cones and cones that were left aside earn
-/// none, so a lane that was wrong has no more than its cones' bonuses before the right one, and that only
-/// while those cones are seen.
+/// Evidence from the last lane of a lap for the next scene. A cone that was on a boundary, found again by its
+/// id, earns a bonus wherever a lane has it on that side. New cones and cones that were left aside earn none.
+/// So a wrong lane has only the bonuses of its cones over the right one, and only while those cones are seen.
 ///
-/// Of the forms compared, a bonus for a segment that is repeated and a memory of several scenes did no better
-/// than this one, and one that also charges cones left aside lost overlap.
+/// Other forms were no better: a bonus for a repeated segment, a memory of several scenes, and a charge for
+/// cones left aside, which lost overlap.
 class FrontEvidence {
   public:
     /// `bonus`: score for each cone, at least 0. Throws InvalidInput where it is not.
     explicit FrontEvidence(double bonus);
 
-    /// Takes a lane in place of what was remembered.
+    /// Replaces the remembered lane.
     void remember(const Lane& lane);
     void forget() { remembered_.clear(); }
 
-    /// Finds the cones remembered in a scene, of which `map` was built. Keeps memory from call to call.
+    /// Finds the remembered cones in a scene, from which `map` was built. Keeps memory from call to call.
     void find_again(const Scene& scene, const FrontMap& map);
     /// The bonus of a cone of that scene on a side.
     [[nodiscard]] double bonus(Side side, Vertex cone) const {

@@ -12,9 +12,9 @@
 
 namespace conelane {
 
-/// Looks at the best lanes of a search as wholes, side by side: which of them is the best, how sure that is,
-/// and how far. What a beam cannot see, it sees: the least certain cone of a lane, cones inside it
-/// altogether, and where the lanes part. Keeps memory from call to call.
+/// Compares the best lanes of a search as wholes: which is the best, how certain it is, and how far. It sees
+/// what a beam cannot: the least certain cone of a lane, the number of cones inside it, and where the lanes
+/// part. Keeps memory from call to call.
 class FrontJudge {
   public:
     /// Lanes looked at.
@@ -36,8 +36,8 @@ class FrontJudge {
     /// Throws as `validate`.
     explicit FrontJudge(const FrontWeights& weights);
 
-    /// What a search adds for FrontEvidence counts where the contenders are ordered, and nowhere else: the
-    /// networks know of none.
+    /// The bonuses of FrontEvidence count when the contenders are ordered, and nowhere else: the networks do
+    /// not see them.
     ///
     /// Precondition: one contender at least and at most kContenders, the one of the highest score first, each
     /// with two cones a side.

@@ -9,8 +9,8 @@
 
 namespace conelane {
 
-/// What no lane may break, whatever its cost. There is no upper width beside a boundary that goes on: it
-/// would exclude true lanes in hairpins.
+/// Rules that no lane may break. There is no largest width beside a boundary that goes on: it would exclude
+/// true lanes in hairpins.
 struct FrontRules {
     double narrowest_m = 2.0;     ///< from a new segment to the other boundary, noise included
     double widest_alone_m = 7.5;  ///< from a new cone to a boundary that has stopped
@@ -23,16 +23,16 @@ struct FrontRules {
     // Of the cones that a lane may start with.
     double start_behind_m = 0.6;  ///< noise moves the first cone behind the car
     double start_ahead_m = 12.0;
-    double start_across_m = 2.5;  ///< a side may cross the heading by so much: pose error
+    double start_across_m = 2.5;  ///< pose error: a side may be this far across the heading
     double start_aside_m = 9.0;
     double widest_start_m = 10.0;
     std::size_t start_cones = 48;  ///< of each side, the nearest to the car
 };
 
-/// The moves of that side that its last cones allow: all segments up to kShortSegment_m and the straightest
-/// of the longer ones that no cone stands on, in the order of their length. What the whole lane forbids is
-/// looked at by FrontSearch. `left_out`: whether there are more short ones. `stops`: whether the side may
-/// stop, which takes two cones.
+/// The moves of a side that its last cones allow: all segments up to kShortSegment_m and the straightest
+/// longer ones without a cone on them, in the order of their length. FrontSearch checks rules that depend on
+/// the whole lane. `left_out`: whether there are more short segments. `stops`: whether the side may stop,
+/// which takes two cones.
 struct FrontMoves {
     std::vector<FrontMove> extensions;
     bool stops = false;
@@ -41,7 +41,7 @@ struct FrontMoves {
     void list(FrontMap& map, const FrontState& state, Side side, const FrontRules& rules);
 
   private:
-    /// Computes a cosine anew only where the angle is another one than before.
+    /// Recomputes a cosine only if the angle has changed.
     class Cosine {
       public:
         [[nodiscard]] double of(double angle_rad) {

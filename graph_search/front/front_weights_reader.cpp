@@ -29,7 +29,8 @@ void read_features(JsonReader& json) {
     json.object([&](const std::string& key) {
         const auto lists = front_feature_lists();
         const auto known = std::ranges::find(lists, key, &FrontFeatureList::key);
-        if (known == lists.end()) throw InvalidInput("features", "'" + key + "' is no list of the library");
+        if (known == lists.end())
+            throw InvalidInput("features", "'" + key + "' is not a list of the library");
         if (!seen.insert(key).second) throw InvalidInput("features", "'" + key + "' is there twice");
         if (json.next() != '[') throw InvalidInput("features", "'" + key + "' must be a list of names");
         std::size_t count = 0;
@@ -61,7 +62,7 @@ void read_numbers(JsonReader& json, const std::string& key, std::span<float> num
     std::size_t count = 0;
     json.array([&] {
         const std::string place = "number " + std::to_string(count);
-        if (!json.is_number()) fail(place + " (from 0) is no number");
+        if (!json.is_number()) fail(place + " (from 0) is not a number");
         const double number = json.number();
         if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max()))
             fail(place + " (from 0) is out of range");
@@ -154,7 +155,7 @@ FrontWeights parse_front_weights(std::string_view text) {
     require("features");
     for (const NumberList& list : lists) require(list.key);
     require("least_trust");
-    if (!unknown.empty()) throw InvalidInput(unknown, "is no key of weights of front");
+    if (!unknown.empty()) throw InvalidInput(unknown, "is not a key of weights of front");
     validate(weights);
     return weights;
 }

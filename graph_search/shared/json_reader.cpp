@@ -46,7 +46,7 @@ void JsonReader::fail(const std::string& reason) const {
 
 void JsonReader::require_end() {
     pass_blanks();
-    if (at_ < text_.size()) fail("there is more behind the object");
+    if (at_ < text_.size()) fail("there is more after the object");
 }
 
 std::string JsonReader::string() {

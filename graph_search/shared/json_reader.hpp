@@ -7,8 +7,8 @@
 
 namespace conelane {
 
-/// Reads JSON from front to back. The core has no JSON library, and needs no more than this. Throws
-/// InvalidInput naming the line of what is no JSON.
+/// Reads JSON from front to back; the core has no JSON library. Throws InvalidInput naming the line that is
+/// not JSON.
 class JsonReader {
   public:
     /// `key`: what errors name. Both views must outlive the object.
@@ -38,11 +38,11 @@ class JsonReader {
         list('[', ']', read);
     }
 
-    /// With its escapes as they stand: no name that is compared has one.
+    /// The string with its escapes unchanged: names that are compared have none.
     std::string string();
 
     [[nodiscard]] bool is_number();
-    /// The nearest double; infinite where it is out of range.
+    /// The nearest double; infinite if it is out of range.
     double number();
 
     /// Passes over any value.

@@ -9,11 +9,12 @@
 
 namespace conelane {
 
-/// What a search may spend, and what it has spent; its parts draw on one budget, one after the other.
+/// The limits of a search and what it has used; its parts use one budget, one after the other.
 struct SearchBudget {
-    std::int64_t iteration_limit = 2500;                     ///< it_max of Algorithm 2
-    Deadline deadline;                                       ///< none as long as nothing else is said
-    std::size_t memory_limit_bytes = std::size_t{1} << 29U;  ///< of what grows with the search, about
+    std::int64_t iteration_limit = 2500;  ///< it_max of Algorithm 2
+    Deadline deadline;                    ///< none by default
+    std::size_t memory_limit_bytes = std::size_t{1}
+                                     << 29U;  ///< approximate limit of memory that grows with the search
 
     std::int64_t iterations = 0;
     std::optional<StopReason> stopped_by;  ///< time or memory

@@ -23,22 +23,21 @@ inline constexpr Side kRight = 1;
     return 1 - side;
 }
 
-/// Gives the pairs of points that may be joined, each one in any order; may give pairs that are too far
-/// apart.
+/// Gives the pairs of points that may be joined, each once in any order; pairs that are too far apart are
+/// allowed.
 using EdgeRule = std::function<std::vector<std::pair<Vertex, Vertex>>(std::span<const Point>)>;
 
 /// Which points may follow each other on a boundary: the simple undirected graph of equations (1) and (2) of
 /// the CLC paper, all pairs at most d_max apart. Two points at the same place are not joined: a segment
-/// between them would have no direction. `build` reuses the memory of the graph before.
+/// between them would have no direction. `build` reuses memory from call to call.
 class SearchGraph {
   public:
     /// A neighbour together with the number of the directed edge that leads to it.
     using DirectedEdge = std::uint32_t;
 
-    /// With a rule only those of its pairs that are at most d_max apart are joined.
+    /// With a rule, only its pairs that are at most d_max apart are joined.
     void build(std::span<const Point> points, double d_max_m, const EdgeRule& rule = {});
-    /// The same within a budget of time and memory. Returns false where that is spent: then there is no
-    /// graph.
+    /// The same within a budget of time and memory. Returns false if it is spent: then there is no graph.
     [[nodiscard]] bool build(std::span<const Point> points, double d_max_m, const EdgeRule& rule,
                              SearchBudget& budget);
 
@@ -50,7 +49,7 @@ class SearchGraph {
     [[nodiscard]] std::span<const Vertex> neighbours(Vertex vertex) const {
         return {neighbours_.data() + first_edge_[vertex], first_edge_[vertex + 1] - first_edge_[vertex]};
     }
-    /// Of the neighbours, in their order. Behind them there are kSpare numbers at least, so that loops may
+    /// Coordinates of the neighbours, in their order, followed by at least kSpare numbers, so that loops may
     /// end in whole steps.
     struct Positions {
         const double* x;

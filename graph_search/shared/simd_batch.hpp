@@ -15,11 +15,11 @@
 
 namespace conelane {
 
-/// A batch of four numbers that stays in registers, whatever their width.
+/// A batch of four numbers in registers, for any register width.
 using Doubles [[gnu::vector_size(32)]] = double;
-/// The same as it lies in an array of double.
+/// The same as stored in an array of double.
 using UnalignedDoubles [[gnu::vector_size(32), gnu::aligned(8), gnu::may_alias]] = double;
-/// Arrays are read in whole batches, so they are longer than what they hold.
+/// Arrays are read in whole batches, so they are longer than their content.
 inline constexpr std::size_t kDoublesPerBatch = sizeof(Doubles) / sizeof(double);
 
 }  // namespace conelane

@@ -134,7 +134,7 @@ StepScores step_scores(std::string_view file) {
         const StepScoreTable& found = table->second;
         require(found.first == measure.first && found.spacing == measure.spacing &&
                     found.scores.size() == measure.scores,
-                key, "does not stand where the library has it");
+                key, "is not at the place that the library expects");
         scores.values.insert(scores.values.end(), found.scores.begin(), found.scores.end());
     }
     validate(scores);

@@ -8,8 +8,8 @@
 
 namespace conelane {
 
-/// The networks that come with the library, those of the paper's features and of all features. Their files in
-/// weights/ say what they were trained on.
+/// The networks of the library: for the paper's features and for all features. Their files in weights/ name
+/// the training.
 [[nodiscard]] RankNetWeights paper_rank_net_weights();
 [[nodiscard]] RankNetWeights extended_rank_net_weights();
 [[nodiscard]] std::shared_ptr<const LaneRanking> paper_rank_net();

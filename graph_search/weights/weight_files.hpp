@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-// The files beside this one, byte by byte as they were when the library was configured.
+// The files beside this one, byte by byte, embedded when the library was configured.
 extern const std::string_view kFrontFile;
 extern const std::string_view kRankNetPaperFile;
 extern const std::string_view kRankNetExtendedFile;

@@ -7,7 +7,7 @@
 
 namespace conelane::constraints {
 
-/// Edges as vertices, joined where both cannot be chosen; adjacency as rows of bits, 64 a word.
+/// Edges as vertices, joined if no lane graph holds both; adjacency as rows of bits, 64 a word.
 class ConflictGraph {
   public:
     explicit ConflictGraph(std::size_t edges) : words_((edges + 63) / 64), bits_(edges * words_, 0) {}

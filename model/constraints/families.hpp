@@ -4,15 +4,15 @@
 
 #include <vector>
 
-/// The constraint families of the RLD model, one file each; `formulation_parts.cpp` says which of them make a
-/// formulation. Those that may write many rows, or long ones, ask RowWriter::stop between them.
+/// The constraint families of the RLD model, one file each; `formulation_parts.cpp` lists those of a
+/// formulation. Families with many or long rows check RowWriter::stop between them.
 namespace conelane::constraints {
 
-/// The e column of the paths that end at one of the edge's cones by it.
+/// The e column of paths that end at this cone of the edge by the edge.
 [[nodiscard]] int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone);
 
-/// Adds coefficient * m_i to the open row, 1 where the cone is an endpoint, else 0: m_i = 2 g_i - A_i (10),
-/// or the sum of its e columns where the formulation has those.
+/// Adds coefficient * m_i to the open row: 1 if the cone is an endpoint, else 0. m_i = 2 g_i - A_i (10), or
+/// the sum of its e columns if the formulation has those.
 void add_endpoint_mark(const FamilyContext& context, std::size_t cone, double coefficient);
 
 // degree.cpp
@@ -37,8 +37,8 @@ void turn_flow(const FamilyContext& context);      ///< (1)(2)(22)(23)(28), tigh
 void edge_limits(const FamilyContext& context);  ///< (27)
 void turn_limits(const FamilyContext& context);  ///< (28)
 
-/// Rows of a family that is too large to write out, found where an integral point violates them. Pure
-/// functions of the problem and the chosen edges (by problem edge).
+/// Rows of a family that is too large to write out: those that an integral point violates. Pure functions of
+/// the problem and the chosen edges (by problem edge).
 
 // no_cycles.cpp
 /// (5): a row for every cycle that the chosen edges form. Precondition: no cone has more than two of them.

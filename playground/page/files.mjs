@@ -177,7 +177,7 @@ export function readText(text, name) {
   }
   if (/^\s*tag\s*,/.test(text) || /^[^\n]*,\s*tag\s*(,|\r?\n)/.test(text)) return readEufs(text, name);
   if (/^\s*track:/m.test(text)) return readPacsim(text, name);
-  return fail(name, 0, "", "is no scenes or lanes file, no EUFS or PacSim course and no ft-fsd run");
+  return fail(name, 0, "", "is not a scenes or lanes file, an EUFS or PacSim course or an ft-fsd run");
 }
 
 /** The same of bytes, which may be packed by gzip. */

@@ -245,29 +245,28 @@ void run(const Options& options, const RldParameters& parameters) {
 }  // namespace
 
 void add_certify_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("certify",
-                                                "Lagrange multipliers that prove a lower bound of each "
-                                                "scene's optimum, with --whole all that is needed "
-                                                "to repeat the proof of the optimum; --verify recomputes "
-                                                "both independently of the solver, exit code 1 "
-                                                "where not all of it is verified");
+    CLI::App& command = *program.add_subcommand(
+        "certify",
+        "writes Lagrange multipliers that prove a lower bound of each scene's optimum; with --whole, a "
+        "certificate from which the proof of the optimum can be repeated. --verify verifies either file "
+        "independently of the solver; exit code 1 if not everything is verified");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");
     add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");
     what.add_option("--verify", options->verify, "*.certificates.jsonl to verify");
     what.require_option(1);
-    command.add_flag(
-        "--whole", options->whole,
-        "of the whole search, verified in rational arithmetic, not of the root's bound alone; --verify "
-        "sees what a file holds");
+    command.add_flag("--whole", options->whole,
+                     "certificates of whole searches, verified in rational arithmetic, instead of the root's "
+                     "bound; --verify recognises which a file holds");
     command
         .add_option("--most-steps", options->max_steps,
-                    "labels and fronts for verifying a whole search; with more it is not verified")
+                    "largest number of labels and fronts to verify a whole search; a search that needs more "
+                    "is not verified")
         ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}))
         ->capture_default_str();
     add_nearest_option(command, options->nearest,
-                       "the N nearest cones ahead only; without it all, or those that a certificate names");
+                       "only the N nearest cones ahead; without it all, or those that a certificate names");
     add_time_limit_option(command, options->time_limit_ms);
     add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { run(*options, options->parameters.load()); });

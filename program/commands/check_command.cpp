@@ -307,15 +307,13 @@ void add_check_command(CLI::App& program) {
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
     add_parameter_options(command, options->parameters, "the defaults");
-    add_nearest_option(command, options->nearest,
-                       "cone-set size of `solve`, where the solutions do not say it");
+    add_nearest_option(command, options->nearest, "cone-set size of `solve`, if the solutions do not say it");
     add_time_limit_option(command, options->time_limit_ms);
-    command.add_flag(
-        "--exact", options->exact,
-        "recompute objective, rows and bounds of the program that the solver was handed in "
-        "rational arithmetic too, and say how far doubles are off; a violation above 1e-9 fails, "
-        "and an objective off by more than 1e-9 of max(1, |objective|)");
-    command.add_flag("--partial", options->partial, "scenes without an answer are no failure");
+    command.add_flag("--exact", options->exact,
+                     "also recompute objective, rows and bounds of the solver's program in rational "
+                     "arithmetic, and print the largest differences; a violation above 1e-9 fails, and so "
+                     "does an objective off by more than 1e-9 of max(1, |objective|)");
+    command.add_flag("--partial", options->partial, "scenes without an answer do not fail");
     command.callback([options] {
         if (Check(*options).run() > 0) throw CLI::RuntimeError(1);
     });

@@ -43,7 +43,7 @@ Shard parse_shard(const std::string& text) {
 
 void add_overwrite_flag(CLI::App& command, bool& overwrite) {
     command.add_flag("--overwrite", overwrite,
-                     "replace another comparison in that directory; without it that is refused");
+                     "replace another comparison in that directory; without it, the command refuses to");
 }
 
 void add_shared_options(CLI::App& command, Options& options) {
@@ -52,16 +52,16 @@ void add_shared_options(CLI::App& command, Options& options) {
                        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
                        "ones without it");
     command
-        .add_option(
-            "--methods", options.methods,
-            "see `conelane methods`, parted by commas; exec:NAME=COMMAND asks any program and takes the "
-            "rest of its argument, lanes:NAME=FILE scores a finished lanes file "
-            "(docs/methods-from-outside.md)")
+        .add_option("--methods", options.methods,
+                    "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "
+                    "takes the rest of its argument; lanes:NAME=FILE scores a finished lanes file "
+                    "(docs/methods-from-outside.md)")
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, comparison.run.limits.time_limit_ms);
-    add_threads_option(command, comparison.run.threads, "more than one disturbs the latencies");
+    add_threads_option(command, comparison.run.threads,
+                       "number of threads; with more than one, latencies are disturbed");
     command.add_flag("--candidates", comparison.run.limits.keep_candidates,
                      "score every enumerated lane too");
     add_parameter_options(command, options.parameters, "the defaults");
@@ -70,7 +70,7 @@ void add_shared_options(CLI::App& command, Options& options) {
         "I/N: every N-th lap from the I-th on, I from 0; join them by `conelane merge`");
     command
         .add_option("--out", options.directory,
-                    "directory of the results; a run that was stopped there goes on")
+                    "directory of the results; a run that was stopped there resumes")
         ->required();
     add_overwrite_flag(command, comparison.overwrite);
 }
@@ -132,7 +132,7 @@ void add_compare_command(CLI::App& program) {
 }
 
 void add_sweep_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("sweep", "the same comparison over cone-set sizes");
+    CLI::App& command = *program.add_subcommand("sweep", "a comparison of methods over cone-set sizes");
     auto options = std::make_shared<Options>();
     auto sizes = std::make_shared<std::vector<std::size_t>>(
         std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});

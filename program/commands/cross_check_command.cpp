@@ -38,30 +38,34 @@ std::size_t run(const Options& options) {
 void add_cross_check_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "cross-check",
-        "all exact solvers against each other and against the independent checker, on drawn scenes and "
-        "parameters, degenerate and extreme ones among them, under generous and tight time limits. A case on "
+        "compares all exact solvers with each other and with the independent checker, on random scenes and "
+        "parameters (also degenerate and extreme ones), under generous and tight time limits. A case on "
         "which they differ is shrunk and written to DIR/NAME.case.json with its scene, parameters and "
-        "program; exit code 1 where there is one");
+        "program; exit code 1 if there is one");
     auto options = std::make_shared<Options>();
     CrossCheckOptions& drawn = options->cross_check;
     CLI::Option_group& what = *command.add_option_group("what to do");
     what.add_option("--out", options->directory,
-                    "directory of cases.jsonl; a run that was stopped there goes on");
+                    "directory of cases.jsonl; a run that was stopped there resumes");
     what.add_option("--replay", options->replay, "*.case.json to judge again");
     what.require_option(1);
-    command.add_option("--scenes", drawn.scenes, "*.scenes.jsonl, from which three in ten cases are drawn");
+    command.add_option("--scenes", drawn.scenes, "*.scenes.jsonl: three of ten cases are drawn from it");
     command.add_option("--seed", drawn.seed, "of the cases")->capture_default_str();
     command.add_option("--first", drawn.first, "number of the first case, to cut a run into parts")
         ->capture_default_str();
-    command.add_option("--cases", drawn.cases, "how many, those of a stopped run included")
+    command.add_option("--cases", drawn.cases, "number of cases, with those of a stopped run")
         ->check(whole_number(1, 100'000'000))
         ->capture_default_str();
-    command.add_option("--solvers", drawn.solvers, "exact ones; the first one's objectives are kept")
+    command
+        .add_option("--solvers", drawn.solvers, "exact solvers; the objectives of the first one are stored")
         ->delimiter(',')
         ->capture_default_str();
     add_time_limit_option(command, drawn.time_limit_ms);
-    add_threads_option(command, drawn.threads, "more than one disturbs what is proven under tight limits");
-    command.add_option("--repeat", options->repetitions, "replay as often, or until the solvers differ")
+    add_threads_option(command, drawn.threads,
+                       "number of threads; with more than one, fewer cases are proven under tight limits");
+    command
+        .add_option("--repeat", options->repetitions,
+                    "largest number of replays; the first difference ends them")
         ->check(whole_number(1, 1'000'000))
         ->capture_default_str();
     command.callback([options] {

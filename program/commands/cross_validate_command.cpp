@@ -100,10 +100,13 @@ void add_cross_validate_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--variants", options->run.learning.variants,
-                    "of each course that networks learn from too: stretched, every second one reversed")
+                    "number of variants of each course that networks learn from too: stretched, every second "
+                    "one reversed")
         ->check(whole_number(0, 100))
         ->capture_default_str();
-    command.add_option("--evaluations", options->run.learning.evaluations, "of parameters that are tuned")
+    command
+        .add_option("--evaluations", options->run.learning.evaluations,
+                    "number of evaluations for each set of tuned parameters")
         ->check(whole_number(1, 100'000))
         ->capture_default_str();
     command
@@ -113,13 +116,14 @@ void add_cross_validate_command(CLI::App& program) {
         ->capture_default_str();
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);
-    add_threads_option(command, options->threads, "more than one disturbs the latencies");
+    add_threads_option(command, options->threads,
+                       "number of threads; with more than one, latencies are disturbed");
     command
         .add_option("--out", options->directory,
-                    "directory of the results; a run that was stopped there goes on")
+                    "directory of the results; a run that was stopped there resumes")
         ->required();
     command.add_flag("--overwrite", options->run.comparison.overwrite,
-                     "replace another comparison in that directory; without it that is refused");
+                     "replace another comparison in that directory; without it, the command refuses to");
     command.callback([options] { run(*options); });
 }
 

@@ -143,7 +143,7 @@ void detect(Options& options) {
 void add_methods_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("methods", "the detection methods of this build");
     auto all = std::make_shared<bool>(false);
-    command.add_flag("--all", *all, "also those that leave a part out, to show what the part is worth");
+    command.add_flag("--all", *all, "also variants that leave a part out, to show what the part is worth");
     command.callback([all] {
         for (const Method& method : methods()) {
             if (method.is_ablation && !*all) continue;
@@ -158,9 +158,9 @@ void add_methods_command(CLI::App& program) {
 void add_detect_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "detect",
-        "lanes of scenes, by any method. With `--scenes - --out -` a stream: a lane line for each scene "
-        "line, at once; a line {\"reset\": true} says that another lap begins, a line that is no scene gets "
-        "an answer of status error");
+        "lanes of scenes, by any method. With `--scenes - --out -` it is a stream: each scene line is "
+        "answered at once by a lane line. A line {\"reset\": true} says that another lap begins; an invalid "
+        "line gets an answer of status error");
     auto options = std::make_shared<Options>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command
@@ -175,11 +175,12 @@ void add_detect_command(CLI::App& program) {
         ->required();
     add_nearest_option(command, options->run.method.nearest, "cone-set size instead of the method's own");
     add_time_limit_option(command, options->run.limits.time_limit_ms);
-    add_threads_option(command, options->run.threads, "more than one disturbs the latencies");
+    add_threads_option(command, options->run.threads,
+                       "number of threads; with more than one, latencies are disturbed");
     command.add_flag("--candidates", options->run.limits.keep_candidates, "write every enumerated lane too");
     add_parameter_options(command, options->parameters, "the defaults");
     command.add_option("--weights", options->weights,
-                       "of front and front-warm: a file that `conelane train front` wrote");
+                       "weights of front or front-warm: a file that `conelane train front` wrote");
     command.callback([options] { detect(*options); });
 }
 

@@ -40,7 +40,7 @@ std::vector<LaneRecord> chosen_lanes(const Options& options) {
     std::erase_if(records,
                   [&](const LaneRecord& record) { return options.id && record.scene != *options.id; });
     if (records.empty())
-        throw InputError(options.lanes, 0, "--id", "'" + *options.id + "' is no scene of it");
+        throw InputError(options.lanes, 0, "--id", "'" + *options.id + "' is not a scene of it");
     std::erase_if(records, [&](const LaneRecord& record) {
         return options.method && record.method != *options.method;
     });
@@ -113,7 +113,8 @@ void drive_all(const Options& options) {
                          "is " + std::string(to_string(only.answer.status)) + ": there is no lane to drive");
     }
     if (lanes.front().lane.points.empty()) {
-        throw InputError(options.lanes, only.line, "left", "bounds no centre line with the right boundary");
+        throw InputError(options.lanes, only.line, "left",
+                         "has no centre line between it and the right boundary");
     }
     if (options.format == "tum") {
         write_tum_csv(options.out, lanes.front().lane);
@@ -134,11 +135,12 @@ void add_follow_options(CLI::App& command, FollowOptions& options) {
         ->needs(follow)
         ->check(CLI::IsMember({"trackdrive", "autocross", "acceleration", "skidpad"}))
         ->capture_default_str();
-    command.add_option("--laps", options.laps, "of trackdrive (10) and autocross (1)")
+    command.add_option("--laps", options.laps, "laps of trackdrive (10) and autocross (1)")
         ->needs(follow)
         ->check(CLI::Range(1, 1'000'000));
-    command.add_option("--weights", options.weights, "of front and front-warm, see detect")->needs(follow);
-    command.add_option("--interval", options.interval_s, "between frames that have no time [s]")
+    command.add_option("--weights", options.weights, "weights of front or front-warm, see detect")
+        ->needs(follow);
+    command.add_option("--interval", options.interval_s, "time between frames that have no time [s]")
         ->needs(follow)
         ->check(CLI::Range(0.001, 10.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
@@ -165,9 +167,9 @@ void add_drive_command(CLI::App& program) {
         ->required();
     command.add_option("--id", options->id, "only lanes of this scene");
     command.add_option("--method", options->method,
-                       "only lanes of this method; with --follow the detector, front-warm "
-                       "where not given");
-    command.add_option("--step", options->drivable.step_m, "from point to point [m], in [0.01, 100]")
+                       "only lanes of this method; with --follow the detector, front-warm by default");
+    command
+        .add_option("--step", options->drivable.step_m, "distance from point to point [m], in [0.01, 100]")
         ->check(CLI::Range(0.01, 100.0) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case))
         ->capture_default_str();
     add_follow_options(command, options->follow);

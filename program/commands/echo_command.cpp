@@ -30,10 +30,10 @@ void echo() {
 }  // namespace
 
 void add_echo_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand(
-        "echo",
-        "reads scenes from standard input, as programs from outside are asked them, and answers each at once "
-        "that it found nothing: what the way to any program and back takes");
+    CLI::App& command =
+        *program.add_subcommand("echo",
+                                "reads scenes from standard input, in the protocol of programs from outside, "
+                                "and answers each at once with status none: measures the round trip");
     command.callback(echo);
 }
 

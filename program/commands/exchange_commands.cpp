@@ -45,10 +45,9 @@ void add_program_options(CLI::App& command, ProgramSource& source) {
         ->capture_default_str();
     add_nearest_option(command, source.nearest, "the N nearest cones ahead only; all without it");
     add_parameter_options(command, source.parameters, "the defaults");
-    command.add_flag(
-        "--all-rows", source.all_rows,
-        "with no cycles and the pairing, as columns and rows of a flow: the optimum of the file is "
-        "that of the scene");
+    command.add_flag("--all-rows", source.all_rows,
+                     "add no cycles and the pairing, as columns and rows of a flow: the optimum of the file "
+                     "is that of the scene");
 }
 
 Scene load_scene(const ProgramSource& source) {
@@ -177,28 +176,27 @@ void import_solution(const ImportOptions& options) {
 }  // namespace
 
 void add_exchange_commands(CLI::App& program) {
-    CLI::App& exporting = *program.add_subcommand("export",
-                                                  "the program of a scene as MPS or LP file. Without "
-                                                  "--all-rows the rows that solvers here add on demand are "
-                                                  "not in it: no cycles (5), and the pairing near_far");
+    CLI::App& exporting = *program.add_subcommand(
+        "export",
+        "the program of a scene as MPS or LP file. Without --all-rows it leaves out the rows that conelane's "
+        "solvers add on demand: no cycles (5), and the pairing near_far");
     auto exports = std::make_shared<ExportOptions>();
     add_program_options(exporting, exports->source);
     add_output_option(exporting, "--out", exports->out, "*.mps or *.lp")->required();
     exporting.callback([exports] { export_program(*exports); });
 
-    CLI::App& importing = *program.add_subcommand("import-solution",
-                                                  "what another program found for an exported file, as a "
-                                                  "solution for `conelane check`; the options must "
-                                                  "be those of the export. A solution with a cycle or "
-                                                  "against the pairing is an error: those rows are in the "
-                                                  "file with --all-rows only");
+    CLI::App& importing =
+        *program.add_subcommand("import-solution",
+                                "reads another program's solution of an exported file, for `conelane check`. "
+                                "The options must be those of the export. A solution with a cycle or against "
+                                "the pairing is an error: only --all-rows puts those rows into the file");
     auto imports = std::make_shared<ImportOptions>();
     add_program_options(importing, imports->source);
     importing
         .add_option("--sol", imports->solution,
                     "a solution file of CBC, GLPK, HiGHS, SCIP or Gurobi, or MIPLIB's")
         ->required();
-    importing.add_option("--solver", imports->solver, "whose solution it is, a name for the records")
+    importing.add_option("--solver", imports->solver, "name of the solver, for the records")
         ->capture_default_str();
     add_output_option(importing, "--out", imports->out, "*.solutions.jsonl")->required();
     importing.callback([imports] { import_solution(*imports); });

@@ -69,11 +69,11 @@ void add_instances_command(CLI::App& program) {
     instances.scenes.false_positive_rates = {0.1667, 0.5};
     instances.scenes.ranges_m = {30.0};
     instances.scenes.every_m = 120.0;
-    command.add_option("--out", options->out, "directory; a library that it holds is replaced")->required();
+    command.add_option("--out", options->out, "directory; a library in it is replaced")->required();
     command
         .add_option("--tracks", instances.tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->capture_default_str();
-    command.add_option("--nearest", options->sizes, "cone-set sizes, `all` for all that is visible")
+    command.add_option("--nearest", options->sizes, "cone-set sizes; `all` for all visible cones")
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, instances.scenes);

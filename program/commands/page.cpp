@@ -34,7 +34,7 @@ void require_own_page(const fs::path& directory) {
     std::ifstream(page, std::ios::binary).read(beginning.data(), kBeginning);
     if (beginning.find(kTitle) != std::string::npos) return;
     throw InputError(page, 0, "",
-                     "is no page of conelane and would be replaced; move it, or name another directory");
+                     "is not a page of conelane and would be replaced; move it, or name another directory");
 }
 
 void write_page(const fs::path& directory) {

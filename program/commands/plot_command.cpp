@@ -37,7 +37,7 @@ AnnotatedScene scene_named(const Options& options) {
     for (AnnotatedScene& scene : read_scenes(options.scenes)) {
         if (scene.scene.id == options.id) return std::move(scene);
     }
-    throw InputError(options.scenes, 0, "--id", "'" + options.id + "' is no scene of it");
+    throw InputError(options.scenes, 0, "--id", "'" + options.id + "' is not a scene of it");
 }
 
 /// The boundaries of the scene's track, where a companion of the scenes file holds them.
@@ -66,7 +66,7 @@ void add_lanes(const std::string& file, const Options& options, Picture& picture
         picture.lanes.push_back(std::move(lane));
     }
     if (options.methods.empty() && picture.lanes.size() == before)
-        throw InputError(file, 0, "--id", "'" + options.id + "' is no scene of it");
+        throw InputError(file, 0, "--id", "'" + options.id + "' is not a scene of it");
 }
 
 void plot(const Options& options) {
@@ -103,7 +103,7 @@ void add_plot_command(CLI::App& program) {
                     "*.scenes.jsonl; with its companion *.tracks.json false cones are drawn as such")
         ->required();
     command.add_option("--lanes", options->lanes,
-                       "*.lanes.jsonl, the lanes to draw; without it the scene alone");
+                       "*.lanes.jsonl, the lanes to draw; without it only the scene");
     command.add_option("--id", options->id, "the scene")->required();
     add_output_option(command, "--out", options->out, "X.svg or X.png")
         ->required()
@@ -116,10 +116,9 @@ void add_plot_command(CLI::App& program) {
     command.add_option("--method", options->methods, "only lanes of these methods")
         ->delimiter(',')
         ->needs("--lanes");
-    command.add_flag("--given", options->with_given,
-                     "beside it what a detector gets: cones and pose, nothing else");
+    command.add_flag("--given", options->with_given, "also draw what a detector gets: only cones and pose");
     command.add_flag("--no-truth", options->without_truth, "without the band of the ground truth");
-    command.add_option("--title", options->title, "above the lanes; the scene's id without it");
+    command.add_option("--title", options->title, "title above the lanes; the scene's id without it");
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
     command.callback([options] { plot(*options); });
 }

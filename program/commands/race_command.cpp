@@ -95,7 +95,7 @@ std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission
     for (const std::string& spec : options.tracks) {
         for (const Track& track : load_tracks(spec)) {
             if (!track.closed || !track.driven.empty()) {
-                fmt::print(stderr, "conelane: {} is no closed course with boundaries: left out\n",
+                fmt::print(stderr, "conelane: {} is not a closed course with boundaries: left out\n",
                            track.name);
                 continue;
             }
@@ -267,13 +267,14 @@ void run_races(Options& options) {
 }  // namespace
 
 void add_race_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand("race", "drives an event by the answers of methods");
+    CLI::App& command =
+        *program.add_subcommand("race", "drives a simulated car through an event by the answers of methods");
     auto options = std::make_shared<Options>();
     command.add_option("--tracks", options->tracks,
-                       "as of `scenes`; closed courses. Acceleration and skidpad have one of their own");
+                       "closed courses, as for `scenes`. Acceleration and skidpad have a course by default");
     command.add_option(
         "--methods", options->methods,
-        "names as of `methods`, exec:NAME=COMMAND, truth: the true centre line, none: no path");
+        "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");
     command.add_flag("--planner", options->planner, "each detector drives through a planner");
     command.add_flag("--both", options->both, "each detector drives alone and through a planner");
     command
@@ -282,18 +283,17 @@ void add_race_command(CLI::App& program) {
                     "the car rolls and the last lap ends the race")
         ->check(CLI::IsMember({"acceleration", "skidpad", "autocross", "trackdrive"}));
     command.add_flag("--vary", options->vary,
-                     "acceleration and skidpad: each seed sets the course up another way, as the rules leave "
-                     "room");
+                     "acceleration and skidpad: each seed draws another course within the rules");
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
     command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
-    command.add_option("--laps", options->laps, "of a race; 1 without it, 10 of a trackdrive")
+    command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
     command.add_option("--speed", options->race.speed_mps, "[m/s]")
         ->check(number_in(0.5, 40.0))
         ->capture_default_str();
     command.add_option("--seed", options->seeds, "a race for each")->delimiter(',');
-    command.add_option("--latency-ms", options->latency_ms, "from a frame to its path, simulated")
+    command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")
         ->check(number_in(0.0, 1000.0))
         ->capture_default_str();
     command.add_flag("--colors", options->race.sight.with_color, "cones have their colour");
@@ -302,26 +302,29 @@ void add_race_command(CLI::App& program) {
         ->capture_default_str();
     command
         .add_option("--fault", options->fault,
-                    "jump: the map moves 0.5 m; late, twice, order: of frames; blackout: 1 s without cones; "
-                    "ids: they change")
+                    "jump: the map moves by 0.5 m; late, twice, order: frames come late, twice or out of "
+                    "order; blackout: 1 s without cones; ids: all cones change their id")
         ->check(CLI::IsMember({"none", "jump", "late", "twice", "order", "blackout", "ids"}))
         ->capture_default_str();
     command
-        .add_option("--start-error", options->race.start_error_m, "the car starts so near to the start [m]")
+        .add_option("--start-error", options->race.start_error_m,
+                    "largest distance of the car from the start [m]")
         ->check(number_in(0.0, 3.0))
         ->capture_default_str();
-    command.add_option("--start-error-deg", options->start_deg, "and so near to its direction")
+    command
+        .add_option("--start-error-deg", options->start_deg,
+                    "largest angle between the car and the start's direction [degrees]")
         ->check(number_in(0.0, 45.0))
         ->capture_default_str();
-    command.add_option("--drift", options->race.drift_m, "of the map in a lap [m]")
+    command.add_option("--drift", options->race.drift_m, "how far the map moves in a lap [m]")
         ->check(number_in(0.0, 10.0))
         ->capture_default_str();
-    command.add_option("--drift-deg", options->drift_deg, "of the map in a lap")
+    command.add_option("--drift-deg", options->drift_deg, "how far the map turns in a lap [degrees]")
         ->check(number_in(0.0, 45.0))
         ->capture_default_str();
     command
         .add_option("--replay", options->replay,
-                    "what of the races replay.jsonl holds: unfinished (and the first), all or none")
+                    "races in replay.jsonl: unfinished (and the first one), all or none")
         ->check(CLI::IsMember({"unfinished", "all", "none"}))
         ->capture_default_str();
     add_threads_option(command, options->threads, "same results with any number");

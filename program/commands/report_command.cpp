@@ -42,8 +42,8 @@ void add_report_command(CLI::App& program) {
     command.add_option("--python", options->python, "interpreter that has matplotlib; python3 without it");
     command
         .add_option("--viewer", options->viewer,
-                    "tracks whose laps the scene viewer shall have; without it as many laps as fit, those on "
-                    "which the methods fail most first")
+                    "tracks whose laps the scene viewer has; without it as many laps as fit, first those on "
+                    "which the methods fail most")
         ->delimiter(',');
     command.callback([options] { make_report(*options); });
 }

@@ -42,7 +42,7 @@ void add_scenes_command(CLI::App& program) {
                     "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")
         ->required();
     add_scene_options(command, options->scenes);
-    add_nearest_option(command, options->scenes.nearest, "keep the N nearest cones ahead only");
+    add_nearest_option(command, options->scenes.nearest, "keep only the N nearest cones ahead");
     add_threads_option(command, options->scenes.threads, "same scenes with any number");
     add_output_option(command, "--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
         ->required();

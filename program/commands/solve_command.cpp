@@ -141,8 +141,8 @@ void add_solve_command(CLI::App& program) {
         ->capture_default_str();
     command.add_flag(
         "--all-rows", options->all_rows,
-        "a program from outside gets one file with all rows, no cycles and the pairing as a flow, "
-        "and is asked once; without, rows that it violates are added and it is asked again");
+        "a program from outside gets one file with all rows (no cycles and the pairing as a flow) and is "
+        "asked once; without it, rows that its point violates are added and it is asked again");
     command.add_option("--formulation", options->formulation)
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();

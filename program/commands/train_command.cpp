@@ -136,7 +136,7 @@ void add_number_option(CLI::App& command, const std::string& name, double& numbe
 CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command.add_option("--tracks", run.tracks,
                        "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
-    command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
+    command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,
         "of each track to train on too: stretched, every second one driven the other way", 0);
@@ -173,7 +173,7 @@ void add_step_options(CLI::App& command, StepScoreTrainingOptions& training) {
 }
 
 void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
-    add_count_option(command, "--units", training.units, "of the hidden layer");
+    add_count_option(command, "--units", training.units, "number of units of the hidden layer");
     add_count_option(command, "--epochs", training.epochs, "rounds over the candidates");
     add_count_option(command, "--scenes-a-step", training.scenes_a_step,
                      "scenes to a step of Adam, with --extended");
@@ -185,9 +185,9 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
         command, "--divergence-penalty", training.divergence_penalty,
         "subtracted from the IoU of a lane that leaves the true one within 20 m; 0 in the paper");
     add_number_option(command, "--late-divergence-penalty", training.late_divergence_penalty,
-                      "the same for a lane that leaves it later");
+                      "subtracted for a lane that leaves it later");
     add_number_option(command, "--unusable-penalty", training.unusable_penalty,
-                      "subtracted besides where a lane cannot be driven by, be it wrong or too short");
+                      "also subtracted if a lane is not usable: wrong or too short");
     add_number_option(command, "--leader-share", training.leader_share,
                       "share of the pairs that hold the candidate ranked first so far");
 }
@@ -195,15 +195,15 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
 }  // namespace
 
 void add_train_command(CLI::App& program) {
-    CLI::App& command = *program.add_subcommand(
-        "train",
-        "trains the ranking network of clc, or the step scores of its beam search; `train front` the "
-        "networks of front, see `conelane train front --help`");
+    CLI::App& command =
+        *program.add_subcommand("train",
+                                "trains the ranking network of clc, or the step scores of its beam search; "
+                                "`conelane train front` trains the networks of front");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     CLI::Option& variants = add_track_options(command, run);
     add_count_option(command, "--candidates", run.candidates.max_per_scene,
-                     "of a scene at most, drawn at random; 0 for all", 0);
+                     "largest number of candidates of a scene, drawn at random; 0 for all", 0);
     command.add_option("--iterations", options->iterations, "limit of each scene's search for candidates")
         ->check(whole_number(1, kMax))
         ->capture_default_str();

@@ -82,12 +82,13 @@ void add_train_front_command(CLI::App& train_command) {
     command
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
-    command.add_option("--hold-out", run.hold_out, "tracks that are only measured on");
-    add_number_option(command, "--hold-out-every", run.hold_out_every_m, "travel between poses there [m]");
+    command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
+    add_number_option(command, "--hold-out-every", run.hold_out_every_m,
+                      "travel between poses on the tracks held out [m]");
     command.add_option("--condition", run.conditions, "of the scenes held out: paper, car, harsh")
         ->delimiter(',')
         ->capture_default_str();
-    command.add_option("--fp", run.rates, "false positives / all points of the scenes held out")
+    command.add_option("--fp", run.rates, "share of false positives among all points of the scenes held out")
         ->delimiter(',')
         ->capture_default_str();
     add_count_option(command, "--imitation-steps", training.imitation_steps, "steps of Adam move by move", 0);
@@ -98,11 +99,12 @@ void add_train_front_command(CLI::App& train_command) {
     add_number_option(command, "--search-rate", training.search_rate, "learning rate through the search");
     add_number_option(command, "--judge-rate", training.judge_rate, "learning rate of the judge");
     add_number_option(command, "--trusted", training.trusted,
-                      "share of the lanes that shall be right as far as they are trusted");
+                      "target share of lanes that are right as far as they are trusted");
     add_count_option(command, "--trust-draws", training.trust_draws,
-                     "changed courses on which that is made so, after the training");
-    add_count_option(command, "--draws", training.draws_per_step, "changed courses to a step");
-    add_count_option(command, "--scenes-a-draw", training.scenes.scenes_per_draw, "scenes of each");
+                     "changed courses on which the threshold for it is set, after the training");
+    add_count_option(command, "--draws", training.draws_per_step, "changed courses in each step");
+    add_count_option(command, "--scenes-a-draw", training.scenes.scenes_per_draw,
+                     "scenes of each changed course");
     add_count_option(command, "--beam", training.loss.search.beam_width, "width of the beam in training");
     add_number_option(command, "--fall-out", training.loss.fall_out,
                       "weight of the loss where the true lane leaves the beam");
@@ -110,9 +112,10 @@ void add_train_front_command(CLI::App& train_command) {
     add_number_option(command, "--listwise", training.loss.listwise,
                       "weight of the loss over the best lanes");
     add_count_option(command, "--figures-every", training.figures_every,
-                     "steps between two looks at what is held out");
-    command.add_option("--checkpoint", training.checkpoint, "file that a training ended before goes on from");
-    command.add_option("--seed", training.seed, "of everything drawn")->capture_default_str();
+                     "steps between two measurements on the tracks held out");
+    command.add_option("--checkpoint", training.checkpoint,
+                       "file of the training's state, from which a stopped training resumes");
+    command.add_option("--seed", training.seed, "seed of all random draws")->capture_default_str();
     command.add_flag("!--no-warp", training.scenes.warp, "courses keep their shape");
     command.add_flag("!--no-respacing", training.scenes.respace,
                      "cones stay where they are on their boundary");
@@ -123,7 +126,7 @@ void add_train_front_command(CLI::App& train_command) {
                      "true cones are seen as far as false ones");
     command
         .add_option("--without", training.without,
-                    "inputs of the cost that it shall not see, by their names in front_features.cpp")
+                    "inputs of the cost to leave out, by their names in front_features.cpp")
         ->delimiter(',');
     add_threads_option(command, training.threads, "the weights are the same with any number");
     add_output_option(command, "--out", options->out, "weights (JSON)")->required();

@@ -262,23 +262,23 @@ void add_tune_command(CLI::App& program) {
     add_time_limit_option(command, options->evaluation.time_limit_ms);
     command
         .add_option("--most-nodes", options->evaluation.max_nodes,
-                    "of a scene's search; one that takes more counts as wrong")
+                    "largest number of nodes of a scene's search; a search that takes more counts as wrong")
         ->check(whole_number(1, 1'000'000'000))
         ->capture_default_str();
     command
         .add_option("--folds", options->tuner.folds,
-                    "groups of tracks, each of which is held out once; 1 holds none out")
+                    "number of groups of tracks; each group is held out once; 1 holds none out")
         ->check(whole_number(1, 1000))
         ->capture_default_str();
     command
         .add_option("--rounds", options->rounds,
-                    "of fitting the weights to the lane graphs found so far, before the search of each fit; "
-                    "not in the log")
+                    "rounds that fit the weights to the lane graphs found so far, before the search of each "
+                    "fit; not in the log")
         ->check(whole_number(0, 1000))
         ->capture_default_str();
     command
         .add_option("--evaluations", options->tuner.evaluations,
-                    "parameters that the search evaluates in each fit, at most")
+                    "largest number of parameter sets that the search evaluates in each fit")
         ->check(whole_number(0, 1'000'000))
         ->capture_default_str();
     command.add_option(
@@ -289,7 +289,7 @@ void add_tune_command(CLI::App& program) {
     add_output_option(command, "--out", options->out, "P.json; its record goes to P.record.json")->required();
     command.add_option(
         "--log", options->log,
-        "*.jsonl, a line for each evaluation; with the same log a tuning that was stopped goes on");
+        "*.jsonl, a line for each evaluation; with the same log, a tuning that was stopped resumes");
     command.callback([options] { run(*options); });
 }
 

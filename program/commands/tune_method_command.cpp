@@ -86,7 +86,9 @@ void add_tune_method_command(CLI::App& program) {
         .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     add_scene_options(command, options->scenes);
-    command.add_option("--evaluations", options->tuning.evaluations, "parameters that the search evaluates")
+    command
+        .add_option("--evaluations", options->tuning.evaluations,
+                    "number of parameter sets that the search evaluates")
         ->check(whole_number(1, 1'000'000))
         ->capture_default_str();
     add_threads_option(command, options->tuning.threads, "scenes answered at a time");

@@ -19,7 +19,7 @@ std::string shape_of(const py::array& array) {
 
 py::array any_array(py::handle object, const char* key) {
     py::array array = py::array::ensure(object);
-    if (!array) throw InvalidInput(key, "is no array");
+    if (!array) throw InvalidInput(key, "is not an array");
     return array;
 }
 
@@ -60,7 +60,8 @@ std::string color_names() {
 
 ConeColor color_of(std::int64_t code, const std::string& key) {
     if (code < 0 || code >= static_cast<std::int64_t>(kColors.size())) {
-        throw InvalidInput(key, std::to_string(code) + " is no colour, which are 0 to 3: " + color_names());
+        throw InvalidInput(key,
+                           std::to_string(code) + " is not a colour; colours are 0 to 3: " + color_names());
     }
     return kColors[static_cast<std::size_t>(code)];
 }
@@ -69,7 +70,7 @@ ConeColor color_of(const std::string& name, const std::string& key) {
     const auto* const color =
         std::ranges::find_if(kColors, [&](ConeColor c) { return to_string(c) == name; });
     if (color == kColors.end())
-        throw InvalidInput(key, "'" + name + "' is no colour, which are " + color_names());
+        throw InvalidInput(key, "'" + name + "' is not a colour; colours are " + color_names());
     return *color;
 }
 
@@ -104,7 +105,7 @@ double number(py::handle object, const std::string& key) {
     const double value = PyFloat_AsDouble(object.ptr());
     if (value == -1.0 && PyErr_Occurred() != nullptr) {
         PyErr_Clear();
-        throw InvalidInput(key, "is no number");
+        throw InvalidInput(key, "is not a number");
     }
     return value;
 }
@@ -191,7 +192,7 @@ std::vector<ConeId> ids_at(py::handle indices, std::span<const Cone> cones, cons
         if (index < 0 || index >= static_cast<std::int64_t>(cones.size())) {
             throw InvalidInput(
                 std::string(key) + "[" + std::to_string(i) + "]",
-                std::to_string(index) + " is no index of the " + std::to_string(cones.size()) + " cones");
+                std::to_string(index) + " is not an index of the " + std::to_string(cones.size()) + " cones");
         }
         ids.push_back(cones[static_cast<std::size_t>(index)].id);
     }
@@ -228,7 +229,7 @@ Pairing pairing_of(std::string_view name) {
     for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
         if (to_string(pairing) == name) return pairing;
     }
-    throw InvalidInput("pairing", "'" + std::string(name) + "' is none of near_far, paper");
+    throw InvalidInput("pairing", "'" + std::string(name) + "' is not one of near_far, paper");
 }
 
 py::array_t<double> array(std::span<const Point> points) {

@@ -72,7 +72,7 @@ std::vector<LaneObject> read_lanes(const std::filesystem::path& file,
         const auto found = scene_of.find(record.scene);
         if (found == scene_of.end()) {
             throw InputError(file, record.line, "scene",
-                             "'" + record.scene + "' is none of the scenes given");
+                             "'" + record.scene + "' is not one of the scenes given");
         }
         const Scene& scene = found->second->scene;
         snap_to_cones(record, scene);
@@ -114,7 +114,7 @@ one that can be driven was found; "error": see `message`.)")
             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
         .def_property_readonly(
             "confidence", [](const LaneObject& l) { return l.record.answer.confidence; },
-            "float or None: probability that the lane is right, where the detector knows one")
+            "float or None: probability that the lane is usable; None if the detector has none")
         .def_property_readonly(
             "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
             R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:

@@ -78,7 +78,7 @@ double time_of(py::handle object) {
     const double time_s = PyFloat_AsDouble(object.ptr());
     if (time_s == -1.0 && PyErr_Occurred() != nullptr) {
         PyErr_Clear();
-        throw InvalidInput("time_s", "is no number");
+        throw InvalidInput("time_s", "is not a number");
     }
     return time_s;
 }
@@ -101,7 +101,7 @@ void add_answer(py::module_& module) {
             R"(str or None: the limit that ended the search: "time", "iterations" or "memory")")
         .def_property_readonly(
             "confidence", [](const LaneAnswer& a) { return a.confidence; },
-            "float or None: probability that the lane is right, where the detector knows one")
+            "float or None: probability that the lane is usable; None if the detector has none")
         .def_property_readonly(
             "trusted_m", [](const LaneAnswer& a) { return a.trusted_m; },
             "float or None: distance up to which the lane can be trusted [m]")

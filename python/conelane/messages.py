@@ -207,7 +207,7 @@ def from_fs_track(message: Any) -> Cones:
     Raises
     ------
     ValueError
-        Naming the field that is missing, and for a colour that is none of fs_msgs/Cone.
+        Naming a missing field, or a colour that fs_msgs/Cone does not have.
 
     Examples
     --------
@@ -219,7 +219,7 @@ def from_fs_track(message: Any) -> Cones:
     for i, cone in enumerate(track):
         code = int(_field(cone, "color"))
         if not 0 <= code < len(_FS_COLORS):
-            raise ValueError(f"track[{i}].color: {code} is none of fs_msgs/Cone, which are 0 to 4")
+            raise ValueError(f"track[{i}].color: {code} is not one of fs_msgs/Cone, which are 0 to 4")
         colors.append(int(_FS_COLORS[code]))
     return Cones(_positions(_field(cone, "location") for cone in track), np.array(colors, dtype=np.uint8))
 

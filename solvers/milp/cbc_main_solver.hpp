@@ -8,8 +8,9 @@ namespace conelane {
 
 /// CBC's full default machinery (CbcMain1: preprocessing, cuts, heuristics, strong branching), faster than
 /// `cbc` on the paper formulation. The feasibility pump is off: it aborts the process on some programs. One
-/// solve at a time in a process, since several of them in threads fail in CBC 2.10.8; waiting for another
-/// solve is inside the time limit. The clock is looked at in every relaxation and at every node, but not
+/// solve at a time in a process, since concurrent solves fail in CBC 2.10.8; the time limit includes waiting
+/// for another solve. The clock is checked in every relaxation and at every node, but not in preprocessing
+/// and cut generation, which may overrun the limit.
 /// within preprocessing and the making of cuts: a limit may be overrun by one of them.
 [[nodiscard]] std::unique_ptr<MilpSolver> make_cbc_main_solver();
 

@@ -6,8 +6,8 @@
 
 namespace conelane {
 
-/// Depth-first branch and bound on a Clp relaxation that stays warm: the most fractional column is branched
-/// on, the nearer side first. No cuts, no heuristics; made for the tight formulation.
+/// Depth-first branch and bound on a warm Clp relaxation: branches on the most fractional column, the nearer
+/// side first. No cuts, no heuristics; made for the tight formulation.
 [[nodiscard]] std::unique_ptr<MilpSolver> make_clp_bb_solver();
 
 }  // namespace conelane

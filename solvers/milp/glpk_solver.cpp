@@ -202,7 +202,7 @@ class GlpkSession : public MilpSession {
         options.msg_lev = GLP_MSG_OFF;
         options.meth = GLP_DUALP;
         if (std::isfinite(deadline.remaining_ms())) options.tm_lim = milliseconds(deadline);
-        // A basis that was optimal before rows were added holds their slacks; one that is none is made anew.
+        // A basis that was optimal before rows were added holds their slacks; an invalid basis is rebuilt.
         int failure = glp_simplex(problem_, &options);
         if (failure == GLP_EBADB || failure == GLP_ESING || failure == GLP_ECOND) {
             glp_std_basis(problem_);

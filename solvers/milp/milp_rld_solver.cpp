@@ -37,7 +37,7 @@ class MilpRldSolver : public RldSolver {
         report.solve_ms = solve_watch.elapsed_ms();
     }
 
-    /// Nothing where a limit was struck before the program was loaded, which is in the report then.
+    /// Nothing if a limit ended it before the program was loaded; the report then names the limit.
     std::unique_ptr<MilpSession> load(const LaneGraphProblem& problem, const Deadline& deadline,
                                       RldReport& report) {
         if (!model_) model_.emplace(formulation_);

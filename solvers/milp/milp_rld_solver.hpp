@@ -8,8 +8,8 @@
 
 namespace conelane {
 
-/// Makes a MILP solver an RLD solver: build the program, solve, separate the rows that the answer violates
-/// ((5) and the pairing), solve again until it is a lane graph.
+/// Makes an RLD solver of a MILP solver: build the program, solve it, add the rows that the answer violates
+/// ((5) and the pairing), and solve again until the answer is a lane graph.
 [[nodiscard]] std::unique_ptr<RldSolver> make_milp_rld_solver(std::unique_ptr<MilpSolver> solver,
                                                               Formulation formulation);
 

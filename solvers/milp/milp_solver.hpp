@@ -13,7 +13,7 @@ namespace conelane {
 struct MilpLimits {
     double time_limit_ms = std::numeric_limits<double>::infinity();
     double absolute_gap = 1e-9;
-    /// Only points with a smaller objective are wanted: status infeasible then says that there is none. A
+    /// Only points with a smaller objective are of use: status infeasible then says that there are none. A
     /// backend may ignore it.
     double cutoff = std::numeric_limits<double>::infinity();
 };
@@ -23,7 +23,7 @@ class MilpSession {
   public:
     virtual ~MilpSession() = default;
 
-    /// Solves the program as it stands. A returned point is integral within 1e-6 on integer columns.
+    /// Solves the program with its current rows. A returned point is integral within 1e-6 on integer columns.
     [[nodiscard]] virtual MilpReport solve(const MilpLimits& limits) = 0;
     virtual void add_rows(std::span<const ProgramRow> rows) = 0;
 };

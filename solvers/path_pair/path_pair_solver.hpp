@@ -14,13 +14,13 @@ namespace conelane {
 /// workspace and reuses it from call to call. A gap below 1e-10 counts as 1e-10.
 [[nodiscard]] std::unique_ptr<RldSolver> make_path_pair_solver(const PathPairOptions& options = {});
 
-/// Multipliers and cliques that prove a lower bound for the pairing near_far, for `verify_bound`. They are
-/// the root's. The multipliers alone carry this bound, so it may be below the solver's own.
+/// Multipliers and cliques of the root that prove a lower bound for the pairing near_far, for `verify_bound`.
+/// They prove this bound without the search, so it may be below the solver's bound.
 [[nodiscard]] BoundCertificate certify_root_bound(
     const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 
-/// Solves the problem and says how the proof can be repeated without this solver. Where the limit strikes
-/// first the certificate is for the bound that was proven until then; minus infinity where there was none.
+/// Solves the problem and returns what is needed to repeat the proof without this solver. If the limit ends
+/// the search, the certificate is for the bound proven so far; minus infinity if there is none.
 [[nodiscard]] SearchCertificate certify_search(
     const LaneGraphProblem& problem, double time_limit_ms = std::numeric_limits<double>::infinity());
 

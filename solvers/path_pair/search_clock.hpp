@@ -7,40 +7,40 @@
 
 namespace conelane::path_pair {
 
-/// The deadline of a search, shared by all its parts. They count their work in steps of about a nanosecond,
-/// and the deadline is looked at after every 50 000 of them. Expiry is sticky, and what a part was working on
-/// is then of no use.
+/// The deadline of a search, shared by all its parts. They count their work in steps of about a nanosecond;
+/// the deadline is checked after every 50 000 steps. Expiry is sticky, and results of the interrupted part
+/// are then invalid.
 class SearchClock {
   public:
-    /// Without a deadline it never strikes.
+    /// Without a deadline it never expires.
     explicit SearchClock(const Deadline& deadline = Deadline()) : deadline_(deadline) {}
     virtual ~SearchClock() = default;
     SearchClock(const SearchClock&) = delete;
     SearchClock& operator=(const SearchClock&) = delete;
 
-    /// Counts `work` steps, in the total as well.
+    /// Counts `work` steps, also in the total.
     bool out_of_time(std::size_t work) {
         total_work_ += static_cast<std::int64_t>(work);
         return tick(work);
     }
-    /// Counts `work` steps until the next look at the deadline, but not in the total.
+    /// Counts `work` steps towards the next check of the deadline, but not in the total.
     bool tick(std::size_t work) {
         constexpr std::size_t kWorkPerLook = 50'000;
         work_ += work;
         return work_ < kWorkPerLook ? struck_ : out_of_time();
     }
-    /// Looks at the deadline now.
+    /// Checks the deadline now.
     bool out_of_time() {
         work_ = 0;
         struck_ = struck_ || has_passed();
         return struck_;
     }
     [[nodiscard]] bool struck() const { return struck_; }
-    /// What was counted: the same on every machine.
+    /// The counted steps: the same on every machine.
     [[nodiscard]] std::int64_t total_work() const { return total_work_; }
 
   private:
-    /// A test strikes when it wants to.
+    /// Tests may make it expire at any time.
     [[nodiscard]] virtual bool has_passed() { return deadline_.passed(); }
 
     Deadline deadline_;

@@ -10,8 +10,8 @@
 namespace conelane {
 
 /// The lane-graph problem with edges between 0 and 1 and the products a_ij a_jk instead of f_ijk: a
-/// quadratic, in general nonconvex objective under linear rows. Its minimum is no bound, since (5) is left
-/// out and a solver finds local minima only. Variables: a_e of every edge that (27) allows, then g_i of every
+/// quadratic, in general nonconvex objective under linear rows. Its minimum is not a bound, since (5) is left
+/// out and solvers find local minima only. Variables: a_e of every edge that (27) allows, then g_i of every
 /// cone.
 class EdgeRelaxation {
   public:
@@ -38,7 +38,7 @@ class EdgeRelaxation {
     [[nodiscard]] double objective(std::span<const double> x) const;
     void gradient(std::span<const double> x, std::span<double> result) const;
 
-    /// Variables for values by problem edge: those, and half the degree for a cone, at most 1.
+    /// Variables from values by problem edge; the variable of a cone is half its degree, at most 1.
     [[nodiscard]] std::vector<double> point(std::span<const double> edge_values) const;
     /// Values by problem edge, 0 for edges that (27) excludes.
     [[nodiscard]] std::vector<double> edge_values(std::span<const double> x) const;

@@ -10,13 +10,13 @@ namespace conelane {
 
 /// The linear relaxation of the tight formulation without its lazy rows.
 struct LpRelaxation {
-    bool infeasible = false;      ///< proven: the problem has no lane graph either
-    std::optional<double> bound;  ///< its optimum, a lower bound of the problem; absent where stopped
+    bool infeasible = false;      ///< proven: the problem has no lane graph
+    std::optional<double> bound;  ///< its optimum, a lower bound of the problem; absent if stopped
     std::optional<StopReason> stopped_by;
     std::vector<double> edge_values;  ///< a_ij by problem edge, with the bound
 };
-/// Solved by Clp; throws std::runtime_error where that fails. Precondition: the problem lists the candidates
-/// only.
+/// Solved by Clp; throws std::runtime_error if that fails. Precondition: the problem lists only the
+/// candidates.
 [[nodiscard]] LpRelaxation solve_lp_relaxation(const LaneGraphProblem& problem, const Deadline& deadline);
 
 }  // namespace conelane

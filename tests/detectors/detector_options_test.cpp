@@ -113,24 +113,24 @@ TEST_F(OwnWeights, FaultsNameWhatIsWrong) {
               "another version");
     EXPECT_EQ(fault_of(with("\"stop_linear\"", "\"stop_lines\"")), "stop_linear: is missing");
     EXPECT_EQ(fault_of(with("\"least_trust\"", "\"wings\": [{}, null],\n\"least_trust\"")),
-              "wings: is no key of weights of front");
+              "wings: is not a key of weights of front");
     EXPECT_EQ(fault_of(with("\"least_trust\"", "\"version\": 1,\n\"least_trust\"")),
               "version: is there twice");
     EXPECT_EQ(fault_of(with("\"extend_output\": [", "\"extend_output\": [1,")),
               "extend_output: has 49 numbers, not 48");
     EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [NaN,")),
-              "stop_output: number 0 (from 0) is no number");
+              "stop_output: number 0 (from 0) is not a number");
     EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [1e39,")),
               "stop_output: number 0 (from 0) is out of range");
     EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [-1e999,")),
               "stop_output: number 0 (from 0) is out of range");
     EXPECT_EQ(fault_of(with("\"stop_output\": [", "\"stop_output\": [\"1\",")),
-              "stop_output: number 0 (from 0) is no number");
+              "stop_output: number 0 (from 0) is not a number");
     EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [1.,")),
                 HasSubstr("a number is incomplete"));
     EXPECT_THAT(fault_of(with("\"stop_output\": [", "\"stop_output\": [01,")), HasSubstr("expected ','"));
     EXPECT_EQ(fault_of(with("\"least_trust\": ", "\"least_trust\": 1")), "least_trust: must be in [0, 1]");
-    EXPECT_THAT(fault_of(shipped_ + "{}"), HasSubstr("there is more behind the object"));
+    EXPECT_THAT(fault_of(shipped_ + "{}"), HasSubstr("there is more after the object"));
     EXPECT_THAT(fault_of(std::string(100'000, '[')), HasSubstr("must be a JSON object"));
     EXPECT_THAT(fault_of("{\"training\": " + std::string(100'000, '[')), HasSubstr("nested too deep"));
     const std::string nowhere = path("nowhere.json").string();

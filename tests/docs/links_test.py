@@ -1,4 +1,4 @@
-"""links_test.py ROOT: every link and every path in README.md, CONTRIBUTING.md and docs/*.md leads to something that is
+"""links_test.py ROOT: every link and every path in README.md, CONTRIBUTING.md and the pages of docs leads to something that is
 there: files, folders, and headings within a page. Pictures too."""
 
 import glob
@@ -8,7 +8,7 @@ import sys
 import unittest
 
 ROOT = sys.argv[1]
-PAGES = sorted(glob.glob(os.path.join(ROOT, "docs", "*.md")) +
+PAGES = sorted(glob.glob(os.path.join(ROOT, "docs", "**", "*.md"), recursive=True) +
                [os.path.join(ROOT, name) for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")])
 # The first folders of the sources: what is written as code and begins so names a file of the repository.
 FOLDERS = sorted(name for name in os.listdir(ROOT) if os.path.isdir(os.path.join(ROOT, name)) and name not in ("build", "results"))
@@ -78,8 +78,8 @@ class Links(unittest.TestCase):
 
     def test_every_page_is_in_the_index(self):
         index = text_of(os.path.join(ROOT, "docs", "README.md"))
-        for page in glob.glob(os.path.join(ROOT, "docs", "*.md")):
-            name = os.path.basename(page)
+        for page in glob.glob(os.path.join(ROOT, "docs", "**", "*.md"), recursive=True):
+            name = os.path.relpath(page, os.path.join(ROOT, "docs"))
             if name != "README.md":
                 self.assertTrue(f"({name})" in index, f"docs/README.md does not lead to {name}")
 

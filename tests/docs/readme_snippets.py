@@ -1,10 +1,11 @@
-"""readme_snippets.py ROOT FILE: the C++ blocks of README.md as a program, with what they take as given drawn around them."""
+"""readme_snippets.py ROOT FILE: the C++ blocks of README.md and docs/get-started.md as a program, with the names that they use defined
+before them."""
 
 import os
 import re
 import sys
 
-BEFORE = """// Made of the C++ blocks of README.md.
+BEFORE = """// Made of the C++ blocks of README.md and docs/get-started.md.
 #include <iostream>
 #include <vector>
 
@@ -37,9 +38,12 @@ AFTER = """    std::cout << (course ? "course\\n" : "no course\\n");
 
 def main():
     root, file = sys.argv[1:]
-    with open(os.path.join(root, "README.md"), encoding="utf-8") as page:
-        blocks = re.findall(r"^```cpp\n(.*?)^```", page.read(), flags=re.M | re.S)
-    assert len(blocks) == 2, "the README has another number of C++ blocks"
+    blocks = []
+    for name in ("README.md", os.path.join("docs", "get-started.md")):
+        with open(os.path.join(root, name), encoding="utf-8") as page:
+            found = re.findall(r"^```cpp\n(.*?)^```", page.read(), flags=re.M | re.S)
+        assert len(found) == 1, f"{name} has another number of C++ blocks"
+        blocks += found
     lines = "".join(blocks).splitlines()
     text = "".join(line + "\n" for line in lines if line.startswith("#include"))
     text += BEFORE + "".join("    " + line + "\n" for line in lines if not line.startswith("#include")) + AFTER

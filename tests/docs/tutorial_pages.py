@@ -18,7 +18,7 @@ def tutorial_blocks(root, language):
 
 def documented_test_patterns(root):
     """(page, pattern) of every `ctest ... -R PATTERN` and `tests/run -R PATTERN`; words in capitals stand for many."""
-    pages = sorted(glob.glob(os.path.join(root, "docs", "*.md"))) + [os.path.join(root, name) for name in ("README.md", "CONTRIBUTING.md")]
+    pages = sorted(glob.glob(os.path.join(root, "docs", "**", "*.md"), recursive=True)) + [os.path.join(root, name) for name in ("README.md", "CONTRIBUTING.md")]
     for page in pages:
         for quoted, bare in re.findall(r"\b(?:ctest|tests/run)\b[^`\n#|;&]*? -R (?:'([^'\n]*)'|([^\s`'\"]+))", text_of(page)):
             if not re.fullmatch(r"[A-Z]+", bare or "-"):

@@ -28,7 +28,7 @@ const tests = {
     refuses('{"pose": {"x": 1, "y": 2, "yaw": 3}, "cones": [{"id": 7, "x": 4, "y": 5}, {"id": 7, "x": 4, "y": 5}]}', "f:1: cones[1].id: is there twice");
     refuses('{"scene": "a", "left": ["7"], "right": []}', "f:1: left: must be a list of cone ids");
     assert.throws(() => readText('{"pose": ', "f"), /^FileError: f:1: is not JSON: |^Error: f:1: is not JSON: /);
-    refuses("hello", "f: is no scenes or lanes file, no EUFS or PacSim course and no ft-fsd run");
+    refuses("hello", "f: is not a scenes or lanes file, an EUFS or PacSim course or an ft-fsd run");
   },
   "a course of EUFS"() {
     const read = readText("tag,x,y,direction,x_variance\nblue,1,2,0,0.1\r\nbig_orange,3,4,0,0\ncar_start,0.5,0,1.5,0\n", "f");

@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Fault{"no-scene", "scene: is missing"},
                     Fault{"unknown-id", "left: no cone of the scene has id 987654321"},
                     Fault{"cone-twice", "is there twice"}, Fault{"wrong-type", "left: must be an array"},
-                    Fault{"lane-of-none", "left: must be empty where status is none"},
+                    Fault{"lane-of-none", "left: must be empty if status is none"},
                     Fault{"far-point", "left_points: a point is farther"},
                     Fault{"two-lines", "answers scene \"4\" instead of \"5\"", 3}),
     [](const auto& param) {

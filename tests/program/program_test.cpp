@@ -106,7 +106,7 @@ TEST_F(Program, TimeLimitsAreAboveZero) {
     for (const char* limit : {"0", "-1", "nan", "soon", "400ms"}) {
         expect_refused("detect --method clc --scenes a.scenes.jsonl --out l.lanes.jsonl --time-limit " +
                            std::string(limit),
-                       {"--time-limit", "no number above 0"});
+                       {"--time-limit", "not a number above 0"});
     }
     expect_refused("tune --tracks generated:circle --out p.json --time-limit inf", {"--time-limit"});
 }

@@ -163,7 +163,7 @@ constexpr const char* kCompare =
 TEST_F(WholeOutputs, AComparisonDoesNotReplaceAPageOfAnother) {
     fs::create_directory(path("r"));
     file_with("<html>my thesis</html>\n", "r/report.html");
-    expect_refused(kCompare + std::string("r"), {"r/report.html", "is no page of conelane"});
+    expect_refused(kCompare + std::string("r"), {"r/report.html", "is not a page of conelane"});
     expect_refused(kCompare + std::string("r --overwrite"), {"r/report.html"});
     EXPECT_EQ(contents("r").size(), 1U) << "refused before the work";
     EXPECT_EQ(text_of(path("r/report.html")), "<html>my thesis</html>\n");

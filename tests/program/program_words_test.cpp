@@ -39,10 +39,11 @@ TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
     for (const char* count : {"2.5", "0", "-1", "many", "100001", "99999999999999999999", "12x"}) {
         expect_refused(
             "scenes --tracks generated:circle --out s.scenes.jsonl --nearest=" + std::string(count),
-            {"--nearest: '" + std::string(count) + "' is no whole number from 1 to 100000"});
+            {"--nearest: '" + std::string(count) + "' is not a whole number from 1 to 100000"});
     }
-    expect_refused("sweep --sizes 6,2.5 --out r", {"--sizes: '2.5' is no whole number from 1 to 100000"});
-    expect_refused("compare --threads 2.5 --out r", {"--threads: '2.5' is no whole number from 1 to 1024"});
+    expect_refused("sweep --sizes 6,2.5 --out r", {"--sizes: '2.5' is not a whole number from 1 to 100000"});
+    expect_refused("compare --threads 2.5 --out r",
+                   {"--threads: '2.5' is not a whole number from 1 to 1024"});
     expect_refused("train --tracks generated:circle --epochs 2.5 --out w.json", {"--epochs: '2.5'"});
     expect_refused("study growth --scenes s.scenes.jsonl --sizes 2.5", {"--sizes: '2.5'"});
 }

@@ -152,8 +152,8 @@ class Refusals(unittest.TestCase):
         self.check("ids: has dtype float64, not whole numbers", ids=np.arange(8.0))
         self.check("ids[1]: is above 2^63 - 1", ids=np.array([0, 2**63] + [1] * 6, dtype=np.uint64))
         self.check("colors: has dtype float64, not names or codes of colours", colors=np.zeros(8))
-        self.check("colors[0]: 'red' is no colour, which are unknown, blue, yellow, orange", colors=["red"] * 8)
-        self.check("colors[2]: 7 is no colour, which are 0 to 3: unknown, blue, yellow, orange",
+        self.check("colors[0]: 'red' is not a colour; colours are unknown, blue, yellow, orange", colors=["red"] * 8)
+        self.check("colors[2]: 7 is not a colour; colours are 0 to 3: unknown, blue, yellow, orange",
                    colors=[0, 0, 7, 0, 0, 0, 0, 0])
 
     def test_names_and_options(self):
@@ -166,9 +166,9 @@ class Refusals(unittest.TestCase):
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=0)),
             ("nearest: must be a whole number, at least 1", lambda: conelane.Detector("front", nearest=2.5)),
             ("parameters: there is no 'd_f', only d_e", lambda: conelane.Detector("rld-pair", parameters={"d_f": 1})),
-            ("d_e: is no number", lambda: conelane.Detector("rld-pair", parameters={"d_e": "far"})),
+            ("d_e: is not a number", lambda: conelane.Detector("rld-pair", parameters={"d_e": "far"})),
             ("d_e", lambda: conelane.Detector("rld-pair", parameters={"d_e": -1.0})),
-            ("pairing: 'far' is none of near_far, paper", lambda: conelane.Detector("rld-pair", pairing="far")),
+            ("pairing: 'far' is not one of near_far, paper", lambda: conelane.Detector("rld-pair", pairing="far")),
             ("parameters: is of the detectors rld-..., 'clc' has none",
              lambda: conelane.Detector("clc", parameters="context")),
             ("weights: is of the detectors front and front-warm, 'clc' has none",

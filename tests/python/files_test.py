@@ -62,7 +62,7 @@ class Scenes(InFolder):
             conelane.load_tracks(f"eufs:{file}")
 
     def test_an_index_beyond_the_cones(self):
-        with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is no index of the 7 cones"):
+        with self.assertRaisesRegex(ValueError, r"ground_truth.left\[1\]: 7 is not an index of the 7 cones"):
             conelane.Scene(CONES, (0, 0, 0), ground_truth=([0, 7], [1]))
 
     def test_a_scene_is_checked_at_once(self):
@@ -103,7 +103,7 @@ class Lanes(InFolder):
     def test_faults(self):
         line = ('{"scene": "%s", "method": "m", "status": "found", '
                 '"left": [%d, 12], "right": [11, 13], "latency_ms": 1}\n')
-        for text, message in ((line % ("b", 10), r"l\.lanes\.jsonl:1: scene: 'b' is none of the scenes given"),
+        for text, message in ((line % ("b", 10), r"l\.lanes\.jsonl:1: scene: 'b' is not one of the scenes given"),
                               (line % ("a", 99), r"l\.lanes\.jsonl:1: .*99"),
                               ("{}\n", r"l\.lanes\.jsonl:1: ")):
             with self.subTest(text), self.assertRaisesRegex(ValueError, message):

@@ -129,7 +129,7 @@ class Straight(unittest.TestCase):
                     ("pose: has shape", ([[0.0, 1.0]], (0, 0), 0.1 * i), {}),
                     (r"pose\.yaw", ([[0.0, 1.0]], (0, 0, np.inf), 0.1 * i), {}),
                     ("time_s: is not finite", ([[0.0, 1.0]], (0, 0, 0), np.nan), {}),
-                    ("time_s: is no number", ([[0.0, 1.0]], (0, 0, 0), "now"), {}),
+                    ("time_s: is not a number", ([[0.0, 1.0]], (0, 0, 0), "now"), {}),
                     ("time_limit_ms", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"time_limit_ms": np.nan}),
                     ("ids: has shape", ([[0.0, 1.0]], (0, 0, 0), 0.1 * i), {"ids": [1, 2]}),
                     (r"cones\[1\]\.id", ([[0.0, 1.0], [1.0, 1.0]], (0, 0, 0), 0.1 * i), {"ids": [7, 7]}),

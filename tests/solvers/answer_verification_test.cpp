@@ -189,7 +189,8 @@ TEST(VerifiedSolver, HoldsClaimsAgainstTheStart) {
     }
 }
 
-/// Own optimum, another's, a lane graph that costs more, edges that are none, edges of cones that are gone.
+/// Own optimum, another's, a lane graph that costs more, invalid edges, edges of cones that are not in the
+/// scene.
 TEST(VerifiedSolver, NoStartChangesAnOptimum) {
     int with_lane = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {

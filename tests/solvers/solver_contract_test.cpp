@@ -295,8 +295,8 @@ TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
     EXPECT_THAT(check(scene, parameters, expected).violations, testing::SizeIs(1));
 }
 
-/// The optimum as start stays the optimum, with proof; so does any other lane graph; one that is none for
-/// this problem is dropped.
+/// From any lane graph as start, the optimum is found with proof; a start that is not a lane graph of this
+/// problem is dropped.
 TEST_P(SolverContract, AStartChangesNoOptimum) {
     int started = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -82,7 +82,7 @@ class SolverRobustness : public testing::TestWithParam<Contestant> {
     }
 };
 
-/// Limits all over the time that the solve takes, so that the deadline strikes in each of its parts.
+/// Limits all over the time that the solve takes, so that the deadline falls into each of its parts.
 TEST_P(SolverRobustness, ADeadlineAnywhereInTheSolveMakesNoFalseProof) {
     constexpr int kLimits = 60;
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();

@@ -29,32 +29,32 @@ struct DetectorInfo {
     std::string_view description;  ///< one line
 };
 
-/// All of them, the one to drive by first.
+/// All detectors; the first one is the one to drive by.
 [[nodiscard]] std::vector<DetectorInfo> detectors();
 
-/// The content of a file of weights, where it is at hand and the file is not.
+/// The content of a file of weights, for programs that hold it in memory.
 struct WeightsBytes {
     std::string bytes;
 };
 
-/// What may be set of a detector. What is absent is as the detector of that name has it. An option that the
+/// Options of a detector. An absent option has the value of the detector of that name. An option that the
 /// detector does not use is an error.
 struct DetectorOptions {
     std::optional<RldParameters> rld_parameters = {};  ///< rld-...: the parameters of the objective
-    std::optional<Pairing> pairing = {};               ///< rld-...: instead of the parameters'
-    /// All detectors: they answer for so many cones, the nearest ahead. At least 1.
+    std::optional<Pairing> pairing = {};               ///< rld-...: replaces the pairing of the parameters
+    /// All detectors: answer only for this many nearest cones ahead. At least 1.
     std::optional<std::size_t> nearest = {};
     /// front and front-warm: weights of your own instead of the shipped ones. The path of a file that
     /// `conelane train front --out FILE` wrote, or its content.
     std::optional<std::variant<std::filesystem::path, WeightsBytes>> weights = {};
 };
 
-/// The detector of that name. Without options it is what tables show under the name: a learned detector has
-/// its trained weights, `delaunay-beam` and `astar-lane` have tuned parameters, `rld-...` has the defaults of
-/// RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
-/// Throws InvalidInput, listing the names, where there is none of that name; and naming the option where one
-/// is out of range, is not used by the detector, or weights cannot be read. Detectors are independent of each
-/// other; each serves one thread.
+/// The detector of that name. Without options it is the one that tables show under the name: a learned
+/// detector has its trained weights, `delaunay-beam` and `astar-lane` have tuned parameters, `rld-...` has
+/// the defaults of RldParameters, or those of with_shape_costs; tuned sets are in rld_parameter_sets.hpp.
+/// Throws InvalidInput: for an unknown name, listing the names; for an option that is out of range or that
+/// the detector does not use, naming the option; and for weights that cannot be read. Detectors are
+/// independent of each other; each serves one thread.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(std::string_view name,
                                                           const DetectorOptions& options = {});
 

@@ -24,49 +24,49 @@ namespace conelane {
 /// The dynamic events of Formula Student.
 enum class Mission { trackdrive, autocross, acceleration, skidpad };
 [[nodiscard]] std::string_view to_string(Mission mission);
-/// The mission that `to_string` spells so. Throws InvalidInput naming `mission` and listing all.
+/// The mission with this name, as `to_string` spells it. Throws InvalidInput naming `mission` and listing
+/// all.
 [[nodiscard]] Mission mission_named(std::string_view name);
 
 enum class PlanState {
     searching,  ///< no lane has been found yet
     following,  ///< the lane is of this frame
-    bridging,   ///< no lane in this frame: what is left of an earlier one, see Plan::age_s
+    bridging,   ///< no lane in this frame: the rest of an earlier one, see Plan::age_s
     lost,       ///< nothing of an earlier lane is left; there is no path
-    finished,   ///< the last line is crossed; the path is what is left to come to rest on
+    finished,   ///< the last line is crossed; the path is the stretch to come to rest on
 };
 [[nodiscard]] std::string_view to_string(PlanState state);
 
-/// Id of a cone that has none: the planner recognises it by its place.
+/// Id of a cone without an id: the planner recognises it by its place.
 inline constexpr ConeId kNoId = std::numeric_limits<ConeId>::min();
 
-/// What the car sees or its map holds at one moment. Pose and cones are in one frame of reference, the map's.
+/// What the car sees, or its map, at one moment. Pose and cones are in one frame of reference, the map's.
 struct Frame {
     double time_s = 0.0;  ///< of any clock that never goes back
     Pose pose;
-    std::vector<Cone> cones;  ///< in any order; ids distinct where they are not kNoId
+    std::vector<Cone> cones;  ///< in any order; ids other than kNoId are distinct
 };
 
 /// What to drive.
 struct Plan {
     PlanState state = PlanState::searching;
-    /// Begins at the car. Empty where state is searching or lost, and where the car is at rest at the end.
+    /// Begins at the car. Empty if state is searching or lost, and when the car is at rest at the end.
     DrivableLane lane;
-    double safe_m =
-        0.0;             ///< along `lane`: how far it is trusted, or what is left of the last trusted stretch
-    double age_s = 0.0;  ///< of the frame that the lane stems from; 0 where following
-    int lap = 0;         ///< start lines crossed since the start, not counting the first one at the start
-    bool stop = false;   ///< come to rest inside what is left of `lane`
+    double safe_m = 0.0;     ///< along `lane`: how far it is trusted, or the rest of the last trusted stretch
+    double age_s = 0.0;      ///< age of the frame that the lane is from; 0 if following
+    int lap = 0;             ///< start lines crossed since the start, not counting the first one at the start
+    bool stop = false;       ///< come to rest inside the rest of `lane`
     std::string_view phase;  ///< skidpad: approach, right 1, right 2, left 1, left 2, exit; else empty
-    LaneAnswer answer;       ///< of the detector in this frame
+    LaneAnswer answer;       ///< the detector's answer to this frame
 };
 
 struct PlannerOptions {
-    Mission mission = Mission::trackdrive;
-    std::string detector = "front-warm";
-    DetectorOptions detector_options = {};
-    std::optional<int> laps = {};  ///< trackdrive: 10 where absent; autocross: 1. At least 1
-    DrivableOptions drivable = {};
-    double max_age_s = 1.0;  ///< an older lane is no path; at least 0
+    Mission mission = Mission::trackdrive;  ///< the event
+    std::string detector = "front-warm";    ///< a name of `detectors`
+    DetectorOptions detector_options = {};  ///< of that detector
+    std::optional<int> laps = {};           ///< trackdrive: 10 if absent; autocross: 1. At least 1
+    DrivableOptions drivable = {};          ///< of the lanes in plans
+    double max_age_s = 1.0;                 ///< an older lane is not driven; at least 0
 };
 
 /// A planner of one run. It serves one thread; planners are independent of each other.
@@ -77,21 +77,21 @@ class Planner {
     Planner& operator=(const Planner&) = delete;
     virtual ~Planner();
 
-    /// Throws InvalidInput where the frame is not valid, or the limit is NaN; the planner is then as it was
-    /// before. A frame without cones is valid. One that is not later than the last one changes nothing: it
-    /// has the last plan again, and where it is older than that, as bridging instead of following.
+    /// Throws InvalidInput if the frame is invalid or the limit is NaN; the planner then stays unchanged. A
+    /// frame without cones is valid. A frame that is not later than the last one changes nothing: the last
+    /// plan is returned again, as bridging instead of following if the frame is older than the last one.
     [[nodiscard]] virtual Plan update(const Frame& frame, const DetectionLimits& limits = {}) = 0;
 
-    /// The whole course, closed, once a lap is known; absent before, and in missions whose course is not a
-    /// circuit.
+    /// The whole course, closed, once a lap is known; absent before that, and in missions whose course is not
+    /// a circuit.
     [[nodiscard]] virtual std::optional<DrivableLane> course() const = 0;
 
     /// Forgets the run.
     virtual void reset() = 0;
 };
 
-/// Throws InvalidInput naming the option that is out of range or that the mission does not use, and as
-/// make_detector does.
+/// Throws InvalidInput naming the option that is out of range or that the mission does not use, and for the
+/// detector as make_detector does.
 [[nodiscard]] std::unique_ptr<Planner> make_planner(const PlannerOptions& options = {});
 
 }  // namespace conelane

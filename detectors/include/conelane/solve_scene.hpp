@@ -7,17 +7,16 @@
 
 namespace conelane {
 
-/// A scene, solved: the numbers that it became, and what the solver answered.
+/// A solved scene: its problem and the solver's report.
 struct SolvedScene {
-    LaneGraphProblem problem;  ///< empty where a limit was struck on the way to it
-    RldReport report;          ///< build_ms counts making the problem too
+    LaneGraphProblem problem;  ///< empty if a limit ended its construction
+    RldReport report;          ///< build_ms includes making the problem
     double total_ms = 0.0;     ///< from the scene in memory to the report
 };
 
-/// Scene to report: makes the problem that the solver wants and solves it, both inside the time limit; where
-/// the problem cannot be made within it, or would be too large, the status is stopped, with the reason.
-/// Throws nothing but std::bad_alloc: a scene or parameters that are not valid give status error and a
-/// message.
+/// Makes the problem of the extent that the solver needs and solves it, both inside the time limit. If the
+/// problem cannot be made in time, or would be too large, the status is stopped, with the reason. Throws only
+/// std::bad_alloc: an invalid scene or invalid parameters give status error and a message.
 [[nodiscard]] SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
                                       const SolveLimits& limits, const LaneGraph* start = nullptr);
 

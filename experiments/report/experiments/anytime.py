@@ -1,7 +1,7 @@
 """What the exact search knows when its time is up
 
 Claim: Where the time does not suffice, there is a lane graph and a proven gap, and both get better with time.
-Protocol: `path-pair` on all cones of each scene, solved anew under each limit, one thread. Gap: from the bound to the \
+Protocol: `path-pair` on all cones of each scene, solved again under each limit, one thread. Gap: from the bound to the \
 best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 where the optimum is proven. \
 Close: a lane graph that costs within 1 % of that one.
 Source: this project.

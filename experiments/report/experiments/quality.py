@@ -5,9 +5,9 @@ Protocol: every method on the same scenes, each on the cone set it was made for 
 Usable: a lane that does not leave the track within 20 m and, where it never does, is at least 20 m or 75 % of the \
 ground truth long. Success: the first half of that, as the CLC paper has it. IoU: overlap with the ground truth of all that is visible, \
 so a small cone set bounds it. Accurate: the four checks of the RLD paper, against the ground truth of the method's \
-own cone set. A method whose name ends in warm carries its last lane along; where false positives are drawn anew at \
+own cone set. A method whose name ends in warm carries its last lane along; where false positives are drawn at \
 every pose, as in condition paper, that helps it. Intervals are 95 % bootstrap, tracks resampled, as scenes of one track are alike. Failures and \
-time-outs stay in every mean.
+time-outs count in every mean.
 Source: usable is this project's; success and IoU as in the CLC paper, VIII; accurate as in the RLD paper, IV-B.
 Command: conelane compare --out RESULTS
 """

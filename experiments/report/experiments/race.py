@@ -41,7 +41,7 @@ def read(results):
         raise InputError(f"{path}: {error}") from None
     races = run.get("races") if isinstance(run, dict) else None
     if not isinstance(races, list) or not races:
-        raise InputError(f"{path}: races: is no list of races")
+        raise InputError(f"{path}: races: is not a list of races")
     rows = {}
     for number, race in enumerate(races):
         for key, kinds in _KEYS:

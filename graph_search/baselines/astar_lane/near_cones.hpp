@@ -9,14 +9,15 @@
 
 namespace conelane {
 
-/// Cones around a place, by a grid of square cells.
+/// Finds the cones around a place, by a grid of square cells.
 class NearCones {
   public:
-    /// Precondition: every point is within `reach_m` of the origin. Cells are at least as wide as `radius_m`
-    /// and at most kMaxCells a side.
+    /// Precondition: every point is within `reach_m` of the origin. Cells are at least as wide as `radius_m`;
+    /// there are at most kMaxCells in a row.
     void build(std::span<const Point> points, double reach_m, double radius_m);
 
-    /// Calls `visit` with every point within the radius of `place`, and with some others. Returns how many.
+    /// Calls `visit` with every point within the radius of `place`, and with some others. Returns their
+    /// number.
     template <typename Visit>
     std::size_t visit_near(const Point& place, const Visit& visit) const {
         const std::int64_t column = cell_of(place.x());

@@ -14,8 +14,8 @@
 namespace conelane {
 
 /// The Delaunay triangulation of points, rounded to a grid that divides their extent by 2^30. On that grid
-/// every predicate is exact. Of points that fall on one place of the grid only the first, by index, is in it.
-/// Points are inserted from left to right; each one is joined to the hull that it sees, then edges are
+/// every predicate is exact. Of points on the same place of the grid only the first, by index, is used.
+/// Points are inserted from left to right; each one is joined to the visible part of the hull, then edges are
 /// flipped until every circumcircle is empty (Lawson).
 class DelaunayTriangulation {
   public:
@@ -23,11 +23,10 @@ class DelaunayTriangulation {
     using HalfEdge = std::uint32_t;
     static constexpr HalfEdge kNone = std::numeric_limits<HalfEdge>::max();
 
-    /// Returns false where the budget is spent: then there are no triangles. Reuses the memory of the
-    /// triangulation before.
+    /// Returns false if the budget is spent: then there are no triangles. Reuses memory from call to call.
     [[nodiscard]] bool build(std::span<const Point> points, SearchBudget& budget);
 
-    /// Three for each triangle; none where all points are on one line.
+    /// Three for each triangle; none if all points are on one line.
     [[nodiscard]] std::size_t half_edge_count() const { return origin_.size(); }
     [[nodiscard]] Vertex origin(HalfEdge side) const { return sites_[origin_[side]].vertex; }
     [[nodiscard]] Vertex target(HalfEdge side) const { return origin(next(side)); }
@@ -35,12 +34,12 @@ class DelaunayTriangulation {
     [[nodiscard]] HalfEdge twin(HalfEdge side) const { return twin_[side]; }
     [[nodiscard]] static HalfEdge next(HalfEdge side) { return side % 3 == 2 ? side - 2 : side + 1; }
 
-    /// Each edge once. Of four and more points on an empty circle only the sides of their polygon; of points
-    /// on one line, those between neighbours.
+    /// Each edge once. Of four and more points on an empty circle, only the sides of their polygon; of points
+    /// on one line, the edges between neighbours.
     [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> edges() const;
 
   private:
-    /// Its place on the grid.
+    /// The place on the grid.
     struct Site {
         std::int64_t x;
         std::int64_t y;
@@ -52,7 +51,8 @@ class DelaunayTriangulation {
     void place_sites(std::span<const Point> points);
     void join_first_triangles(SiteIndex apex);
     void insert(SiteIndex site);
-    /// Flips edges from those in `unsettled_` on. Each of these lies opposite the site inserted last.
+    /// Flips edges, beginning with those in `unsettled_`. Each of these is opposite to the site inserted
+    /// last.
     std::size_t settle();
     HalfEdge add_triangle(SiteIndex a, SiteIndex b, SiteIndex c);
     void join(HalfEdge side, HalfEdge twin);
@@ -60,14 +60,15 @@ class DelaunayTriangulation {
     std::vector<Site> sites_;  ///< ascending
     std::vector<SiteIndex> origin_;
     std::vector<HalfEdge> twin_;
-    /// By site on the hull: its neighbours there and the half-edge to the next, counter-clockwise.
+    /// For sites on the hull: the two neighbours there and the half-edge to the next one, counter-clockwise.
     std::vector<SiteIndex> hull_next_;
     std::vector<SiteIndex> hull_previous_;
     std::vector<HalfEdge> hull_side_;
     std::vector<HalfEdge> unsettled_;
 };
 
-/// The edges of the triangulation, an EdgeRule: section IV-B of the CLC paper, whose graph has too few edges.
+/// The edges of the triangulation as an EdgeRule: section IV-B of the CLC paper. This graph has too few
+/// edges.
 [[nodiscard]] std::vector<std::pair<Vertex, Vertex>> delaunay_edges(std::span<const Point> points);
 
 }  // namespace conelane

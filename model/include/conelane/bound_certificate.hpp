@@ -27,7 +27,7 @@ struct BoundCertificate {
 };
 
 struct BoundVerdict {
-    std::vector<std::string> violations;  ///< a sentence each; empty: the claim holds
+    std::vector<std::string> violations;  ///< a sentence each; empty if the claim holds
     std::optional<double> bound;          ///< proven by the multipliers; infinite where no lane graph exists
 };
 

@@ -11,14 +11,14 @@
 
 namespace conelane {
 
-/// What the checker found out about a set of edges.
+/// The checker's result for a set of edges.
 struct CheckReport {
     std::vector<std::string>
-        violations;                   ///< a sentence each, naming constraint and cones; empty: a lane graph
-    std::optional<double> objective;  ///< (29), where every edge joins two cones of the scene
+        violations;  ///< a sentence each, naming constraint and cones; empty for a lane graph
+    std::optional<double> objective;  ///< (29), if every edge joins two cones of the scene
     std::size_t along_heading = 0;    ///< edges that count in (9)
-    /// A violation stays whatever edges are added: one of (2), (5), (6), (27), (28), a crossing, or an
-    /// invalid edge.
+    /// More edges cannot repair a violation: one of (2), (5), (6), (27), (28), a crossing, or an invalid
+    /// edge.
     bool is_final = false;
 };
 

@@ -5,8 +5,8 @@
 
 namespace conelane {
 
-/// A value that no scene, parameter set or option may hold. `what()` is "KEY: REASON"; readers add file and
-/// line.
+/// An invalid value in a scene, a parameter set or an option. `what()` is "KEY: REASON"; readers of files add
+/// file and line.
 class InvalidInput : public std::invalid_argument {
   public:
     InvalidInput(const std::string& key, const std::string& reason)

@@ -15,21 +15,21 @@ namespace conelane {
 
 enum class LaneStatus {
     found,
-    none,     ///< by proof or complete search: the scene has no feasible lane
-    stopped,  ///< no lane that can be driven was found before a limit, see LaneAnswer::stopped_by
+    none,     ///< the scene has no feasible lane, by proof or complete search
+    stopped,  ///< no lane that can be driven was found; LaneAnswer::stopped_by names a limit
     error,    ///< see LaneAnswer::message
 };
 [[nodiscard]] std::string_view to_string(LaneStatus status);
 
-/// What a method that optimises a stated objective knows of its answer.
+/// Optimality of an answer, from a detector that optimises a stated objective.
 struct Optimality {
     double objective;
     double bound;  ///< proven lower bound, at most `objective`
-    bool optimal;  ///< the gap is within the tolerance asked for
+    bool optimal;  ///< the gap is within the requested tolerance
 };
 
-/// A lane that an enumerating method met, and when; or one of the best of a method that has an order of them,
-/// and its place, from 1.
+/// A lane that an enumerating detector met, and its iteration; or one of the best lanes of a ranking
+/// detector, and its rank, from 1.
 struct LaneCandidate {
     Lane lane;
     std::int64_t iteration;
@@ -39,48 +39,46 @@ struct LaneCandidate {
 struct Enumeration {
     std::int64_t iterations;
     bool complete;                          ///< the search space was exhausted before the iteration limit
-    std::vector<LaneCandidate> candidates;  ///< in the order met, or the best first; empty unless asked for
+    std::vector<LaneCandidate> candidates;  ///< in the order met, or best first; see keep_candidates
 };
 
-/// The lane that was found among more cones than it is answered for, before it was cut to those.
+/// A lane found among more cones than the cone set, before it was cut to the cone set.
 struct UncutLane {
     Lane lane;
     std::optional<Optimality> optimality;
 };
 
-/// Cones of a scene that stand at most this far apart [m] are one cone that a map holds twice: the base of
-/// the smallest cone of the rules is 0.228 m wide, so the middles of two cones cannot be that near. A
-/// detector may merge cones that stand farther apart where a scene has many, see
-/// LaneDetector::doubled_cone_m.
+/// Cones at most this far apart [m] are one cone that a map holds twice: the smallest cone of the rules is
+/// 0.228 m wide, so the middles of two cones cannot be this near. A detector may merge cones that are farther
+/// apart if a scene has many of them, see LaneDetector::doubled_cone_m.
 inline constexpr double kDoubledCone_m = 0.12;
 
-/// A cone that a detector did not look at, since it stands within its doubled_cone_m of another one.
+/// A cone that a detector left out, because it is within the detector's doubled_cone_m of another one.
 struct MergedCone {
     ConeId cone;
-    ConeId into;  ///< stands for both in the lane: the one nearer to the car, of equally near ones the
-                  ///< smaller id
+    ConeId into;  ///< represents both cones in the lane: the one nearer to the car (ties: the smaller id)
 
     bool operator==(const MergedCone&) const = default;
 };
 
-/// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, but for detectors
-/// that say otherwise of scenes which show one boundary alone (front). What a method does not know stays
-/// absent.
+/// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, except from
+/// `front` in scenes that show only one boundary. Unknown values are absent.
 struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
     Lane lane;
     std::string message;
-    /// The limit that ended the search. Absent where it ran to its end: then a lane is the detector's best.
+    /// The limit that ended the search. Absent if the search ended by itself: the lane is the detector's
+    /// best.
     std::optional<StopReason> stopped_by;
     std::optional<double> confidence;  ///< probability that the lane is usable
-    /// Distance up to which the lane can be trusted. Of a detector that `make_detector` makes every lane has
-    /// one. With a confidence it follows from probabilities; without one it is a rule and no probability: as
-    /// far as both boundaries were seen without a gap, and 10 m at most.
+    /// Distance up to which the lane can be trusted. Every lane of a detector from `make_detector` has one.
+    /// With a confidence it follows from probabilities. Without a confidence it follows a rule: as far as
+    /// both boundaries were seen without a gap, and 10 m at most.
     std::optional<double> trusted_m;
-    std::optional<Optimality> optimality;  ///< of `lane` itself; absent where it was cut
-    std::optional<UncutLane> uncut;        ///< where `lane` was cut; no file holds it
+    std::optional<Optimality> optimality;  ///< of `lane` itself; absent if it was cut
+    std::optional<UncutLane> uncut;        ///< if `lane` was cut; not stored in files
     std::optional<Enumeration> enumeration;
-    std::vector<MergedCone> merged;  ///< by `cone`; empty where no cone is doubled; no file holds it
+    std::vector<MergedCone> merged;  ///< by `cone`; empty if no cone is doubled; not stored in files
 };
 
 struct DetectionLimits {
@@ -88,10 +86,10 @@ struct DetectionLimits {
     bool keep_candidates = false;  ///< fill Enumeration::candidates
 };
 
-/// A way from a scene to a lane. It looks at each cone once: of cones that are doubled it sees the one
-/// nearest to the car, and what it says, proofs as well, is said of the scene without the others, which
-/// LaneAnswer::merged names. An instance may carry state from one scene of a lap to the next and serves
-/// one thread; instances are independent of each other.
+/// A way from a scene to a lane. Doubled cones are merged first: the detector sees the one nearest to the
+/// car, and its answer, also a proof, is about the scene without the others. LaneAnswer::merged names them.
+/// An instance may carry state from one scene of a lap to the next. It serves one thread; instances are
+/// independent of each other.
 class LaneDetector {
   public:
     LaneDetector() : LaneDetector(kDoubledCone_m) {}
@@ -99,19 +97,19 @@ class LaneDetector {
     LaneDetector& operator=(const LaneDetector&) = delete;
     virtual ~LaneDetector();
 
-    /// Throws nothing but std::bad_alloc: a scene that `validate` refuses, a limit that is NaN and whatever a
-    /// search or its backend throws give status error and a message.
+    /// Throws only std::bad_alloc. A scene that `validate` refuses, a limit that is NaN, and any other
+    /// exception of a search or its backend give status error and a message.
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
-    /// Cones that stand at most this far apart [m] are one cone for this detector; beyond kDoubledCone_m only
-    /// in a scene that has at least three such doubles, and one for each ten cones.
+    /// Cones at most this far apart [m] are one cone for this detector. Beyond kDoubledCone_m this holds only
+    /// in a scene with at least three such doubles and at least one for each ten cones.
     [[nodiscard]] double doubled_cone_m() const;
 
-    /// Forgets what was carried from earlier scenes.
+    /// Forgets earlier scenes.
     virtual void reset() {}
 
   protected:
-    /// Of a detector that merges cones up to `doubled_cone_m` apart, 0.4 m at most.
+    /// For a detector that merges cones up to `doubled_cone_m` [m] apart; 0.4 m at most.
     explicit LaneDetector(double doubled_cone_m);
 
   private:

@@ -37,11 +37,12 @@ struct LaneGraph {
 
 /// The lane that a lane graph bounds. Each path starts at the end nearer to the car; left is the path whose
 /// point nearest to the car lies farther to the left of the car's axis. Ties: the first path is left, the
-/// first end starts. Nothing where the graph does not consist of exactly two simple paths.
+/// first end starts. Nothing unless the graph consists of exactly two simple paths.
 [[nodiscard]] std::optional<Lane> to_lane(const LaneGraph& graph, const Scene& scene);
 
-/// A lane graph of one scene as edges of the next: cones are the same where their ids are; an edge whose cone
-/// is gone is left out. Precondition: the graph's indices are below the cone count of `previous`.
+/// A lane graph of one scene as edges of the next. Cones with the same id are the same; an edge with a cone
+/// that the next scene does not have is left out. Precondition: the graph's indices are below the cone count
+/// of `previous`.
 [[nodiscard]] LaneGraph map_by_cone_id(const Scene& previous, const LaneGraph& graph, const Scene& next);
 
 }  // namespace conelane

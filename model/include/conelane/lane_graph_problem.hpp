@@ -16,7 +16,7 @@ namespace conelane {
 
 class Deadline;  // internal
 
-/// The car's distance to an edge's midpoint is at least this in (25): the cost has a pole where it is 0 [m].
+/// Lower bound of the car's distance to an edge's midpoint in (25): the cost has a pole at 0 [m].
 inline constexpr double kMinCarDistance_m = 0.5;
 
 /// An edge of the problem and its numbers. Cone indices i < j.
@@ -25,11 +25,11 @@ struct ProblemEdge {
     std::size_t j;
     double spacing_cost;  ///< s_ij (18), without weight
     double heading_cost;  ///< p_ij (25), without weight
-    /// One where one cone is blue and the other yellow, and one where an edge along the heading, the only
-    /// place where the car's axis tells sides, is on the wrong side: to the right of the car with a blue
-    /// cone, or to the left with a yellow one. An edge is to the right where its midpoint is to the right of
-    /// the axis and the car to the left of the edge's line, taken along the heading; in a bend one of the two
-    /// may be wrong. Where they differ it is on no side.
+    /// 1 if one cone is blue and the other yellow, plus 1 if an edge along the heading is on the wrong side:
+    /// to the right of the car with a blue cone, or to the left with a yellow one. An edge is to the right if
+    /// its midpoint is to the right of the car's axis and the car is to the left of the edge's line, directed
+    /// along the heading; to the left likewise. In a bend the two tests may differ: then the edge is on no
+    /// side. Other edges have no side.
     double color_cost;
     double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0
     /// w_s s_ij + w_p p_ij - w_b (29), with use_confidence - w_b times both cones' confidences instead, and
@@ -56,8 +56,8 @@ enum class EdgeExtent {
     all_pairs,   ///< all n (n - 1) / 2, as the printed model has them
 };
 
-/// The numbers of one scene: geometry becomes numbers here, once. Edges are in the paper's order
-/// (column-major lower triangle); an edge of zero length is high-cost whatever its spacing cost.
+/// The numbers of one scene. All geometry is evaluated when it is made. Edges are in the paper's order
+/// (column-major lower triangle); an edge of zero length is high-cost for any spacing cost.
 struct LaneGraphProblem {
     std::size_t cone_count = 0;
     RldParameters parameters;
@@ -65,8 +65,8 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
     std::vector<bool> near;                                      ///< r_i of (11)
-    /// z_i, see near_end_fit; 0 of a far cone. Where a path ends, m_i = A_i - 2 (turns at i) is 1, else 0: so
-    /// - w_n sum_i z_i m_i is a cost of edges and turns, and no solver needs to know of it.
+    /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 where a path ends, else 0. So
+    /// - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
     std::vector<double> near_end_fit;
     std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
     std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only
@@ -78,22 +78,21 @@ struct LaneGraphProblem {
 [[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                             EdgeExtent extent = EdgeExtent::candidates);
 
-/// A larger problem is not solved: what solvers keep of it grows with the square of its edges. No scene of a
-/// car comes near: 234 cones within 50 m, half of them false, give a tenth of these edges.
+/// A larger problem is not solved, because the memory of solvers grows with the square of its edges. Scenes
+/// of a car are smaller: 234 cones within 50 m, half of them false, give a tenth of these edges.
 inline constexpr std::size_t kMaxProblemEdges = 16'384;
-/// And this many turns, conflicts and pairs that are far apart together, below 256 MB.
+/// Largest number of turns, conflicts and far-apart pairs together, below 256 MB.
 inline constexpr std::size_t kMaxProblemEntries = 4'000'000;
 [[nodiscard]] bool is_too_large(const LaneGraphProblem& problem);
 
 /// A problem, or why its construction stopped.
 struct LimitedProblem {
-    std::optional<LaneGraphProblem> problem;  ///< complete; absent where a limit was struck
-    std::optional<StopReason> stopped_by;     ///< then: time or memory
+    std::optional<LaneGraphProblem> problem;  ///< complete; absent if a limit ended construction
+    std::optional<StopReason> stopped_by;     ///< if absent: time or memory
 };
 
-/// The same problem as without a deadline, or none: where the deadline passes on the way (it is looked at
-/// about every 0.1 ms), or the problem turns out to be too large, the part that was made is dropped. Throws
-/// as above.
+/// The same problem as without a deadline, or none if the deadline passes (it is checked about every 0.1 ms)
+/// or the problem is too large. Throws as above.
 [[nodiscard]] LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                           EdgeExtent extent, const Deadline& deadline);
 
@@ -101,8 +100,8 @@ struct LimitedProblem {
 /// is listed in the problem.
 [[nodiscard]] double objective(const LaneGraphProblem& problem, const LaneGraph& graph);
 
-/// Whether a set of edges fulfils every constraint of the problem, the pairing included. An edge that the
-/// problem does not list is none that it allows.
+/// Whether a set of edges fulfils every constraint of the problem, with the pairing. An edge that the problem
+/// does not list is not allowed.
 [[nodiscard]] bool is_feasible(const LaneGraphProblem& problem, const LaneGraph& graph);
 
 }  // namespace conelane

@@ -62,11 +62,10 @@ struct RldParameterField {
 /// The numeric parameters of the extras, whose defaults switch them off.
 [[nodiscard]] std::span<const RldParameterField> rld_extra_fields();
 
-/// The same with the costs of a lane's shape: hand-set weights, and hand-set values of w_s, w_t, d_e and
-/// three limits, which mean another thing beside them: not a spacing or an angle but its neighbours tell a
-/// false edge. What has shape costs already stays as it is.
+/// The parameters with the costs of a lane's shape: hand-set weights of these costs, and hand-set values of
+/// w_s, w_t, d_e and three limits, which suit them. Parameters with shape costs are returned unchanged.
 [[nodiscard]] RldParameters with_shape_costs(RldParameters parameters);
-/// Whether a shape cost has a weight.
+/// Whether any shape cost has a positive weight.
 [[nodiscard]] bool has_shape_costs(const RldParameters& parameters);
 
 /// Throws InvalidInput naming the first parameter that is not finite or out of its range.

@@ -34,22 +34,21 @@ struct Cone {
     double confidence = 1.0;  ///< of the detection, in [0, 1]
 };
 
-/// All that a lane detector may know: no ground truth. Cones are unordered; their ids are distinct.
+/// The input of a lane detector, without ground truth. Cones are unordered; their ids are distinct.
 struct Scene {
     std::string id;
     Pose pose;
     std::vector<Cone> cones;
 };
 
-/// Throws InvalidInput, naming the key, where a number is not finite, a confidence is outside [0, 1] or an id
-/// is there twice. A scene without cones is valid: it has no lane.
+/// Throws InvalidInput, naming the key, if a number is not finite, a confidence is outside [0, 1] or an id
+/// occurs twice. A scene without cones is valid: it has no lane.
 void validate(const Scene& scene);
-/// The same, with `ids` as workspace: it allocates only where that has not the capacity.
+/// The same, with `ids` as workspace: it allocates only if `ids` has too little capacity.
 void validate(const Scene& scene, std::vector<ConeId>& ids);
 
 /// The scene with the `count` cones nearest to the car among those ahead of it (in the closed half-plane
-/// along the heading), in their old order. Of two cones equally near, the one with the smaller id comes
-/// first.
+/// along the heading), in their old order. Of two equally near cones the one with the smaller id comes first.
 [[nodiscard]] Scene nearest_ahead(const Scene& scene, std::size_t count);
 
 }  // namespace conelane

@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// The solvers that need no library.
+/// The solvers of the core, which need no other library.
 [[nodiscard]] std::span<const RldSolverEntry> core_solvers();
 
 }  // namespace conelane

@@ -14,10 +14,10 @@ namespace conelane {
 struct RldSolverEntry {
     std::string_view name;
     std::string_view description;
-    bool uses_formulation;  ///< else the formulation is ignored
-    bool exact;             ///< proves its optimum; else a heuristic whose status is feasible at best
+    bool uses_formulation;  ///< false: the formulation is ignored
+    bool exact;             ///< proves its optimum; false: a heuristic, whose best status is feasible
     std::unique_ptr<RldSolver> (*make)(Formulation formulation);
-    std::optional<std::size_t> max_cones{};  ///< larger cone sets give status error; any where absent
+    std::optional<std::size_t> max_cones{};  ///< larger cone sets give status error; absent: no limit
 };
 
 }  // namespace conelane

@@ -11,13 +11,13 @@
 
 namespace conelane::detail {
 
-/// The one clock of a COIN solve. COIN's own limits are not used: where they strike inside of CBC, a
-/// relaxation that was cut short counts as infeasible, and the whole search as complete. Here each cut is on
-/// record, so that a search which was never cut is known to be a proof.
+/// The only clock of a COIN solve. COIN's own limits are not used: inside of CBC, a relaxation that they cut
+/// short counts as infeasible, and the whole search as complete. Here every cut is recorded, so an uncut
+/// search is known to be a proof.
 struct DeadlineWatch {
     Deadline deadline;
     bool struck = false;  ///< some part of the solve was cut short
-    /// CBC's lower bound when no relaxation had been cut short yet.
+    /// CBC's lower bound before any relaxation was cut short.
     double bound = -std::numeric_limits<double>::infinity();
 
     bool strikes() {

@@ -7,14 +7,14 @@
 
 namespace conelane::detail {
 
-/// The rows of a program at a point: what each adds up to, and its limits. All of one length.
+/// The rows of a program at a point: their activities and limits, all of one length.
 struct RowsAtPoint {
     std::span<const double> activity;
     std::span<const double> lower;
     std::span<const double> upper;
 };
 
-/// Well above CBC's own.
+/// Well above CBC's own tolerance.
 inline constexpr double kRowTolerance = 1e-4;
 
 [[nodiscard]] inline bool violates_a_row(const RowsAtPoint& rows) {
@@ -28,11 +28,11 @@ inline constexpr double kRowTolerance = 1e-4;
 enum class PointVerdict {
     kept,
     dropped,      ///< time is up: the report says stopped, without a point
-    search_anew,  ///< nothing of the report holds
+    search_anew,  ///< nothing in the report is valid
 };
 
-/// CBC 2.10.8 was seen to return points that violate rows. Drops such a point and all that was reported with
-/// it. Precondition: the report has a point, and the rows are those at it.
+/// CBC 2.10.8 sometimes returns points that violate rows. Drops such a point and everything reported with it.
+/// Precondition: the report has a point, and the rows are evaluated at it.
 [[nodiscard]] inline PointVerdict drop_invented_point(const RowsAtPoint& rows, bool is_time_up,
                                                       MilpReport& report) {
     if (!violates_a_row(rows)) return PointVerdict::kept;

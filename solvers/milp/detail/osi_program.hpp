@@ -12,7 +12,7 @@
 
 namespace conelane::detail {
 
-/// Runs `work`; an error of COIN, whose type is no std::exception, comes out as one.
+/// Runs `work`; a COIN error, which is not a std::exception, is rethrown as one.
 template <typename Work>
 void with_std_errors(Work&& work) {
     try {
@@ -22,17 +22,16 @@ void with_std_errors(Work&& work) {
     }
 }
 
-/// Makes an empty solver silent and stops it by the watch, which must outlive it; and keeps Clp from taking
-/// SIGINT from the program.
+/// Silences an empty solver and stops it by the watch, which must outlive it; keeps Clp from handling SIGINT.
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
 /// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
-/// Throws std::runtime_error where a cost is 1e25 or more, which Clp would end the program for.
+/// Throws std::runtime_error for a cost of 1e25 or more, for which Clp would end the program.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);
 
 void append_rows(OsiSolverInterface& solver, std::span<const ProgramRow> rows);
 
-/// How far from an integer a value may be that counts as one.
+/// Tolerance of integrality.
 inline constexpr double kIntegrality = 1e-7;
 
 /// Whether all these columns of a point are integral.

@@ -7,11 +7,11 @@
 
 namespace conelane::path_pair {
 
-/// Fixing by reduced costs: arcs and turns whose bound reaches a limit are in no better pair of legs.
+/// Reduced-cost fixing: arcs and turns whose bound reaches a limit are in no better pair of legs.
 class ArcFixing {
   public:
-    /// Drops them from the graph. False, and nothing dropped, where they are less than a tenth of it:
-    /// renumbering is not worth that. `limit`: with offset. Precondition: forward and backward labels are
+    /// Drops them from the graph. Returns false, without a change, if they are less than a tenth of it: then
+    /// renumbering does not pay. `limit`: with offset. Precondition: forward and backward labels are
     /// evaluated on the graph.
     bool drop(const PairRelaxation& relaxation, double limit, ResidualGraph& graph);
 

@@ -14,7 +14,7 @@ namespace conelane::path_pair {
 /// from each edge in use, largest x first, then extended to a maximal clique by edges of the residual graph.
 class CliqueSeparation {
   public:
-    /// Number of cliques added to the pool, at most `most`; fewer once the clock has struck.
+    /// Returns the number of cliques added to the pool, at most `most`; fewer if the clock expires.
     int separate(const ArcGraph& graph, std::span<const double> edge_use, std::span<const char> edge_alive,
                  int most, CliquePool& pool, SearchClock& clock);
 

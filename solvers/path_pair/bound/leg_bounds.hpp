@@ -16,19 +16,19 @@ namespace conelane::path_pair {
 /// twice and hold incompatible edges. Labels are exact up to 1e-12 a step.
 class LegBounds {
   public:
-    /// With a clock, both end early once it has struck: the labels are of no use then.
+    /// With a clock, both passes end early when it expires; the labels are then invalid.
     void bind(SearchClock& clock) { clock_ = &clock; }
 
-    /// `start` by arc: the cost of starting with it, kUnreachable where a leg must not. False where a walk
-    /// gains from a cycle without end; `cycles` then holds the arcs of one or more, each followed by -1.
-    /// `before`, the tree of the walks, may come in as it was left by a call for similar costs: the labels
-    /// start from its walks. Precondition: where it has the graph's size, its entries are arcs of it or -1.
+    /// `start` by arc: the cost of starting with it, kUnreachable if a leg must not. Returns false if a walk
+    /// gains from an endless cycle; `cycles` then holds the arcs of one or more cycles, each followed by -1.
+    /// `before`, the tree of the walks, may be the result of a call with similar costs: the labels start from
+    /// its walks. Precondition: if it has the graph's size, its entries are arcs of the graph or -1.
     [[nodiscard]] bool forward(const ResidualGraph& graph, std::span<const double> reduced,
                                std::span<const double> start, std::vector<double>& label,
                                std::vector<int>& before, std::vector<int>& cycles);
 
-    /// `end` by arc: the cost of ending with it. Arcs that `usable` does not mark are as if absent.
-    /// Precondition: no cycle of usable arcs has a negative cost.
+    /// `end` by arc: the cost of ending with it. Arcs that `usable` does not mark are ignored. Precondition:
+    /// no cycle of usable arcs has a negative cost.
     void backward(const ResidualGraph& graph, std::span<const double> reduced, std::span<const double> end,
                   std::span<const char> usable, std::vector<double>& label);
 
@@ -44,7 +44,7 @@ class LegBounds {
 };
 
 /// Raises the multipliers of each cycle's cones equally until the cycle costs nothing. A cycle that shares a
-/// cone with one before it is left as it is: it may no longer gain.
+/// cone with an earlier one is skipped: it may no longer gain.
 void raise_cycles(const ResidualGraph& graph, std::span<const int> cycles, std::span<const double> reduced,
                   std::vector<double>& cone_multiplier);
 

@@ -9,7 +9,7 @@
 
 namespace conelane::path_pair {
 
-/// Depth-first search over simple legs without incompatible edges, cheapest continuation first, cut off by
+/// Depth-first search over simple legs without incompatible edges, cheapest continuation first; pruned if
 /// cost so far + backward label >= cutoff.
 class LegSearch {
   public:
@@ -17,13 +17,13 @@ class LegSearch {
         const ArcGraph& graph;
         const ResidualGraph& residual;
         std::span<const double> reduced;
-        std::span<const double> start;     ///< by arc, kUnreachable where no leg may start with it
-        std::span<const double> end;       ///< by arc, kUnreachable where no leg may end with it
+        std::span<const double> start;     ///< by arc, kUnreachable if no leg may start with it
+        std::span<const double> end;       ///< by arc, kUnreachable if no leg may end with it
         std::span<const double> backward;  ///< lower bounds of the cost after each arc, `end` included
     };
 
-    /// Calls `visit(leg, cost)` for every leg whose cost, `end` included, is below the cutoff; what it
-    /// returns is the cutoff from there on. False where `budget`, lowered by each arc tried, ran out.
+    /// Calls `visit(leg, cost)` for every leg whose cost, with `end`, is below the cutoff; its result is the
+    /// new cutoff. Returns false if `budget`, reduced by each arc tried, is used up.
     template <typename Visit>
     bool run(const Query& query, double cutoff, std::int64_t& budget, Visit&& visit) {
         open_.clear();

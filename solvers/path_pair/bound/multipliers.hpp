@@ -18,7 +18,7 @@ class CliquePool {
         return {edges_.data() + start_[static_cast<std::size_t>(clique)],
                 edges_.data() + start_[static_cast<std::size_t>(clique) + 1]};
     }
-    /// False where the pool has it already. Precondition: edges in ascending order.
+    /// Returns false if the pool has it already. Precondition: edges in ascending order.
     bool add(std::span<const int> clique);
 
   private:
@@ -31,14 +31,14 @@ class CliquePool {
 ///     edges of clique q <= 1                                         clique[q] >= 0
 ///     edges along the heading >= 2                                   heading >= 0.
 /// With any such multipliers, min (cost of two legs + multiplier * violation) bounds every lane graph from
-/// below. The two legs are still walks, over arcs of reduced cost: see `reduce`.
+/// below. The two legs remain walks, over arcs of reduced cost: see `reduce`.
 struct Multipliers {
     std::vector<double> cone;
     std::vector<double> clique;
     double heading = 0.0;
 
-    /// Sum of multiplier times right-hand side over the rows: the bound is both legs' reduced costs minus
-    /// this.
+    /// Sum of multiplier times right-hand side over the rows: the bound is the reduced costs of both legs
+    /// minus this sum.
     [[nodiscard]] double offset() const;
 };
 
@@ -61,10 +61,10 @@ void reduce(const ArcGraph& graph, const CliquePool& cliques, const Multipliers&
 /// and theta keeps d from pointing back along d_before.
 class Ascent {
   public:
-    /// The next step goes along its own violation alone.
+    /// The next step uses only its own violation.
     void restart(const Multipliers& multipliers);
-    /// `required` by cone: above 0, the multiplier may have any sign. False, and no step, where there is no
-    /// row to follow: none is violated, or has a multiplier that may fall.
+    /// `required` by cone: above 0, the multiplier may have any sign. Returns false, without a step, if no
+    /// row is violated or has a multiplier that may fall.
     bool step(Multipliers& multipliers, const Usage& usage, std::span<const int> required, double gap,
               double scale);
 

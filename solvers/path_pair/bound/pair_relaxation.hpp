@@ -12,7 +12,7 @@
 
 namespace conelane::path_pair {
 
-/// Where the two legs begin and end. Kind 0 alone where both legs are alike.
+/// Where the two legs begin and end. Only kind 0 is used if both legs are alike.
 struct LegSystem {
     struct Kind {
         std::vector<char> start;  ///< by cone
@@ -23,7 +23,7 @@ struct LegSystem {
     bool ends_are_partners = true;  ///< the legs' ends must be partners (17); else any ends go together
 };
 
-/// What a branch of the search demands.
+/// Conditions of a branch of the search.
 class Decisions {
   public:
     void reset(const ArcGraph& graph);
@@ -37,17 +37,17 @@ class Decisions {
     void decide_end(int cone, End decision);
     [[nodiscard]] End end(int cone) const { return end_[static_cast<std::size_t>(cone)]; }
 
-    /// Whether a leg may start or end at a cone by this edge: one required there stays inside no leg
-    /// otherwise.
+    /// Whether a leg may start or end at a cone by this edge. An edge that is required at a cone stays inside
+    /// of legs otherwise.
     [[nodiscard]] bool may_be_last(int cone, int by_edge) const {
         const int count = edges_at_[static_cast<std::size_t>(cone)];
         return count == 0 || (count == 1 && edge_required(by_edge));
     }
-    /// Whether two cones may be the ends of the two legs, (17) apart.
+    /// Whether two cones may be the ends of the two legs, except for (17).
     [[nodiscard]] bool ends_fit(int cone, int other) const {
         return (end(cone) == End::always ? 1 : 0) + (end(other) == End::always ? 1 : 0) == always_;
     }
-    /// By cone, above 0 where every leg pair of the branch visits it.
+    /// By cone, above 0 if every pair of legs of the branch visits it.
     [[nodiscard]] std::span<const int> visited() const { return visited_; }
 
   private:
@@ -68,15 +68,15 @@ class PairRelaxation {
     void bind(const ArcGraph& graph, const LegSystem& system, const CliquePool& cliques,
               const Decisions& decisions, SearchClock& clock);
 
-    /// The bound. Where a walk gains from a cycle, the multipliers of the cycle's cones are first raised
+    /// Returns the bound. If a walk gains from a cycle, the multipliers of the cycle's cones are first raised
     /// until the cycle costs nothing. Minus infinity if stopped.
     double evaluate(const ResidualGraph& residual, Multipliers& multipliers);
 
-    /// Backward labels for the multipliers last evaluated. Once the clock has struck, these and those below
-    /// are of no use.
+    /// Backward labels for the multipliers last evaluated. Once the clock has expired, they and the values
+    /// below are invalid.
     void evaluate_backward(const ResidualGraph& residual);
 
-    /// By arc: the cheapest way on from it to an end, whatever the other leg does. Precondition: evaluated.
+    /// By arc: the cheapest continuation from it to an end, for any other leg. Precondition: evaluated.
     void onward(const ResidualGraph& residual, int kind, std::vector<double>& label);
 
     /// Arcs of the legs that attain the bound.
@@ -90,7 +90,7 @@ class PairRelaxation {
     [[nodiscard]] std::span<const double> start(int kind) const { return legs_[to_index(kind)].start; }
     [[nodiscard]] std::span<const double> forward(int kind) const { return legs_[to_index(kind)].forward; }
     [[nodiscard]] std::span<const double> backward(int kind) const { return legs_[to_index(kind)].backward; }
-    /// By arc: h of its head, kUnreachable where a leg must not end with it.
+    /// By arc: h of its head, kUnreachable if a leg must not end with it.
     [[nodiscard]] std::span<const double> end(int kind) const { return legs_[to_index(kind)].end; }
     [[nodiscard]] bool ends_fit(int cone, int other) const {
         return !system_->ends_are_partners ||

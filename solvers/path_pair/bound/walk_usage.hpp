@@ -8,18 +8,19 @@
 
 namespace conelane::path_pair {
 
-/// What the two walks of the bound use: in the last step of an ascent, and averaged over its steps.
+/// Use of edges and ends by the two walks of the bound: in the last step of an ascent, and averaged over its
+/// steps.
 class WalkUsage {
   public:
-    /// Forgets the steps before.
+    /// Forgets earlier steps.
     void reset(const ArcGraph& graph);
-    /// One more step. `memory`: the share of the averages that stays. Precondition: the relaxation was
+    /// Adds a step. `memory`: the share of the averages that is kept. Precondition: the relaxation was
     /// evaluated on the residual graph.
     void count(const ArcGraph& graph, const CliquePool& cliques, const ResidualGraph& residual,
                PairRelaxation& relaxation, double memory);
 
     [[nodiscard]] const Usage& last() const { return last_; }
-    /// By edge, averaged: 1 where both legs together always use it once.
+    /// By edge, averaged: 1 if the two legs together always use it once.
     [[nodiscard]] std::span<const double> edges() const { return edges_; }
     /// By cone, averaged: legs that end there.
     [[nodiscard]] std::span<const double> ends() const { return ends_; }

@@ -21,7 +21,7 @@ class ArcGraph {
         double cost;  ///< of the turn
     };
 
-    /// False where the clock struck on the way; there is no graph then.
+    /// Returns false if the clock expired; there is no graph then.
     bool build(const LaneGraphProblem& problem, SearchClock& clock);
 
     [[nodiscard]] int cone_count() const { return cone_count_; }
@@ -51,7 +51,7 @@ class ArcGraph {
         return incompatible_.row(edge);
     }
     [[nodiscard]] bool near(int cone) const { return near_[static_cast<std::size_t>(cone)] != 0; }
-    /// Far cones that may end the other path where `cone`, a far one, ends this one (17).
+    /// Far cones that may end the other path if the far cone `cone` ends this one (17).
     [[nodiscard]] std::span<const int> partners(int cone) const {
         return {partners_.data() + partner_start_[static_cast<std::size_t>(cone)],
                 partners_.data() + partner_start_[static_cast<std::size_t>(cone) + 1]};
@@ -70,7 +70,7 @@ class ArcGraph {
     };
     void add_edges(const LaneGraphProblem& problem);
     void exclude(std::size_t first, std::size_t second);
-    // False where the clock struck.
+    // False if the clock expired.
     bool add_successions(const LaneGraphProblem& problem, SearchClock& clock);
     bool add_partners(const LaneGraphProblem& problem, SearchClock& clock);
     bool find_share_bound(SearchClock& clock);

@@ -11,12 +11,12 @@ namespace conelane::path_pair {
 /// Rows of bits in one block of memory that is kept between resets.
 class BitMatrix {
   public:
-    /// All bits clear.
+    /// Clears all bits.
     void reset(int rows, int columns) {
         words_ = (static_cast<std::size_t>(columns) + 63) / 64;
         bits_.assign(static_cast<std::size_t>(rows) * words_, 0);
     }
-    /// The same, word block by word block: false, and of no use, once `stop(words)` says so.
+    /// The same, word block by word block: returns false, with invalid bits, once `stop(words)` returns true.
     template <typename Stop>
     bool reset(int rows, int columns, const Stop& stop) {
         constexpr std::size_t kBlock = 16384;

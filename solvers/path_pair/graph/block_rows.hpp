@@ -7,8 +7,8 @@
 
 namespace conelane::path_pair {
 
-/// Rows of equal width that are added one by one. They stay where they are: where a vector of millions grows,
-/// it copies them all, which takes longer than a search may overrun its limit.
+/// Rows of equal width that are added one by one and never move. A growing vector of millions would copy them
+/// all, which takes longer than the allowed overrun.
 template <typename T>
 class BlockRows {
   public:
@@ -16,14 +16,14 @@ class BlockRows {
     void reset(std::size_t width) {
         width_ = width = std::max<std::size_t>(width, 1);
         size_ = 0;
-        // The same blocks for any width: a power of two of rows in each, and one where the rows are wide.
+        // Uses the same blocks for any width: a power of two of rows in each, or one row if rows are wide.
         shift_ = 0;
         while ((std::size_t{2} << shift_) * width <= kEntriesPerBlock) ++shift_;
         const std::size_t entries = std::max(width, kEntriesPerBlock);
         if (entries > block_entries_) blocks_.clear();
         if (blocks_.empty()) block_entries_ = entries;
     }
-    /// Returns the new row, which holds what was there before.
+    /// Returns the new row, with the old content of its memory.
     T* add() {
         if (size_ >> shift_ == blocks_.size()) {
             blocks_.push_back(std::make_unique_for_overwrite<T[]>(block_entries_));

@@ -11,11 +11,11 @@
 namespace conelane::path_pair {
 
 /// Sets of a residual graph's edges, numbered without gaps, as rows of words() words. A leg that takes an arc
-/// loses edges for itself and for the other leg: those incompatible with it, those at the cone that it
-/// leaves, and, for whatever was taken before, those at the cone that it enters.
+/// excludes edges for itself and for the other leg: those incompatible with it, those at the cone that it
+/// leaves, and, for arcs taken before it, those at the cone that it enters.
 class EdgeSets {
   public:
-    /// The sets are of no use once the clock has struck.
+    /// The sets are invalid once the clock has expired.
     void assign(const ArcGraph& graph, const ResidualGraph& residual, SearchClock& clock);
 
     [[nodiscard]] std::size_t words() const { return words_; }
@@ -23,11 +23,11 @@ class EdgeSets {
     [[nodiscard]] std::size_t number(int arc) const {
         return static_cast<std::size_t>(number_[static_cast<std::size_t>(arc)]);
     }
-    /// What is lost to all that comes after the arc, and to the other leg.
+    /// Edges that are excluded after the arc, and for the other leg.
     [[nodiscard]] const std::uint64_t* lost_after(int arc) const {
         return after_.data() + static_cast<std::size_t>(arc) * words_;
     }
-    /// What can have been no part of the leg before the arc, nor be one of the other leg.
+    /// Edges that cannot have been in the leg before the arc, nor be in the other leg.
     [[nodiscard]] const std::uint64_t* lost_before(int arc) const {
         return before_.data() + static_cast<std::size_t>(arc) * words_;
     }

@@ -12,8 +12,8 @@ namespace conelane::path_pair {
 
 inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// The arcs and successions that a node of the search may still use, renumbered without gaps, so that all
-/// work shrinks with them. Its arcs stand in an order in which legs tend to go.
+/// The arcs and successions that a node of the search may still use, renumbered without gaps, so work shrinks
+/// with their number. Arcs are in an order in which legs tend to go.
 struct ResidualGraph {
     std::vector<int> arc;   ///< in the arc graph
     std::vector<int> tail;  ///< cone
@@ -28,8 +28,8 @@ struct ResidualGraph {
     [[nodiscard]] int size() const { return static_cast<int>(arc.size()); }
     [[nodiscard]] int edge(int a) const { return arc[static_cast<std::size_t>(a)] / 2; }
 
-    /// All arcs that can be reached from the starting ones, breadth first. False, and no arc, where the clock
-    /// struck.
+    /// All arcs that can be reached from the starting ones, breadth first. Returns false, without arcs, if
+    /// the clock expired.
     bool assign(const ArcGraph& graph, std::span<const char> starting_cone, SearchClock& clock);
 
     /// Keeps the arcs of `order` (arcs of `source`, in their new order) and the successions among them that

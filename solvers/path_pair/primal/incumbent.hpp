@@ -8,26 +8,27 @@
 
 namespace conelane::path_pair {
 
-/// The best lane graph so far. Takes nothing that breaks a constraint, whatever offers it.
+/// The best lane graph so far. It accepts nothing that breaks a constraint, from any caller.
 class Incumbent {
   public:
     void reset(const ArcGraph& graph, double cutoff);
 
-    /// Legs as arcs of the arc graph. A leg between a near cone and a far one runs to the far one: one in the
-    /// other direction is not taken. True where the legs are a lane graph that costs less than the incumbent
-    /// or the first cutoff. Whether the pairing allows its ends is for the caller to know.
+    /// Legs as arcs of the arc graph. A leg between a near cone and a far one has to run to the far one.
+    /// Returns true if the legs are a lane graph that costs less than the incumbent or the first cutoff. The
+    /// caller has to check whether the pairing allows its ends.
     bool offer(std::span<const int> first, std::span<const int> second);
 
     [[nodiscard]] bool found() const { return found_; }
-    /// Only what costs less is of interest.
+    /// Only lane graphs of lower cost are of use.
     [[nodiscard]] double cutoff() const { return cutoff_; }
     void set_cutoff(double cutoff) { cutoff_ = cutoff; }
     /// Edges of the arc graph.
     [[nodiscard]] std::span<const int> edges() const { return edges_; }
     /// Arcs of the arc graph, as they were offered.
     [[nodiscard]] const std::array<std::vector<int>, 2>& legs() const { return legs_; }
-    /// Whether both legs run from a near cone to a far one. Else one is between near cones and one between
-    /// far ones, which only the pairing `paper` allows: not a pair of legs of the system from near to far.
+    /// Whether both legs run from a near cone to a far one. Otherwise one is between near cones and one
+    /// between far ones, which only the pairing `paper` allows: it is not a pair of legs of the near-far
+    /// system.
     [[nodiscard]] bool goes_far() const;
 
     /// (29) of a leg.

@@ -13,24 +13,24 @@
 
 namespace conelane::path_pair {
 
-/// Small graphs around a lane graph, each to be searched for a better one. Such a window has the arcs among
-/// the cones that are fewest arcs on from a centre; elsewhere the legs stay as they are. Centres go along
-/// the legs from their ends back, so that legs which end too early grow first.
+/// Small graphs around a lane graph, to be searched for a better one. A window has the arcs among the cones
+/// that are the fewest arcs away from a centre; elsewhere the legs are fixed. Centres go along the legs from
+/// their ends back, so legs that end too early grow first.
 class IncumbentWindow {
   public:
-    /// What windows are cut from. `usable` by arc of the arc graph: those that a better lane graph may have.
-    /// Precondition: the legs of the system are alike.
+    /// The graph that windows are cut from. `usable` by arc of the arc graph: arcs that a better lane graph
+    /// may have. Precondition: the legs of the system are alike.
     void assign(const ArcGraph& graph, const LegSystem& system, const ResidualGraph& whole,
                 std::span<const char> usable);
-    /// Windows of about so many arcs, all cones as centres.
+    /// Starts windows of about this many arcs, with all cones as centres.
     void restart(std::size_t max_arcs);
 
-    /// The next window: `arcs` are those of the whole graph, in ascending order. False where no cone of the
-    /// legs is left as a centre. Legs: arcs of the arc graph, from start to end.
+    /// The next window: `arcs` are those of the whole graph, in ascending order. Returns false if no centre
+    /// is left. Legs: arcs of the arc graph, from start to end.
     bool next(const std::array<std::vector<int>, 2>& legs, std::vector<int>& arcs);
-    /// Of the last window: kind k is leg k, with its start or end where that is not in the window.
+    /// For the last window: kind k is leg k, with a fixed start or end if that is outside the window.
     [[nodiscard]] const LegSystem& system() const { return system_; }
-    /// Whether the last window held a better lane graph. If not, the cones around its centre are done with.
+    /// Whether the last window held a better lane graph. If not, the cones around its centre are settled.
     void report(bool improved);
 
   private:
@@ -51,7 +51,7 @@ class IncumbentWindow {
     std::vector<int> next_start_;  ///< by cone
     std::vector<int> next_;        ///< cones that usable arcs lead to from a cone
     std::size_t max_arcs_ = 0;
-    bool holds_all_ = false;     ///< that can be reached from the centre
+    bool holds_all_ = false;     ///< all that can be reached from the centre
     std::vector<char> settled_;  ///< by cone: no window around it improves the legs
     std::vector<Place> place_;   ///< by cone
     std::vector<int> cones_;     ///< of the window, nearest first

@@ -15,13 +15,13 @@
 namespace conelane::path_pair {
 
 /// Incumbents without a relaxation: a beam search over beginnings of both legs, one arc at a time. Of the
-/// beginnings with equally many arcs the cheapest go on. Neither leg gets far ahead of the other, and few
-/// beginnings end at the same cone: those that lead nowhere would else crowd out the rest.
+/// beginnings with equally many arcs the cheapest go on. No leg gets far ahead of the other, and only a few
+/// beginnings may end at the same cone: otherwise dead ends would crowd out the rest.
 class PairBeam {
   public:
     struct Limits {
-        std::size_t width;  ///< beginnings that go on
-        int max_at_cone;    ///< of these, legs that end at the same cone
+        std::size_t width;  ///< number of beginnings that go on
+        int max_at_cone;    ///< among these, number of legs that end at the same cone
     };
     /// Offers the incumbent the best pair that is met. Precondition: the legs of the system are alike.
     void run(const ArcGraph& graph, const LegSystem& system, const Limits& limits, Incumbent& incumbent,
@@ -36,7 +36,7 @@ class PairBeam {
         double cost;
     };
     struct Step {
-        int label;  ///< that is continued, -1 for a pair of first arcs
+        int label;  ///< the label that is continued, -1 for a pair of first arcs
         int leg;
         std::array<int, 2> last;
         double cost;

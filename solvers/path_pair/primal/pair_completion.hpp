@@ -14,22 +14,21 @@ namespace conelane::path_pair {
 /// Incumbents from single legs: for a given leg, the best second one.
 class PairCompletion {
   public:
-    /// `second`: reset for the same graph; completions of several relaxations may share it.
+    /// `second`: reset for the same graph; several relaxations may share it.
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SecondLegBound& second,
               SearchClock& clock);
 
-    /// Looks for an incumbent around a walk of the relaxation. The walk, or the best leg where it is no path,
-    /// gets the best second leg; that leg is then the given one, and so on. `budget`: arcs tried in each
-    /// search for a leg. A heuristic: where the budget runs out, better pairs may be left.
+    /// Looks for an incumbent around a walk of the relaxation. The walk, or the best leg if the walk is not a
+    /// path, gets the best second leg; then that leg is the given one, and so on. `budget`: arcs tried in
+    /// each search for a leg. A heuristic: if the budget runs out, better pairs may be missed.
     void complete(const ResidualGraph& residual, int kind, std::span<const int> walk, double tolerance,
                   std::int64_t budget);
 
   private:
     [[nodiscard]] bool is_leg(const ResidualGraph& residual, std::span<const int> walk);
-    /// The cheapest leg that the budget finds; empty where it finds none.
+    /// The cheapest leg found within the budget; empty if none is found.
     void find_first_leg(const ResidualGraph& residual, int kind, double tolerance, std::int64_t budget);
-    /// Offers legs of the other kind that go with leg_. best_second_ is the last one that was taken, or
-    /// empty.
+    /// Offers legs of the other kind that go with leg_. best_second_ is the last accepted one, or empty.
     void find_second_leg(const ResidualGraph& residual, int kind, double tolerance, std::int64_t budget);
     static void to_arcs(const ResidualGraph& residual, std::span<const int> leg, std::vector<int>& arcs);
 

@@ -11,10 +11,9 @@
 
 namespace conelane::path_pair {
 
-/// The bound of a second leg, where the first one is given: a shortest walk over the arcs that the first leg
-/// leaves, at true costs. Cones of the first leg and edges incompatible with it are left out, so nothing else
-/// couples the legs; multipliers on cones alone keep walks from cycles. They stay from one first leg to the
-/// next.
+/// The bound of a second leg for a given first one: a shortest walk over the arcs that the first leg leaves,
+/// at true costs. Cones of the first leg and edges incompatible with it are left out, so nothing else couples
+/// the legs; multipliers on cones keep walks from cycles. They are kept from one first leg to the next.
 class SecondLegBound {
   public:
     /// Sets the multipliers to 0.
@@ -25,19 +24,20 @@ class SecondLegBound {
     void assign(const PairRelaxation& relaxation, const ResidualGraph& residual, int kind,
                 std::span<const int> first);
 
-    /// The cheapest walk, once no cycle gains. `budget` falls by each arc of each pass. False where the clock
-    /// struck.
+    /// The cheapest walk, without gaining cycles. `budget` is reduced by each arc of each pass. Returns false
+    /// if the clock expired.
     bool evaluate(std::int64_t& budget);
     /// The walk's bound of every second leg; kUnreachable where there is no walk.
     [[nodiscard]] double value() const { return value_; }
     /// Arcs of the residual graph.
     [[nodiscard]] std::span<const int> walk() const { return walk_; }
-    /// A step of the multipliers' ascent from the walk towards the value `target`. False where there is none.
+    /// A step of the multipliers' ascent from the walk towards the value `target`. Returns false if no step
+    /// exists.
     bool step(double target);
 
-    /// The way on from each arc, at the costs last evaluated. False where the clock struck.
+    /// The continuation from each arc, at the costs last evaluated. Returns false if the clock expired.
     bool evaluate_backward();
-    /// For legs whose cost, the offset added, is below a cutoff. Precondition: backward labels are evaluated.
+    /// For legs whose cost with offset is below a cutoff. Precondition: backward labels are evaluated.
     [[nodiscard]] LegSearch::Query query() const {
         return {*graph_, *residual_, reduced_, start_, end_, backward_};
     }

@@ -20,25 +20,25 @@
 namespace conelane::path_pair {
 
 /// Best-first branch and bound over the far ends of the legs and over edges, in or out. The ascent at each
-/// node ends nearly every one; what it leaves open is branched.
+/// node closes nearly every node; the others are branched.
 class BranchAndBound {
   public:
     BranchAndBound(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
 
     struct Outcome {
-        /// Of every lane graph of the system that is cheaper than the cutoff less the tolerance.
+        /// Bound of every lane graph of the system that is cheaper than the cutoff less the tolerance.
         double bound;
         bool complete;
     };
     /// All pairs of legs of a system that cost less than the incumbent by more than `tolerance`.
     Outcome run(const LegSystem& system, double tolerance, SearchClock& clock);
 
-    /// The root's ascent alone: its best bound, minus infinity if stopped before there was one.
+    /// Only the root's ascent: its best bound, minus infinity if stopped before there was one.
     double run_root(const LegSystem& system, double tolerance, SearchClock& clock);
 
-    /// The root's ascent without incumbents of its own. Multipliers are whole numbers of `unit`, cycles stay
-    /// without gain at them. Returned are those that dropped something, in order, and at last the best ones;
-    /// those alone that reach the cutoff where some do. Empty if stopped before there were any.
+    /// The root's ascent without incumbents of its own. Multipliers are multiples of `unit`, and cycles do
+    /// not gain with them. Returns the multipliers that dropped something, in order, and finally the best
+    /// ones; only those that reach the cutoff if some do. Empty if stopped before there were any.
     std::vector<Multipliers> run_root_in_stages(const LegSystem& system, double unit, SearchClock& clock);
 
     [[nodiscard]] std::int64_t nodes() const { return nodes_; }
@@ -64,7 +64,7 @@ class BranchAndBound {
     const PathPairOptions& options_;
     double tolerance_ = 0.0;
     CliquePool cliques_;
-    Decisions decisions_;  ///< of the node at hand
+    Decisions decisions_;  ///< of the current node
     SecondLegBound second_leg_;
     NodeAscent ascent_;
     IncumbentImprover improver_;

@@ -10,21 +10,21 @@
 
 namespace conelane::path_pair {
 
-/// Splits a node where its relaxation is least sure: on ends first, for with both ends free half of the
-/// relaxed optimum may run along one boundary and half along the other. Then on the edge of most doubtful
-/// use.
+/// Splits a node where its relaxation is least certain: on ends first, because with both ends free, half of
+/// the relaxed optimum may run along one boundary and half along the other. Then on the edge whose use is
+/// most fractional.
 class Brancher {
   public:
     Brancher(const ArcGraph& graph, const BranchingTuning& tuning) : graph_(graph), tuning_(tuning) {}
 
-    /// On nothing where every edge of the residual graph is decided.
+    /// Nothing if every edge of the residual graph is decided.
     [[nodiscard]] Branching choose(const ResidualGraph& graph, const PairRelaxation& relaxation,
                                    const Decisions& decisions, const WalkUsage& usage) const;
-    /// Whether the branch that has the end, or the edge, is searched before the other one.
+    /// Whether to search the branch with the end, or the edge, before the other one.
     [[nodiscard]] bool is_in_first(const Branching& branching) const {
         return branching.on == Branching::On::end || branching.use >= tuning_.min_use_in_first;
     }
-    /// What the branch with it, or without it, leaves of the graph.
+    /// The rest of the graph in the branch with it, or without it.
     void branch(const ResidualGraph& source, const Branching& branching, bool in, ResidualGraph& target);
 
   private:

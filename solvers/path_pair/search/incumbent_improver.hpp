@@ -18,23 +18,24 @@
 
 namespace conelane::path_pair {
 
-/// The search for better incumbents in windows, between steps of the root's ascent and between nodes. A pair
-/// of legs of its own is improved in one window after the other, each a node with an ascent of its own; what
-/// is better than the incumbent becomes the incumbent. Pairs come from the search, from beams, and are the
-/// best ones so far.
+/// Searches for better incumbents in windows, between steps of the root's ascent and between nodes. It
+/// improves its own pair of legs in one window after the other, each a node with its own ascent; a pair
+/// better than the incumbent becomes the incumbent. Pairs come from the search, from beams, and from the best
+/// ones so far.
 class IncumbentImprover {
   public:
     IncumbentImprover(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options);
 
-    /// Of one search. `starting` by cone: where legs of the system start. What is shared has no decisions.
+    /// For one search. `starting` by cone: where legs of the system start. The shared relaxation has no
+    /// decisions.
     void begin(const LegSystem& system, std::span<const char> starting, CliquePool& cliques,
                SecondLegBound& second_leg, double tolerance, SearchClock& clock);
 
-    /// Goes on, for a share of the work that is larger where `bound` is far from the incumbent. `alive`: what
-    /// a better lane graph may use.
+    /// Continues, for a share of the work that is larger if `bound` is far from the incumbent. `alive`: arcs
+    /// that a better lane graph may use.
     void improve(const ResidualGraph& alive, double bound);
 
-    /// What the ascent of the root aims at.
+    /// The target of the root's ascent.
     [[nodiscard]] const NodeAscent::Aim& aim() const { return aim_; }
 
   private:
@@ -57,9 +58,9 @@ class IncumbentImprover {
     double tolerance_ = 0.0;
     SearchClock* clock_ = nullptr;
 
-    Incumbent pair_;  ///< that is improved
+    Incumbent pair_;  ///< the pair that is improved
     bool has_pair_ = false;
-    std::optional<std::size_t> new_window_arcs_;  ///< of the pair, whose windows are not begun
+    std::optional<std::size_t> new_window_arcs_;  ///< for the pair, if its windows have not begun
     std::size_t phase_ = 0;
     std::vector<double> start_costs_;  ///< of pairs from beams
     std::int64_t own_work_ = 0;        ///< of the clock, up to now

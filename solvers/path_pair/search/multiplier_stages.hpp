@@ -7,15 +7,15 @@
 
 namespace conelane::path_pair {
 
-/// The multipliers of an ascent that a certificate repeats: whole numbers of a unit, and those alone that
-/// dropped something, in order.
+/// The multipliers of an ascent that a certificate repeats: multiples of a unit, and only those that dropped
+/// something, in order.
 class MultiplierStages {
   public:
     explicit MultiplierStages(double unit) : unit_(unit) {}
 
     /// Rounds the multipliers that are evaluated next. No arc gets cheaper, so no cycle gains.
     void round(Multipliers& multipliers);
-    /// Those rounded last dropped something.
+    /// The multipliers rounded last dropped something.
     void keep() { stages_.push_back(evaluated_); }
     void add(const Multipliers& multipliers) { stages_.push_back(multipliers); }
     [[nodiscard]] std::vector<Multipliers> take() { return std::exchange(stages_, {}); }

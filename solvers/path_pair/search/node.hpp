@@ -8,10 +8,10 @@
 
 namespace conelane::path_pair {
 
-/// What a search says of a node.
+/// The result of a node.
 enum class Verdict {
     closed,  ///< no pair in it costs less than the cutoff
-    open,    ///< there may be one
+    open,    ///< there may be a cheaper pair
     stopped  ///< by the clock
 };
 
@@ -26,7 +26,7 @@ struct Decision {
     bool in;
 };
 
-/// A part of the pairs of legs: those over the arcs and turns of its graph that its decisions allow.
+/// A part of the pairs of legs: those that use arcs and turns of its graph and keep its decisions.
 struct Node {
     ResidualGraph graph;
     Multipliers multipliers;  ///< those of the best bound

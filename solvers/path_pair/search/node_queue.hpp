@@ -9,17 +9,17 @@
 
 namespace conelane::path_pair {
 
-/// The open nodes. Nodes that were given back are used again, with their memory.
+/// The open nodes. Nodes that are given back are reused with their memory.
 class NodeQueue {
   public:
-    /// From `max_open` open nodes on the search goes depth-first, which bounds the memory.
+    /// With `max_open` open nodes or more the search goes depth-first, which bounds the memory.
     explicit NodeQueue(std::size_t max_open) : max_open_(max_open) {}
 
     void clear();
     [[nodiscard]] bool empty() const { return open_.empty(); }
-    /// A node as it was given back, or a new one. It stays where it is until it is taken.
+    /// A reused node with its old content, or a new one. It does not move until it is taken.
     Node& add();
-    /// The node that comes next, off the queue: one of the lowest bound, of these the last that was added.
+    /// Removes and returns the next node: one of the lowest bound, of these the last that was added.
     /// Precondition: not empty.
     [[nodiscard]] std::unique_ptr<Node> take_next();
     void give_back(std::unique_ptr<Node> node) { spare_.push_back(std::move(node)); }

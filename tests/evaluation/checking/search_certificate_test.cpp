@@ -208,7 +208,7 @@ struct Forgery {
 TEST(SearchCertificate, CannotBeForged) {
     const std::vector<Forgery> forgeries{
         {"a higher bound", [](auto& c) { c.bound = -3.9; }, "above"},
-        {"a bound that is no number", [](auto& c) { c.bound = std::nan(""); }, "number"},
+        {"a bound that is not a number", [](auto& c) { c.bound = std::nan(""); }, "number"},
         {"no bound", [](auto& c) { c.bound = -kInfinity; }, "nothing is claimed"},
         {"a huge bound",
          [](auto& c) {
@@ -234,7 +234,7 @@ TEST(SearchCertificate, CannotBeForged) {
              c.lane_graph = LaneGraph{{{0, 1}, {1, 5}, {3, 4}, {2, 4}}};
          },
          "none"},
-        {"a cone that is none",
+        {"an unknown cone",
          [](auto& c) {
              c.lane_graph->edges.back() = {4, 6};
          },

@@ -220,7 +220,7 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
     EXPECT_EQ(complaint("=obj= -2\ny_1 1\ny_1 1\n"), "line 3: column y_1 is there twice");
     EXPECT_EQ(complaint("=obj= -2\ny_1 1e999\n"), "line 2: must be NAME VALUE");
     EXPECT_EQ(complaint("=obj= nothing\n"), "line 1: must be =obj= VALUE");
-    EXPECT_EQ(complaint("=objective= 3\n"), "line 1: is no line of a solution: =objective=");
+    EXPECT_EQ(complaint("=objective= 3\n"), "line 1: is not a line of a solution: =objective=");
     EXPECT_EQ(complaint("=status= optimal\n"), "line 2: there is no point with this status");
     EXPECT_EQ(complaint("=status= good\nx 1\n"),
               "line 1: =status= must be optimal, feasible, infeasible or unknown");
@@ -228,7 +228,7 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
               "line 5: there is no point with status Optimal");
     EXPECT_EQ(complaint("solution status: optimal\nx 1\n"), "line 2: must be 'objective value: VALUE'");
     EXPECT_EQ(complaint("<?xml version = \"1.0\"?>\n"),
-              "line 1: is no first line of a solution by CBC, GLPK, HiGHS or SCIP, nor of a MIPLIB .sol");
+              "line 1: is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
 }
 
 struct RoundTrip {

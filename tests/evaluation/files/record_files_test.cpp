@@ -93,7 +93,7 @@ TEST_F(LaneFileTest, ABoundThatProvesNothingIsLeftOut) {
 
 TEST_F(LaneFileTest, NamesBadRecords) {
     EXPECT_EQ(error_in(lane("maybe", "[]")), "l:1: status: must be one of found, none, stopped, error");
-    EXPECT_EQ(error_in(lane("none", "[1]")), "l:1: left: must be empty where status is none");
+    EXPECT_EQ(error_in(lane("none", "[1]")), "l:1: left: must be empty if status is none");
     EXPECT_EQ(error_in(lane("found", "[1, 1.5]")), "l:1: left[1]: must be an integer of 64 bits");
     EXPECT_EQ(error_in(R"({"scene": "a", "method": "m", "status": "none", "left": [], "right": []})"),
               "l:1: latency_ms: is missing");
@@ -196,7 +196,7 @@ TEST_F(SolutionFileTest, NamesBadRecords) {
     EXPECT_EQ(error_in(solution("optimal", "[[1, 2], [1]]")), "s:1: edges[1]: must be a pair of cone ids");
     EXPECT_EQ(error_in(solution("optimal", "[[1, 2.5]]")), "s:1: edges[0][1]: must be an integer of 64 bits");
     EXPECT_EQ(error_in(solution("infeasible", "[[1, 2]]")),
-              "s:1: edges: must be empty where status is infeasible");
+              "s:1: edges: must be empty if status is infeasible");
     EXPECT_EQ(error_in(solution("infeasible", "[]") + solution("optimal", "[]")),
               "s:2: scene: solver \"cbc\" answers scene \"a\" twice with one formulation, first on line 1");
 }
@@ -309,10 +309,10 @@ TEST_F(ParameterFileTest, NamesBadParameters) {
     };
     EXPECT_EQ(error_with("\"d_t\"", "\"other\""), "p: d_t: is missing");
     EXPECT_EQ(error_with("\"near_far\"", "\"far\""), "p: pairing: must be one of near_far, paper");
-    EXPECT_EQ(error_with("{", "{\"w_bb\": 1,"), "p: w_bb: is no key here; w_b is");
+    EXPECT_EQ(error_with("{", "{\"w_bb\": 1,"), "p: w_bb: is not a key here; w_b is");
     EXPECT_EQ(error_with("{", "{\"Use_Confidence\": 1,"),
-              "p: Use_Confidence: is no key here; use_confidence is");
-    EXPECT_THAT(error_with("{", "{\"wings\": 1,"), HasSubstr("p: wings: is no key here, only d_e, d_t, "));
+              "p: Use_Confidence: is not a key here; use_confidence is");
+    EXPECT_THAT(error_with("{", "{\"wings\": 1,"), HasSubstr("p: wings: is not a key here, only d_e, d_t, "));
     EXPECT_EQ(error_with("1.7", "\"1.7\""), "p: d_t: must be a number");
     EXPECT_EQ(error_with("1.7", "NaN"), "p:3: d_t: must be a finite number");
     EXPECT_EQ(error_with("1.7", "-1"), "p: d_t: must be in [0.001000, 1000.000000] m");

@@ -260,8 +260,8 @@ TEST_F(OutsideProgramTest, OneThatReadsNoMoreDoesNoHarm) {
     Scene large{"large", {{0.0, 0.0}, 0.0}, {}};
     for (int i = 0; i < 4000; ++i) large.cones.push_back({i, {0.01 * i, 1.0}});
     OutsideProgram program("deaf", "exec <&-; exec sleep 1000", kShort);
-    EXPECT_THAT(program.answer(large).answer.message, HasSubstr("the program reads no more"));
-    EXPECT_THAT(program.answer(large).answer.message, HasSubstr("the program reads no more"));
+    EXPECT_THAT(program.answer(large).answer.message, HasSubstr("the program does not read its input"));
+    EXPECT_THAT(program.answer(large).answer.message, HasSubstr("the program does not read its input"));
 }
 
 TEST(OutsideMethodText, CommasBelongToTheCommand) {

@@ -185,7 +185,7 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
               "color-error: needs scenes with colour");
     EXPECT_EQ(error([](SceneOptions& o) { o.threads = 0; }), "threads: must be in [1, 1024]");
     EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"rain"}; }),
-              "condition: 'rain' is none of paper, car, harsh");
+              "condition: 'rain' is not one of paper, car, harsh");
     EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"car", "car"}; }), "condition: car is there twice");
 
     const SceneOptions good = options({0.5}, {30.0});

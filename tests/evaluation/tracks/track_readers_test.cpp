@@ -467,12 +467,12 @@ TEST_F(TrackFiles, SpecFaultsNameTheSpec) {
     const auto error = [](const std::string& spec) { return error_of([&] { return load_tracks(spec); }); };
     EXPECT_THAT(error(""), HasSubstr("is not generated:NAME"));
     EXPECT_THAT(error("circle"), HasSubstr("circle: is not generated:NAME"));
-    EXPECT_THAT(error("made:circle"), HasSubstr("made:circle: 'made' is none of"));
+    EXPECT_THAT(error("made:circle"), HasSubstr("made:circle: 'made' is not one of"));
     EXPECT_THAT(error("generated:oval"),
-                HasSubstr("generated:oval: generated track: 'oval' is none of straight"));
+                HasSubstr("generated:oval: generated track: 'oval' is not one of straight"));
     EXPECT_THAT(error("generated:circle@x"), HasSubstr("'circle@x' has no seed"));
     EXPECT_THAT(error("generated:circle,circle"), HasSubstr("circle is there twice"));
-    EXPECT_THAT(error("generated:circle,"), HasSubstr("'' is none of"));
+    EXPECT_THAT(error("generated:circle,"), HasSubstr("'' is not one of"));
     EXPECT_THAT(error("fsd:no_such_folder"), HasSubstr("no_such_folder is not a directory"));
     EXPECT_THAT(error("fsd:" + directory_.string()), HasSubstr("holds no cone_map_N.yaml"));
     EXPECT_THAT(error("pacsim:no_such_file"), HasSubstr("no_such_file: no such file"));

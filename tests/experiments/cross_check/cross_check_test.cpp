@@ -123,7 +123,7 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
         {"optimal is claimed without a bound within the gap",
          [](RldReport& r, const Scene&, double) { *r.bound -= 0.01; }},
         {"optimal without a bound", [](RldReport& r, const Scene&, double) { r.bound.reset(); }},
-        {"a bound that is no number", [](RldReport& r, const Scene&, double) { r.bound = std::nan(""); }},
+        {"a bound that is not a number", [](RldReport& r, const Scene&, double) { r.bound = std::nan(""); }},
         {"infeasible with a lane graph",
          [](RldReport& r, const Scene&, double) { r.status = SolveStatus::infeasible; }},
         {"stopped with a lane graph",

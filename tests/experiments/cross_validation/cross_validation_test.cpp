@@ -81,7 +81,7 @@ TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
     EXPECT_THAT(other.errors, HasSubstr("--overwrite"));
     EXPECT_EQ(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "nothing was touched";
     ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam --seed 3 --overwrite").exit_code, 0);
-    EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "learned anew";
+    EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
 }
 
 TEST_F(CrossValidation, RefusesFoldsThatAreNone) {

@@ -307,7 +307,7 @@ class ReportPage(unittest.TestCase):
     def test_wrong_input_is_one_line(self):
         with tempfile.TemporaryDirectory() as folder:
             page = os.path.join(folder, "page.html")
-            self.assertIn("is no directory", self.refused(os.path.join(folder, "nothing"), page))
+            self.assertIn("is not a directory", self.refused(os.path.join(folder, "nothing"), page))
             self.assertIn("nowhere", self.refused(RESULTS, os.path.join(folder, "nowhere", "page.html")))
             self.assertIn("matplotlib", self.refused(RESULTS, page, "--python", os.path.join(folder, "no-python")))
             copy = os.path.join(folder, "copy")

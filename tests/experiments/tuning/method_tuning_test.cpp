@@ -78,7 +78,7 @@ TEST(MethodTuning, FilesThatAreWrongAreNamed) {
     for (const TunableParameter& parameter : method.parameters) values.push_back(parameter.start);
     EXPECT_EQ(fault(to_json_text(method, values)), "");
     EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(method, values).substr(1)),
-              "p.json: w_turns: is no key here; w_turn is");
+              "p.json: w_turns: is not a key here; w_turn is");
     EXPECT_THAT(fault("{}"), HasSubstr("p.json: w_turn"));
     values[0] = -1.0;
     EXPECT_THAT(fault(to_json_text(method, values)), HasSubstr("p.json: w_turn"));

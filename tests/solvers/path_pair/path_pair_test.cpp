@@ -80,7 +80,7 @@ TEST(PathPair, EveryStageCanBeSwitchedOff) {
     }
 }
 
-/// The optimum as a start is kept, another lane graph is improved on, one that is none is dropped.
+/// The optimum as a start is kept, another lane graph is improved, an invalid one is dropped.
 TEST(PathPair, StartsFromALaneGraph) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
     int started = 0;
@@ -253,7 +253,7 @@ TEST(PathPair, TakesLargeConeSets) {
 }
 
 /// The verifier finds the root's bound again from the scene, below the optimum, and refuses a higher claim, a
-/// multiplier below zero and a clique that is none.
+/// multiplier below zero and an invalid clique.
 TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
     for (const RldParameters& parameters : {RldParameters{}, with_shape_costs({})}) {

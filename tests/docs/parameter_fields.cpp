@@ -1,0 +1,55 @@
+// parameter_fields: the parameters of the library with default, range and unit, a line each with tabs between
+// the fields: group, key, default, lowest, highest, unit, description. tests/docs/reference_pages makes
+// docs/parameters.md of it.
+#include "conelane/rld_parameter_sets.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "detectors/baseline_parameters.hpp"
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace {
+
+using conelane::RldParameterField;
+using conelane::RldParameters;
+
+void print(std::string_view group, std::string_view key, double value, double lowest, double highest,
+           std::string_view unit, std::string_view description) {
+    std::printf("%s\t%s\t%.6g\t%.6g\t%.6g\t%s\t%s\n", std::string(group).c_str(), std::string(key).c_str(),
+                value, lowest, highest, std::string(unit).c_str(), std::string(description).c_str());
+}
+
+}  // namespace
+
+int main() {
+    const RldParameters defaults;
+    for (const RldParameterField& field : conelane::rld_parameter_fields()) {
+        print("rld", field.key, defaults.*field.value, field.lowest, field.highest, field.unit,
+              field.description);
+    }
+    for (const RldParameterField& field : conelane::rld_extra_fields()) {
+        print("rld extra", field.key, defaults.*field.value, field.lowest, field.highest, field.unit,
+              field.description);
+    }
+    const auto print_baseline = [](std::string_view group, const auto& parameters, const auto& fields) {
+        for (const auto& field : fields) {
+            print(group, field.key, parameters.*field.value, field.lowest, field.highest, field.unit,
+                  field.description);
+        }
+    };
+    print_baseline("delaunay-beam", conelane::tuned_delaunay_beam_parameters(),
+                   conelane::delaunay_beam_fields());
+    print_baseline("astar-lane", conelane::tuned_astar_lane_parameters(), conelane::astar_lane_fields());
+    // The columns of the shipped sets: group "set NAME".
+    for (const std::string_view name : conelane::rld_parameter_set_names()) {
+        const RldParameters set = *conelane::rld_parameter_set(name);
+        const std::string group = "set " + std::string(name);
+        for (const RldParameterField& field : conelane::rld_parameter_fields()) {
+            print(group, field.key, set.*field.value, field.lowest, field.highest, field.unit, "");
+        }
+        for (const RldParameterField& field : conelane::rld_extra_fields()) {
+            print(group, field.key, set.*field.value, field.lowest, field.highest, field.unit, "");
+        }
+    }
+}
