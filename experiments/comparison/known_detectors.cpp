@@ -1,4 +1,4 @@
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 
 #include "conelane/invalid_input.hpp"
 #include "graph_search/baselines/delaunay_beam/delaunay_triangulation.hpp"
@@ -40,8 +40,8 @@ std::unique_ptr<LaneDetector> longest_lane() {
     return make_clc_detector({});
 }
 
-std::vector<Method> all_methods() {
-    std::vector<Method> all;
+std::vector<KnownDetector> all_detectors() {
+    std::vector<KnownDetector> all;
     for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe});
     const auto add = [&all](std::string_view name, std::string_view description,
                             const LearnedFrom& learned_from, const auto& how, bool is_ablation) {
@@ -64,25 +64,26 @@ std::vector<Method> all_methods() {
 
 }  // namespace
 
-std::span<const Method> methods() {
-    static const std::vector<Method> kMethods = all_methods();
-    return kMethods;
+std::span<const KnownDetector> known_detectors() {
+    static const std::vector<KnownDetector> kDetectors = all_detectors();
+    return kDetectors;
 }
 
-const Method& find_method(std::string_view name) {
-    const auto method = std::ranges::find(methods(), name, &Method::name);
-    if (method == methods().end()) {
+const KnownDetector& find_detector(std::string_view name) {
+    const auto detector = std::ranges::find(known_detectors(), name, &KnownDetector::name);
+    if (detector == known_detectors().end()) {
         throw InvalidInput("method",
                            "there is no method '" + std::string(name) + "', see `conelane methods`");
     }
-    return *method;
+    return *detector;
 }
 
-std::optional<OutsideMethod> find_outside_method(std::string_view text) {
-    std::optional<OutsideMethod> method = parse_outside_method(text);
-    if (method && std::ranges::find(methods(), method->name, &Method::name) != methods().end())
-        throw InvalidInput("method", "'" + method->name + "' is the name of a method of this program");
-    return method;
+std::optional<OutsideDetector> find_outside_detector(std::string_view text) {
+    std::optional<OutsideDetector> detector = parse_outside_detector(text);
+    if (detector &&
+        std::ranges::find(known_detectors(), detector->name, &KnownDetector::name) != known_detectors().end())
+        throw InvalidInput("method", "'" + detector->name + "' is the name of a method of this program");
+    return detector;
 }
 
 }  // namespace conelane::experiments

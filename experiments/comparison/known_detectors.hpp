@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detectors/recipe.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 
 #include <optional>
 #include <span>
@@ -11,17 +11,17 @@
 namespace conelane::experiments {
 
 /// What is compared: the detectors of the library, and what exists only to be compared with them.
-struct Method : DetectorRecipe {
-    bool is_ablation = false;  ///< a part of another method left out, or printed as it would not be used
+struct KnownDetector : DetectorRecipe {
+    bool is_ablation = false;  ///< a part of another detector left out, or printed as it would not be used
 };
 
-/// All methods of this build, those of the library first.
-[[nodiscard]] std::span<const Method> methods();
+/// All detectors of this build, those of the library first.
+[[nodiscard]] std::span<const KnownDetector> known_detectors();
 
-/// Throws InvalidInput naming the method where there is none of that name.
-[[nodiscard]] const Method& find_method(std::string_view name);
+/// Throws InvalidInput naming the detector where there is none of that name.
+[[nodiscard]] const KnownDetector& find_detector(std::string_view name);
 
-/// As `parse_outside_method`. Throws InvalidInput too where the name is that of a method of this program.
-[[nodiscard]] std::optional<OutsideMethod> find_outside_method(std::string_view text);
+/// As `parse_outside_method`. Throws InvalidInput too where the name is that of a detector of this program.
+[[nodiscard]] std::optional<OutsideDetector> find_outside_detector(std::string_view text);
 
 }  // namespace conelane::experiments

@@ -11,22 +11,22 @@
 namespace conelane::experiments {
 
 /// Who races, as a table names it.
-struct RaceMethod {
-    std::string name;    ///< `front`, or `front+planner`
-    std::string method;  ///< truth, none, a method, or a command of a program from outside
+struct RaceDetector {
+    std::string name;      ///< `front`, or `front+planner`
+    std::string detector;  ///< truth, none, a detector, or a command of a program from outside
     bool has_planner = false;
     std::shared_ptr<OutsideProgramPool> programs = {};  ///< of a program from outside
 };
 
-/// The methods as a user lists them, each also or only with a planner. truth is the true centre line; none
-/// answers no frame; neither gets a planner. Throws InvalidInput where a method is unknown, answers no frames
-/// (`lanes:`), or cannot have a planner (one from outside, one that is not of the library).
+/// The detectors as a user lists them, each also or only with a planner. truth is the true centre line; none
+/// answers no frame; neither gets a planner. Throws InvalidInput where a detector is unknown, answers no
+/// frames (`lanes:`), or cannot have a planner (one from outside, one that is not of the library).
 enum class WithPlanner { no, only, both };
-[[nodiscard]] std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts,
-                                                   WithPlanner with_planner);
+[[nodiscard]] std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts,
+                                                       WithPlanner with_planner);
 
-/// A new entrant for one race. `course` must outlive it.
-[[nodiscard]] Entrant make_entrant(const RaceMethod& method, const RaceCourse& course,
-                                   const RaceOptions& options);
+/// A new driver for one race. `course` must outlive it.
+[[nodiscard]] Driver make_driver(const RaceDetector& detector, const RaceCourse& course,
+                                 const RaceOptions& options);
 
 }  // namespace conelane::experiments

@@ -1,9 +1,9 @@
 // What a detector promises (see LaneDetector, LaneAnswer and DetectorOptions), for every detector of the
-// library and every method that is compared with them. A new one is tested here by being listed.
+// library and every detector that is compared with them. A new one is tested here by being listed.
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -41,8 +41,8 @@ bool is_in_library(std::string_view name) {
 std::vector<std::string> names() {
     std::vector<std::string> all;
     for (const DetectorInfo& detector : detectors()) all.emplace_back(detector.name);
-    for (const experiments::Method& method : experiments::methods()) {
-        if (!is_in_library(method.name)) all.emplace_back(method.name);
+    for (const experiments::KnownDetector& detector : experiments::known_detectors()) {
+        if (!is_in_library(detector.name)) all.emplace_back(detector.name);
     }
     return all;
 }
@@ -151,7 +151,7 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     static bool answers_one_boundary() { return GetParam().starts_with("front"); }
     static std::unique_ptr<LaneDetector> make(const DetectorOptions& options = {}) {
         return is_in_library(GetParam()) ? make_detector(GetParam(), options)
-                                         : make_detector(experiments::find_method(GetParam()), options);
+                                         : make_detector(experiments::find_detector(GetParam()), options);
     }
     static LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
         LaneAnswer answer;
@@ -198,7 +198,7 @@ TEST_P(DetectorContract, FindsAStraightLane) {
     const LaneAnswer answer = detect(straight(5));
     ASSERT_EQ(answer.status, LaneStatus::found);
     EXPECT_FALSE(detect(straight(3)).stopped_by) << "so few cones are searched to the end";
-    // At the far end methods differ: the longest lane takes one more cone across.
+    // At the far end detectors differ: the longest lane takes one more cone across.
     ASSERT_GE(answer.lane.left.size(), 4U);
     ASSERT_GE(answer.lane.right.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -384,7 +384,7 @@ TEST_P(DetectorContract, InstancesServeAThreadEach) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, DetectorContract, testing::ValuesIn(names()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorContract, testing::ValuesIn(names()), [](const auto& test) {
     std::string name = test.param;
     std::ranges::replace(name, '-', '_');
     return name;
@@ -405,9 +405,9 @@ TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
     }
 }
 
-TEST(Detectors, AreAllMethods) {
+TEST(Detectors, AreAllDetectors) {
     for (const DetectorInfo& detector : detectors()) {
-        EXPECT_NO_THROW((void)experiments::find_method(detector.name)) << detector.name;
+        EXPECT_NO_THROW((void)experiments::find_detector(detector.name)) << detector.name;
     }
 }
 

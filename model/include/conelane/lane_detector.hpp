@@ -21,15 +21,15 @@ enum class LaneStatus {
 };
 [[nodiscard]] std::string_view to_string(LaneStatus status);
 
-/// What a method that optimises a stated objective knows of its answer.
+/// What a detector that optimises a stated objective knows of its answer.
 struct Optimality {
     double objective;
     double bound;  ///< proven lower bound, at most `objective`
     bool optimal;  ///< the gap is within the tolerance asked for
 };
 
-/// A lane that an enumerating method met, and when; or one of the best of a method that has an order of them,
-/// and its place, from 1.
+/// A lane that an enumerating detector met, and when; or one of the best of a detector that has an order of
+/// them, and its place, from 1.
 struct LaneCandidate {
     Lane lane;
     std::int64_t iteration;
@@ -61,7 +61,7 @@ struct MergedCone {
 };
 
 /// A detector's answer. `lane` is empty unless status is found. It has cones on both sides, but for detectors
-/// that say otherwise of scenes which show one boundary alone (front). What a method does not know stays
+/// that say otherwise of scenes which show one boundary alone (front). What a detector does not know stays
 /// absent.
 struct LaneAnswer {
     LaneStatus status = LaneStatus::stopped;
