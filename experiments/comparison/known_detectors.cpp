@@ -43,22 +43,29 @@ std::unique_ptr<LaneDetector> longest_lane() {
 std::vector<KnownDetector> all_detectors() {
     std::vector<KnownDetector> all;
     for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe});
-    const auto add = [&all](std::string_view name, std::string_view description,
-                            const LearnedFrom& learned_from, const auto& how, bool is_ablation) {
-        all.push_back({{name, description, learned_from, how}, is_ablation});
+    const auto add_rld = [&all](std::string_view name, std::string_view description,
+                                std::unique_ptr<RldSolver> (*make_solver)()) {
+        all.push_back({{name, description, LearnedFrom::nothing(), ClosedLanes::never, ColorUse::by_weight,
+                        RldRecipe{make_solver, {kRldConeSet, std::nullopt}}}});
+    };
+    const auto add_clc_ablation = [&all](std::string_view name, std::string_view description,
+                                         const LearnedFrom& learned_from,
+                                         std::unique_ptr<LaneDetector> (*make)()) {
+        all.push_back(
+            {{name, description, learned_from, ClosedLanes::possible, ColorUse::ignored, OtherRecipe{make}},
+             true});
     };
     if (find_rld_solver("cbc") != nullptr) {
-        add("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", LearnedFrom::nothing(),
-            RldRecipe{tight_cbc, {kRldConeSet, std::nullopt}}, false);
-        add("rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones",
-            LearnedFrom::nothing(), RldRecipe{printed_cbc, {kRldConeSet, std::nullopt}}, false);
+        add_rld("rld-cbc", "RLD, tight formulation by CBC, on the nearest cones", tight_cbc);
+        add_rld("rld-paper", "RLD, the printed formulation by CBC's full machinery, on the nearest cones",
+                printed_cbc);
     }
-    add("clc-no-beam", "clc whose first search follows no lane of a beam search",
-        LearnedFrom(kClcRankWeights), OtherRecipe{without_beam}, true);
-    add("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
-        LearnedFrom(kPaperClcWeights), OtherRecipe{on_delaunay_graph}, true);
-    add("clc-longest", "CLC without network: the longest of the enumerated lanes", LearnedFrom::nothing(),
-        OtherRecipe{longest_lane}, true);
+    add_clc_ablation("clc-no-beam", "clc whose first search follows no lane of a beam search",
+                     LearnedFrom(kClcRankWeights), without_beam);
+    add_clc_ablation("clc-delaunay", "clc-paper on the Delaunay triangulation (section IV-B)",
+                     LearnedFrom(kPaperClcWeights), on_delaunay_graph);
+    add_clc_ablation("clc-longest", "CLC without network: the longest of the enumerated lanes",
+                     LearnedFrom::nothing(), longest_lane);
     return all;
 }
 
@@ -76,6 +83,12 @@ const KnownDetector& find_detector(std::string_view name) {
                            "there is no method '" + std::string(name) + "', see `conelane methods`");
     }
     return *detector;
+}
+
+std::set<std::string> training_courses(std::string_view name) {
+    const auto detector = std::ranges::find(known_detectors(), name, &KnownDetector::name);
+    return detector != known_detectors().end() ? conelane::training_courses(*detector)
+                                               : std::set<std::string>{};
 }
 
 std::optional<OutsideDetector> find_outside_detector(std::string_view text) {

@@ -4,7 +4,9 @@
 #include "evaluation/outside/outside_detector.hpp"
 
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -21,7 +23,11 @@ struct KnownDetector : DetectorRecipe {
 /// Throws InvalidInput naming the detector where there is none of that name.
 [[nodiscard]] const KnownDetector& find_detector(std::string_view name);
 
-/// As `parse_outside_method`. Throws InvalidInput too where the name is that of a detector of this program.
+/// The courses that the detector of that name has learned from; empty where it has seen none, or there is no
+/// such detector.
+[[nodiscard]] std::set<std::string> training_courses(std::string_view name);
+
+/// As `parse_outside_detector`. Throws InvalidInput too where the name is that of a detector of this program.
 [[nodiscard]] std::optional<OutsideDetector> find_outside_detector(std::string_view text);
 
 }  // namespace conelane::experiments

@@ -4,8 +4,8 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/comparison/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>

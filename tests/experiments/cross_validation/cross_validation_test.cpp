@@ -2,7 +2,7 @@
 
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/training_courses.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "tests/support/program_fixture.hpp"
 
 #include <filesystem>

@@ -6,7 +6,7 @@
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/search_clock.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 
 #include <cstddef>
 #include <vector>
