@@ -13,11 +13,7 @@ constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
 /// To extend a frontier takes as long as to look at so many.
 constexpr std::size_t kFrontiersPerExtension = 4;
-/// So many values are written or copied at once.
-constexpr std::size_t kValuesAtOnce = 16384;
-// Steps of the clock.
-constexpr std::size_t kWorkPerFrontier = 200;
-constexpr std::size_t kWorkPerValue = 3;
+constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
 /// nothing.
 constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
@@ -54,33 +50,6 @@ void FrontierGraph::Arrays::reserve(std::size_t count) {
 
 bool FrontierGraph::out_of_time(std::size_t frontiers) {
     return clock_->tick(kWorkPerFrontier * frontiers);
-}
-
-template <typename T>
-bool FrontierGraph::fill(std::vector<T>& values, std::size_t count, T value) {
-    values.clear();
-    values.reserve(count);
-    while (values.size() < count) {
-        const std::size_t more = std::min(count - values.size(), kValuesAtOnce);
-        if (clock_->tick(kWorkPerValue * more)) return false;
-        values.resize(values.size() + more, value);
-    }
-    return true;
-}
-
-template <typename T>
-bool FrontierGraph::make_room(std::vector<T>& values, std::size_t more) {
-    if (values.size() + more <= values.capacity()) return true;
-    std::vector<T> grown;
-    grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
-    while (grown.size() < values.size()) {
-        const std::size_t count = std::min(values.size() - grown.size(), kValuesAtOnce);
-        if (clock_->tick(kWorkPerValue * count)) return false;
-        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(grown.size());
-        grown.insert(grown.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
-    }
-    values = std::move(grown);
-    return true;
 }
 
 bool FrontierGraph::fill_dominated(std::size_t words) {
@@ -452,77 +421,74 @@ void FrontierGraph::drop(double limit) {
 }
 
 void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
-    const std::size_t words = edges.words();
-    const auto row = [&](int f) { return dominated_.row(to_index(f)); };
-    const auto is_dominated = [&](int f, int arc) {
-        return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
-    };
-    nothing_.assign(words, 0);
-    const std::uint64_t* const nothing = nothing_.data();
     if (!fill(keep_step_, now_.steps.size(), char{1})) return;
-    changed_.assign(now_.frontiers.size(), 0);
-
-    // Every walk from a first frontier up to this one has lost these edges.
-    if (!fill_dominated(words)) return;
-    for (const int f : starts_) {
-        intersect_with_union(row(f), edges.lost_after(frontier(f).moving),
-                             edges.lost_after(frontier(f).waiting), words);
-    }
-    bool again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = 0; f < size(); ++f) {
-            if (out_of_time()) return;
-            if (sweep > 1 && changed_[to_index(f)] < sweep - 1) continue;
-            for (const Step& step : steps(f)) {
-                if (is_dominated(f, step.arc)) continue;
-                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
-                if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
-                changed_[to_index(step.to)] = sweep;
-                again |= step.to <= f;
-            }
-        }
-    }
-    for (int f = 0; f < size(); ++f) {
-        if (out_of_time()) return;
-        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-            if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
-        }
-    }
-
-    // Every walk from this frontier on to a last one excludes these edges.
-    if (!fill_dominated(words)) return;
-    changed_.assign(now_.frontiers.size(), 0);
-    again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = size(); f-- > 0;) {
-            if (out_of_time()) return;
-            bool changed = false;
-            if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
-            for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-                const Step& step = now_.steps[p];
-                if (keep_step_[p] == 0 || changed_[to_index(step.to)] < sweep - 1 ||
-                    is_dominated(step.to, step.arc)) {
-                    continue;
-                }
-                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_before(step.arc);
-                changed |= intersect_with_union(row(f), row(step.to), own, words);
-            }
-            if (!changed) continue;
-            changed_[to_index(f)] = sweep;
-            again = true;
-        }
-    }
+    nothing_.assign(edges.words(), 0);
+    if (!drop_steps_by_dominated<Walks::up_to>(edges)) return;
+    if (!drop_steps_by_dominated<Walks::on_from>(edges)) return;
     order_.clear();
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return;
         order_.push_back(f);
-        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-            if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
-        }
     }
     keep(order_);
+}
+
+template <FrontierGraph::Walks kWalks>
+bool FrontierGraph::drop_steps_by_dominated(const EdgeSets& edges) {
+    constexpr bool kUpTo = kWalks == Walks::up_to;
+    const std::size_t words = edges.words();
+    const auto row = [&](int f) { return dominated_.row(to_index(f)); };
+    const auto source = [](int f, const Step& step) { return kUpTo ? f : step.to; };
+    const auto target = [](int f, const Step& step) { return kUpTo ? step.to : f; };
+    const auto is_dominated = [&](int f, const Step& step) {
+        return step.arc >= 0 && EdgeSets::contains(row(source(f, step)), edges.number(step.arc));
+    };
+    const std::uint64_t* const nothing = nothing_.data();
+    const auto own = [&](const Step& step) {
+        if (step.arc < 0) return nothing;
+        return kUpTo ? edges.lost_after(step.arc) : edges.lost_before(step.arc);
+    };
+
+    if (!fill_dominated(words)) return false;
+    if constexpr (kUpTo) {
+        for (const int f : starts_) {
+            const Frontier& start = frontier(f);
+            intersect_with_union(row(f), edges.lost_after(start.moving), edges.lost_after(start.waiting),
+                                 words);
+        }
+    } else {
+        for (int f = 0; f < size(); ++f) {
+            if (is_last(f)) std::fill_n(row(f), words, std::uint64_t{0});
+        }
+    }
+    changed_.assign(now_.frontiers.size(), 0);
+    // What is taken out of a set lets more steps count, so sweeps go on until nothing changes.
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int i = 0; i < size(); ++i) {
+            if (out_of_time()) return false;
+            const int f = kUpTo ? i : size() - 1 - i;
+            if (kUpTo && changed_[to_index(f)] < sweep - 1) continue;
+            for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
+                const Step& step = now_.steps[p];
+                if (keep_step_[p] == 0 || changed_[to_index(source(f, step))] < sweep - 1 ||
+                    is_dominated(f, step) ||
+                    !intersect_with_union(row(target(f, step)), row(source(f, step)), own(step), words)) {
+                    continue;
+                }
+                changed_[to_index(target(f, step))] = sweep;
+                again |= !kUpTo || step.to <= f;
+            }
+        }
+    }
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return false;
+        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
+            if (is_dominated(f, now_.steps[p])) keep_step_[p] = 0;
+        }
+    }
+    return true;
 }
 
 }  // namespace conelane::path_pair

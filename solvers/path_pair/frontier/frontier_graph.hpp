@@ -5,6 +5,7 @@
 #include "solvers/path_pair/graph/block_rows.hpp"
 #include "solvers/path_pair/graph/edge_sets.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/timed_growth.hpp"
 #include "solvers/path_pair/graph/to_index.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 
@@ -95,13 +96,22 @@ class FrontierGraph {
     static std::uint64_t key(const Frontier& frontier);
     /// To be asked before so many frontiers are looked at.
     bool out_of_time(std::size_t frontiers = 1);
-    /// So many times the value; false, and fewer, where the time is up.
+    /// For graph/timed_growth.hpp.
     template <typename T>
-    bool fill(std::vector<T>& values, std::size_t count, T value);
-    /// Room for so many more values. A vector that grows by itself copies all of them in one go, which takes
-    /// milliseconds. False, and no more room, where the time is up.
+    bool fill(std::vector<T>& values, std::size_t count, T value) {
+        return path_pair::fill(values, count, value, *clock_);
+    }
     template <typename T>
-    bool make_room(std::vector<T>& values, std::size_t more);
+    bool make_room(std::vector<T>& values, std::size_t more) {
+        return path_pair::make_room(values, more, *clock_);
+    }
+    /// Where walks come from: what those up to a frontier have lost goes from frontier to frontier along the
+    /// steps, what those on from it exclude against them.
+    enum class Walks { up_to, on_from };
+    /// The dominated edges of every frontier by its walks up to it or on from it, and steps by one no longer
+    /// kept. False where the time is up.
+    template <Walks kWalks>
+    bool drop_steps_by_dominated(const EdgeSets& edges);
     /// The same rows of the set of all edges.
     bool fill_dominated(std::size_t words);
     void forget_frontiers();
