@@ -10,7 +10,9 @@ namespace conelane {
 
 std::vector<DetectorInfo> detectors() {
     std::vector<DetectorInfo> all;
-    for (const DetectorRecipe& recipe : detector_recipes()) all.push_back({recipe.name, recipe.description});
+    for (const DetectorRecipe& recipe : detector_recipes()) {
+        all.push_back({recipe.name, recipe.description, recipe.closed_lanes, recipe.color_use});
+    }
     return all;
 }
 

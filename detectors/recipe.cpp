@@ -8,6 +8,7 @@
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_weights_reader.hpp"
+#include "graph_search/shared/json_reader.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 
 #include <array>
@@ -72,35 +73,57 @@ constexpr std::array kRecipes{
     DetectorRecipe{"front",
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
                    "missed cones, answers with one boundary where it sees one alone",
-                   LearnedFrom(kFrontWeights), FrontRecipe{shipped_front_options}},
+                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::ignored,
+                   FrontRecipe{shipped_front_options}},
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
-                   LearnedFrom(kFrontWeights), FrontRecipe{warm_front_options}},
+                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::ignored,
+                   FrontRecipe{warm_front_options}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
                    "search, a network on all features trained for usable lanes",
-                   LearnedFrom(kClcWeights), OtherRecipe{clc}},
+                   LearnedFrom(kClcWeights), ClosedLanes::possible, ColorUse::ignored, OtherRecipe{clc}},
     DetectorRecipe{"clc-warm", "clc that starts from its last lane along a lap (section IV-F)",
-                   LearnedFrom(kClcWeights), OtherRecipe{warm_clc}},
+                   LearnedFrom(kClcWeights), ClosedLanes::possible, ColorUse::ignored, OtherRecipe{warm_clc}},
     DetectorRecipe{"clc-paper", "CLC as printed: equation (3), eight features, equation (14)",
-                   LearnedFrom(kPaperClcWeights), OtherRecipe{paper_clc}},
+                   LearnedFrom(kPaperClcWeights), ClosedLanes::possible, ColorUse::ignored,
+                   OtherRecipe{paper_clc}},
     DetectorRecipe{"rld-pair", "RLD, exact search over pairs of paths, on all cones", LearnedFrom::nothing(),
-                   RldRecipe{path_pair, {}}},
+                   ClosedLanes::never, ColorUse::by_weight, RldRecipe{path_pair, {}}},
     DetectorRecipe{"rld-shape",
                    "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
-                   LearnedFrom({}, kShapeCourses), RldRecipe{path_pair, {}, true}},
+                   LearnedFrom({}, kShapeCourses), ClosedLanes::never, ColorUse::by_weight,
+                   RldRecipe{path_pair, {}, true}},
     DetectorRecipe{"rld-context", "RLD by the exact search among more cones, then cut to the nearest",
-                   LearnedFrom::nothing(), RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
+                   LearnedFrom::nothing(), ClosedLanes::never, ColorUse::by_weight,
+                   RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
     DetectorRecipe{"rld-shape-context", "rld-context with the costs of the lane's shape",
-                   LearnedFrom({}, kShapeCourses), RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
+                   LearnedFrom({}, kShapeCourses), ClosedLanes::never, ColorUse::by_weight,
+                   RldRecipe{path_pair, {kRldConeSet, kRldContext}, true}},
     DetectorRecipe{"delaunay-beam",
                    "AMZ: beam search of paths through the Delaunay triangulation of the cones, the one of "
                    "the lowest cost",
-                   LearnedFrom({}, kDelaunayBeamCourses), OtherRecipe{delaunay_beam}},
+                   LearnedFrom({}, kDelaunayBeamCourses), ClosedLanes::never, ColorUse::used,
+                   OtherRecipe{delaunay_beam}},
     DetectorRecipe{
         "astar-lane",
         "Tanzmeister et al.: a path of bounded curvature between cones by A*, boundaries read off it",
-        LearnedFrom({}, kAstarLaneCourses), OtherRecipe{astar_lane}},
+        LearnedFrom({}, kAstarLaneCourses), ClosedLanes::never, ColorUse::ignored, OtherRecipe{astar_lane}},
 };
+
+/// The courses that the record of a weight file names.
+std::set<std::string> courses_of(std::string_view weight_file) {
+    std::set<std::string> courses;
+    JsonReader json(weight_file, "weights");
+    json.object([&](const std::string& key) {
+        if (key != "training") return json.skip();
+        json.object([&](const std::string& of_training) {
+            if (of_training != "tracks") return json.skip();
+            json.array([&] { courses.insert(json.string()); });
+        });
+    });
+    if (courses.empty()) json.fail("the record names no courses");
+    return courses;
+}
 
 /// Shows its detector the nearest cones only.
 class NearestCones : public LaneDetector {
@@ -111,7 +134,7 @@ class NearestCones : public LaneDetector {
 
   private:
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
-        return detector_->detect(nearest_ahead(scene, nearest_), limits);
+        return search_by(*detector_, nearest_ahead(scene, nearest_), limits);
     }
 
     std::unique_ptr<LaneDetector> detector_;
@@ -143,6 +166,14 @@ FrontWeights weights_of(const std::variant<std::filesystem::path, WeightsBytes>&
 
 std::span<const DetectorRecipe> detector_recipes() {
     return kRecipes;
+}
+
+std::set<std::string> training_courses(const DetectorRecipe& recipe) {
+    const auto set_with = recipe.learned_from.courses();
+    std::set<std::string> courses(set_with.begin(), set_with.end());
+    for (const std::string_view* const weights : recipe.learned_from.weights())
+        courses.merge(courses_of(*weights));
+    return courses;
 }
 
 DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options) {

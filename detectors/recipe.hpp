@@ -3,10 +3,13 @@
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
+#include "graph_search/weights/weight_files.hpp"
 
 #include <array>
 #include <memory>
+#include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <variant>
 
@@ -34,32 +37,35 @@ struct OtherRecipe {
 /// What a detector has learned from. It has no default: no detector of a table can lack it.
 class LearnedFrom {
   public:
-    /// `weights`: names of shipped weight files, whose records name their courses. `courses`: further
-    /// courses, which were in view when parameters were set.
-    constexpr explicit LearnedFrom(std::span<const std::string_view> weights,
-                                   std::span<const std::string_view> courses = {})
+    using WeightFiles = std::span<const std::string_view* const>;
+
+    /// `weights`: shipped weight files, whose records name their courses. `courses`: further courses, which
+    /// were in view when parameters were set.
+    constexpr explicit LearnedFrom(WeightFiles weights, std::span<const std::string_view> courses = {})
         : weights_(weights), courses_(courses) {}
     static constexpr LearnedFrom nothing() { return LearnedFrom({}); }
 
-    [[nodiscard]] constexpr std::span<const std::string_view> weights() const { return weights_; }
+    [[nodiscard]] constexpr WeightFiles weights() const { return weights_; }
     [[nodiscard]] constexpr std::span<const std::string_view> courses() const { return courses_; }
 
   private:
-    std::span<const std::string_view> weights_;
+    WeightFiles weights_;
     std::span<const std::string_view> courses_;
 };
 
-// Of shipped weights: for tables of detectors.
-inline constexpr std::array<std::string_view, 1> kFrontWeights{"front"};
-inline constexpr std::array<std::string_view, 1> kPaperClcWeights{"rank_net_paper"};
-inline constexpr std::array<std::string_view, 1> kClcRankWeights{"rank_net_extended"};
-inline constexpr std::array<std::string_view, 2> kClcWeights{"rank_net_extended", "step_scores"};
+// For tables of detectors.
+inline constexpr std::array kFrontWeights{&kFrontFile};
+inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
+inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
+inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
 /// How a detector of a name is made, and all that is known of it.
 struct DetectorRecipe {
     std::string_view name;
     std::string_view description;
     LearnedFrom learned_from;
+    ClosedLanes closed_lanes;
+    ColorUse color_use;
     std::variant<RldRecipe, FrontRecipe, OtherRecipe> how;
 
     /// Whether it optimises the RLD objective.
@@ -70,6 +76,10 @@ struct DetectorRecipe {
 
 /// The detectors of the library.
 [[nodiscard]] std::span<const DetectorRecipe> detector_recipes();
+
+/// The courses that a detector has learned from, by the names that tracks have: those that the records of its
+/// weights name, and those that were in view when its parameters were set. Empty where it has seen none.
+[[nodiscard]] std::set<std::string> training_courses(const DetectorRecipe& recipe);
 
 /// The options without those that the detector does not use: for where several detectors get the same.
 [[nodiscard]] DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options);

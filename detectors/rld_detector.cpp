@@ -1,6 +1,6 @@
 #include "conelane/rld_detector.hpp"
 
-#include "conelane/solve_scene.hpp"
+#include "detectors/solve_valid_scene.hpp"
 #include "model/deadline.hpp"
 
 #include <algorithm>
@@ -57,8 +57,8 @@ class RldDetector : public LaneDetector {
         std::optional<LaneGraph> start;
         if (previous_) start = map_by_cone_id(previous_->scene, previous_->graph, seen);
         const RldReport report =
-            solve_scene(*solver_, seen, options_.parameters, {time_limit_ms, options_.absolute_gap},
-                        start ? &*start : nullptr)
+            solve_valid_scene(*solver_, seen, options_.parameters, {time_limit_ms, options_.absolute_gap},
+                              start ? &*start : nullptr)
                 .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;

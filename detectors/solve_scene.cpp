@@ -1,20 +1,25 @@
 #include "conelane/solve_scene.hpp"
 
+#include "detectors/solve_valid_scene.hpp"
 #include "model/deadline.hpp"
+#include "model/valid_scene_problem.hpp"
 
 #include <exception>
 #include <new>
 #include <utility>
 
 namespace conelane {
+namespace {
 
-SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
-                        const SolveLimits& limits, const LaneGraph* start) {
+using MakeProblem = LimitedProblem (*)(const Scene&, const RldParameters&, EdgeExtent, const Deadline&);
+
+SolvedScene solve(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                  const SolveLimits& limits, const LaneGraph* start, MakeProblem make_problem_of) {
     const Stopwatch watch;
     const Deadline deadline(limits.time_limit_ms);
     SolvedScene solved;
     try {
-        LimitedProblem made = make_problem(scene, parameters, solver.extent(), deadline);
+        LimitedProblem made = make_problem_of(scene, parameters, solver.extent(), deadline);
         const double problem_ms = watch.elapsed_ms();
         if (made.problem) {
             solved.problem = *std::move(made.problem);
@@ -33,6 +38,18 @@ SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParamete
     }
     solved.total_ms = watch.elapsed_ms();
     return solved;
+}
+
+}  // namespace
+
+SolvedScene solve_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                        const SolveLimits& limits, const LaneGraph* start) {
+    return solve(solver, scene, parameters, limits, start, make_problem);
+}
+
+SolvedScene solve_valid_scene(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
+                              const SolveLimits& limits, const LaneGraph* start) {
+    return solve(solver, scene, parameters, limits, start, make_problem_of_valid_scene);
 }
 
 }  // namespace conelane

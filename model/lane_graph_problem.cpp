@@ -4,6 +4,7 @@
 #include "model/geometry.hpp"
 #include "model/near_edges.hpp"
 #include "model/shape_costs.hpp"
+#include "model/valid_scene_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -279,19 +280,19 @@ bool is_far_from_origin(const Scene& scene) {
     return scene.pose.position.cwiseAbs().maxCoeff() > kFarFromOrigin_m;
 }
 
-/// The same scene with the car at the origin.
+/// The same scene with the car at the origin. Throws InvalidInput where a difference of two finite
+/// coordinates is not finite.
 Scene seen_from_car(const Scene& scene) {
     Scene seen = scene;
     for (Cone& cone : seen.cones) cone.position -= scene.pose.position;
     seen.pose.position = {0.0, 0.0};
+    validate(seen);
     return seen;
 }
 
-LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
-                              Limits& limits) {
-    validate(scene);
-    validate(parameters);
-    if (is_far_from_origin(scene)) return make_problem(seen_from_car(scene), parameters, extent, limits);
+LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
+                                  Limits& limits) {
+    if (is_far_from_origin(scene)) return problem_of_valid(seen_from_car(scene), parameters, extent, limits);
     LaneGraphProblem problem;
     const std::size_t n = scene.cones.size();
     // The table of distances is the one part that is allocated at once.
@@ -315,14 +316,23 @@ LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameter
 }  // namespace
 
 LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent) {
+    validate(scene);
+    validate(parameters);
     Limits none;
-    return make_problem(scene, parameters, extent, none);
+    return problem_of_valid(scene, parameters, extent, none);
 }
 
 LimitedProblem make_problem(const Scene& scene, const RldParameters& parameters, EdgeExtent extent,
                             const Deadline& deadline) {
+    validate(scene);
+    return make_problem_of_valid_scene(scene, parameters, extent, deadline);
+}
+
+LimitedProblem make_problem_of_valid_scene(const Scene& scene, const RldParameters& parameters,
+                                           EdgeExtent extent, const Deadline& deadline) {
+    validate(parameters);
     Limits limits(deadline);
-    LaneGraphProblem problem = make_problem(scene, parameters, extent, limits);
+    LaneGraphProblem problem = problem_of_valid(scene, parameters, extent, limits);
     if (limits.struck()) return {std::nullopt, limits.struck()};
     return {std::move(problem), std::nullopt};
 }

@@ -58,7 +58,7 @@ class DrivableAnswers final : public LaneDetector {
   private:
     LaneAnswer search(const Scene& scene, const DetectionLimits& limits) override {
         const Deadline whole(limits.time_limit_ms);
-        LaneAnswer answer = detector_->detect(scene, limits);
+        LaneAnswer answer = search_by(*detector_, scene, limits);
         if (answer.status != LaneStatus::found) return answer;
         const Deadline deadline(std::max(whole.remaining_ms(), kMinTime_ms));
         std::optional<DrivableLane> lane = drivable_or_none(answer, scene, deadline);

@@ -27,7 +27,7 @@ struct SearchVerdict {
 ///
 /// Edges, excluded pairs and the colors' part of a cost are asked of `check`. The other costs are computed
 /// to 50 digits and rounded down to whole numbers of 2^-60; from there on every sum and comparison is exact.
-/// `max_steps` limits the labels and fronts of the enumeration, all parts together.
+/// `max_steps` limits the labels and frontiers of the enumeration, all parts together.
 [[nodiscard]] SearchVerdict verify_search(const Scene& scene, const RldParameters& parameters,
                                           const SearchCertificate& certificate, std::int64_t max_steps);
 

@@ -30,14 +30,14 @@ PairEnumeration::PairEnumeration(const ExactScene& scene, const LegKinds& kinds,
 }
 
 PairEnumeration::Outcome PairEnumeration::run(std::int64_t& steps_left) {
-    if (!find_fronts(steps_left)) return Outcome::too_many_steps;
+    if (!find_frontiers(steps_left)) return Outcome::too_many_steps;
     find_steps();
     find_onward();
-    drop_fronts();
+    drop_frontiers();
     drop_taken_by_all();
     find_forward();
     find_onward();
-    drop_fronts();
+    drop_frontiers();
     find_wanted();
     return enumerate(steps_left);
 }
@@ -59,9 +59,9 @@ void PairEnumeration::find_taken() {
     }
 }
 
-std::vector<PairEnumeration::Front> PairEnumeration::first_fronts() const {
+std::vector<PairEnumeration::Frontier> PairEnumeration::first_frontiers() const {
     const std::size_t second = kinds_.other(0);
-    std::vector<Front> fronts;
+    std::vector<Frontier> frontiers;
     for (std::size_t a = 0; a < graph_.arc.size(); ++a) {
         if (!bounds_.start(0, a)) continue;
         for (std::size_t b = kinds_.count() == 1 ? a + 1 : 0; b < graph_.arc.size(); ++b) {
@@ -70,96 +70,98 @@ std::vector<PairEnumeration::Front> PairEnumeration::first_fronts() const {
                 contains(taken_by_[a], scene_.edges.size() + tail)) {
                 continue;
             }
-            fronts.push_back(a < b ? Front{a, b, 0, false} : Front{b, a, second, false});
+            frontiers.push_back(a < b ? Frontier{a, b, 0, false} : Frontier{b, a, second, false});
         }
     }
-    return fronts;
+    return frontiers;
 }
 
-Exact PairEnumeration::start_cost(const Front& front) const {
-    return *bounds_.start(front.kind, front.moving) + *bounds_.start(kinds_.other(front.kind), front.waiting);
+Exact PairEnumeration::start_cost(const Frontier& frontier) const {
+    return *bounds_.start(frontier.kind, frontier.moving) +
+           *bounds_.start(kinds_.other(frontier.kind), frontier.waiting);
 }
 
-/// Whether the front ends both legs by one more step of no cost but the moving leg's end.
-bool PairEnumeration::is_last(const Front& front) const {
-    if (!front.ended || !bounds_.end(front.kind, front.moving)) return false;
-    const std::size_t one = scene_.head(graph_.arc[front.moving]);
-    const std::size_t other = scene_.head(graph_.arc[front.waiting]);
+/// Whether the frontier ends both legs by one more step of no cost but the moving leg's end.
+bool PairEnumeration::is_last(const Frontier& frontier) const {
+    if (!frontier.ended || !bounds_.end(frontier.kind, frontier.moving)) return false;
+    const std::size_t one = scene_.head(graph_.arc[frontier.moving]);
+    const std::size_t other = scene_.head(graph_.arc[frontier.waiting]);
     return one != other && (kinds_.partners == nullptr || (*kinds_.partners)[one][other]);
 }
 
-/// Calls `visit(next front, arc, cost, reduced cost)`.
+/// Calls `visit(next frontier, arc, cost, reduced cost)`.
 template <typename Visit>
-void PairEnumeration::for_each_step(const Front& front, const Visit& visit) const {
-    const std::size_t other = kinds_.other(front.kind);
-    for (const WalkGraph::Turn& turn : graph_.turns[front.moving]) {
-        if (!fits(taken_by_[front.waiting], turn.to)) continue;
+void PairEnumeration::for_each_step(const Frontier& frontier, const Visit& visit) const {
+    const std::size_t other = kinds_.other(frontier.kind);
+    for (const WalkGraph::Turn& turn : graph_.turns[frontier.moving]) {
+        if (!fits(taken_by_[frontier.waiting], turn.to)) continue;
         const Exact cost = turn.cost + scene_.edge_cost[edge_bit(turn.to)];
         const Exact reduced = turn.cost + bounds_.reduced(turn.to);
-        const bool goes_on = front.ended || turn.to < front.waiting;
-        visit(goes_on ? Front{turn.to, front.waiting, front.kind, front.ended}
-                      : Front{front.waiting, turn.to, other, false},
+        const bool goes_on = frontier.ended || turn.to < frontier.waiting;
+        visit(goes_on ? Frontier{turn.to, frontier.waiting, frontier.kind, frontier.ended}
+                      : Frontier{frontier.waiting, turn.to, other, false},
               turn.to, cost, reduced);
     }
-    const WalkCost end = front.ended ? std::nullopt : bounds_.end(front.kind, front.moving);
-    if (end) visit(Front{front.waiting, front.moving, other, true}, kNoArc, *end, *end);
+    const WalkCost end = frontier.ended ? std::nullopt : bounds_.end(frontier.kind, frontier.moving);
+    if (end) visit(Frontier{frontier.waiting, frontier.moving, other, true}, kNoArc, *end, *end);
 }
 
 /// By the cheapest ways on of single legs.
-bool PairEnumeration::may_be_below(const Front& front, const Exact& reduced) const {
-    WalkCost cost = sum(WalkCost(reduced), leg_onward_[front.kind][front.moving]);
-    if (!front.ended) cost = sum(cost, leg_onward_[kinds_.other(front.kind)][front.waiting]);
+bool PairEnumeration::may_be_below(const Frontier& frontier, const Exact& reduced) const {
+    WalkCost cost = sum(WalkCost(reduced), leg_onward_[frontier.kind][frontier.moving]);
+    if (!frontier.ended) cost = sum(cost, leg_onward_[kinds_.other(frontier.kind)][frontier.waiting]);
     return cost && *cost < most_;
 }
 
-/// Fronts that a pair below the limit may pass, each with its cheapest walk. False where they are too many.
-bool PairEnumeration::find_fronts(std::int64_t& steps_left) {
-    std::map<Front, Exact> forward;
-    std::set<Front> open;
-    const auto offer = [&](const Front& front, const Exact& reduced) {
-        if (!may_be_below(front, reduced)) return;
-        const auto [known, is_new] = forward.try_emplace(front, reduced);
+/// Frontiers that a pair below the limit may pass, each with its cheapest walk. False where they are too
+/// many.
+bool PairEnumeration::find_frontiers(std::int64_t& steps_left) {
+    std::map<Frontier, Exact> forward;
+    std::set<Frontier> open;
+    const auto offer = [&](const Frontier& frontier, const Exact& reduced) {
+        if (!may_be_below(frontier, reduced)) return;
+        const auto [known, is_new] = forward.try_emplace(frontier, reduced);
         if (!is_new && known->second <= reduced) return;
         known->second = reduced;
-        open.insert(front);
+        open.insert(frontier);
     };
-    for (const Front& front : first_fronts()) offer(front, start_cost(front));
+    for (const Frontier& frontier : first_frontiers()) offer(frontier, start_cost(frontier));
     while (!open.empty()) {
-        const Front front = *open.begin();
+        const Frontier frontier = *open.begin();
         open.erase(open.begin());
         if (--steps_left < 0) return false;
-        const Exact cost = forward.at(front);
-        for_each_step(front, [&](const Front& next, std::size_t, const Exact&, const Exact& reduced) {
+        const Exact cost = forward.at(frontier);
+        for_each_step(frontier, [&](const Frontier& next, std::size_t, const Exact&, const Exact& reduced) {
             offer(next, cost + reduced);
         });
     }
-    for (const auto& [front, cost] : forward) {
-        fronts_.push_back(front);
+    for (const auto& [frontier, cost] : forward) {
+        frontiers_.push_back(frontier);
         forward_.emplace_back(cost);
     }
     return true;
 }
 
 void PairEnumeration::find_steps() {
-    steps_.assign(fronts_.size(), {});
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
-        for_each_step(
-            fronts_[f], [&](const Front& next, std::size_t arc, const Exact& cost, const Exact& reduced) {
-                const auto to = std::ranges::lower_bound(fronts_, next);
-                if (to == fronts_.end() || *to != next || !may_be_below(next, *forward_[f] + reduced)) return;
-                steps_[f].push_back({static_cast<std::size_t>(to - fronts_.begin()), arc, cost, reduced});
-            });
+    steps_.assign(frontiers_.size(), {});
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
+        for_each_step(frontiers_[f], [&](const Frontier& next, std::size_t arc, const Exact& cost,
+                                         const Exact& reduced) {
+            const auto to = std::ranges::lower_bound(frontiers_, next);
+            if (to == frontiers_.end() || *to != next || !may_be_below(next, *forward_[f] + reduced)) return;
+            steps_[f].push_back({static_cast<std::size_t>(to - frontiers_.begin()), arc, cost, reduced});
+        });
     }
 }
 
 void PairEnumeration::find_onward() {
-    onward_.assign(fronts_.size(), std::nullopt);
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
-        if (is_last(fronts_[f])) onward_[f] = bounds_.end(fronts_[f].kind, fronts_[f].moving);
+    onward_.assign(frontiers_.size(), std::nullopt);
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
+        if (is_last(frontiers_[f])) onward_[f] = bounds_.end(frontiers_[f].kind, frontiers_[f].moving);
     }
     for (bool shorter = true; shorter;) {
         shorter = false;
-        for (std::size_t f = fronts_.size(); f-- > 0;) {
+        for (std::size_t f = frontiers_.size(); f-- > 0;) {
             for (const Step& step : steps_[f]) {
                 const WalkCost cost = sum(onward_[step.to], step.reduced);
                 if (!cheaper(cost, onward_[f])) continue;
@@ -171,15 +173,15 @@ void PairEnumeration::find_onward() {
 }
 
 void PairEnumeration::find_forward() {
-    forward_.assign(fronts_.size(), std::nullopt);
-    for (const Front& front : first_fronts()) {
-        const auto at = std::ranges::lower_bound(fronts_, front);
-        if (at == fronts_.end() || *at != front) continue;
-        forward_[static_cast<std::size_t>(at - fronts_.begin())] = start_cost(front);
+    forward_.assign(frontiers_.size(), std::nullopt);
+    for (const Frontier& frontier : first_frontiers()) {
+        const auto at = std::ranges::lower_bound(frontiers_, frontier);
+        if (at == frontiers_.end() || *at != frontier) continue;
+        forward_[static_cast<std::size_t>(at - frontiers_.begin())] = start_cost(frontier);
     }
     for (bool shorter = true; shorter;) {
         shorter = false;
-        for (std::size_t f = 0; f < fronts_.size(); ++f) {
+        for (std::size_t f = 0; f < frontiers_.size(); ++f) {
             for (const Step& step : steps_[f]) {
                 const WalkCost cost = sum(forward_[f], step.reduced);
                 if (!cheaper(cost, forward_[step.to])) continue;
@@ -190,18 +192,18 @@ void PairEnumeration::find_forward() {
     }
 }
 
-/// Drops fronts and steps that no walk below the limit passes.
-void PairEnumeration::drop_fronts() {
+/// Drops frontiers and steps that no walk below the limit passes.
+void PairEnumeration::drop_frontiers() {
     const auto is_below = [&](std::size_t from, const Exact& on, std::size_t to) {
         const WalkCost cost = sum(sum(forward_[from], on), onward_[to]);
         return cost && *cost < most_;
     };
-    std::vector<std::size_t> place(fronts_.size(), kNoArc);
+    std::vector<std::size_t> place(frontiers_.size(), kNoArc);
     std::size_t kept = 0;
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
         if (is_below(f, 0, f)) place[f] = kept++;
     }
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
         if (place[f] == kNoArc) continue;
         std::vector<Step> steps;
         for (const Step& step : steps_[f]) {
@@ -210,21 +212,21 @@ void PairEnumeration::drop_fronts() {
         }
         steps_[place[f]] = std::move(steps);
     }
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
         if (place[f] == kNoArc) continue;
-        fronts_[place[f]] = fronts_[f];
+        frontiers_[place[f]] = frontiers_[f];
         forward_[place[f]] = forward_[f];
         onward_[place[f]] = onward_[f];
     }
-    fronts_.resize(kept);
+    frontiers_.resize(kept);
     forward_.resize(kept);
     onward_.resize(kept);
     steps_.resize(kept);
 }
 
-/// Drops steps by an arc that every walk up to their front excludes.
+/// Drops steps by an arc that every walk up to their frontier excludes.
 void PairEnumeration::drop_taken_by_all() {
-    std::vector<Set> by_all(fronts_.size(), Set(words_, ~std::uint64_t{0}));
+    std::vector<Set> by_all(frontiers_.size(), Set(words_, ~std::uint64_t{0}));
     const auto narrow = [&](std::size_t f, const Set& set) {
         bool changed = false;
         for (std::size_t w = 0; w < words_; ++w) {
@@ -234,16 +236,16 @@ void PairEnumeration::drop_taken_by_all() {
         }
         return changed;
     };
-    for (const Front& front : first_fronts()) {
-        const auto at = std::ranges::lower_bound(fronts_, front);
-        if (at == fronts_.end() || *at != front) continue;
-        Set taken = taken_by_[front.moving];
-        add(taken, taken_by_[front.waiting]);
-        narrow(static_cast<std::size_t>(at - fronts_.begin()), taken);
+    for (const Frontier& frontier : first_frontiers()) {
+        const auto at = std::ranges::lower_bound(frontiers_, frontier);
+        if (at == frontiers_.end() || *at != frontier) continue;
+        Set taken = taken_by_[frontier.moving];
+        add(taken, taken_by_[frontier.waiting]);
+        narrow(static_cast<std::size_t>(at - frontiers_.begin()), taken);
     }
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t f = 0; f < fronts_.size(); ++f) {
+        for (std::size_t f = 0; f < frontiers_.size(); ++f) {
             for (const Step& step : steps_[f]) {
                 Set taken = by_all[f];
                 if (step.arc != kNoArc) add(taken, taken_by_[step.arc]);
@@ -251,18 +253,18 @@ void PairEnumeration::drop_taken_by_all() {
             }
         }
     }
-    for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (std::size_t f = 0; f < frontiers_.size(); ++f) {
         std::erase_if(steps_[f],
                       [&](const Step& step) { return step.arc != kNoArc && !fits(by_all[f], step.arc); });
     }
 }
 
 void PairEnumeration::find_wanted() {
-    wanted_.assign(fronts_.size(), Set(words_, 0));
+    wanted_.assign(frontiers_.size(), Set(words_, 0));
     const auto insert = [](Set& set, std::size_t bit) { set[bit / 64] |= std::uint64_t{1} << (bit % 64); };
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t f = fronts_.size(); f-- > 0;) {
+        for (std::size_t f = frontiers_.size(); f-- > 0;) {
             Set wanted = wanted_[f];
             for (const Step& step : steps_[f]) {
                 add(wanted, wanted_[step.to]);
@@ -285,17 +287,17 @@ PairEnumeration::Label PairEnumeration::extended(const Label& label, const Step&
 }
 
 PairEnumeration::Outcome PairEnumeration::enumerate(std::int64_t& steps_left) {
-    waiting_.assign(fronts_.size(), {});
-    for (const Front& front : first_fronts()) {
-        const auto at = std::ranges::lower_bound(fronts_, front);
-        if (at == fronts_.end() || *at != front) continue;
-        Label label{0, start_cost(front), 0, Set(words_, 0)};
-        for (const std::size_t arc : {front.moving, front.waiting}) {
+    waiting_.assign(frontiers_.size(), {});
+    for (const Frontier& frontier : first_frontiers()) {
+        const auto at = std::ranges::lower_bound(frontiers_, frontier);
+        if (at == frontiers_.end() || *at != frontier) continue;
+        Label label{0, start_cost(frontier), 0, Set(words_, 0)};
+        for (const std::size_t arc : {frontier.moving, frontier.waiting}) {
             const Exact cost =
                 scene_.end_cost[scene_.tail(graph_.arc[arc])] + scene_.edge_cost[edge_bit(arc)];
             label = extended(label, {0, arc, cost, 0});
         }
-        const auto f = static_cast<std::size_t>(at - fronts_.begin());
+        const auto f = static_cast<std::size_t>(at - frontiers_.begin());
         waiting_[f].push_back(std::move(label));
         open_.insert(f);
     }
@@ -308,33 +310,34 @@ PairEnumeration::Outcome PairEnumeration::enumerate(std::int64_t& steps_left) {
     return Outcome::none_below;
 }
 
-/// Goes on with the labels of a front that no other one dominates.
-bool PairEnumeration::settle(std::size_t front, std::int64_t& steps_left) {
-    std::vector<Label> labels = std::exchange(waiting_[front], {});
+/// Goes on with the labels of a frontier that no other one dominates.
+bool PairEnumeration::settle(std::size_t frontier, std::int64_t& steps_left) {
+    std::vector<Label> labels = std::exchange(waiting_[frontier], {});
     std::ranges::stable_sort(labels, {}, &Label::cost);
     std::vector<const Label*> kept;
     for (const Label& label : labels) {
         const auto dominates = [&](const Label* other) {
             if (other->along_heading < label.along_heading) return false;
             for (std::size_t w = 0; w < words_; ++w) {
-                if ((other->taken[w] & wanted_[front][w] & ~label.taken[w]) != 0) return false;
+                if ((other->taken[w] & wanted_[frontier][w] & ~label.taken[w]) != 0) return false;
             }
             return true;
         };
         if (--steps_left < 0) return false;
         if (std::ranges::any_of(kept, dominates)) continue;
         kept.push_back(&label);
-        expand(label, front);
+        expand(label, frontier);
     }
     return true;
 }
 
-void PairEnumeration::expand(const Label& label, std::size_t front) {
-    if (is_last(fronts_[front]) && label.along_heading >= 2) {
+void PairEnumeration::expand(const Label& label, std::size_t frontier) {
+    if (is_last(frontiers_[frontier]) && label.along_heading >= 2) {
         found_one_ =
-            found_one_ || label.cost + *bounds_.end(fronts_[front].kind, fronts_[front].moving) < limit_;
+            found_one_ ||
+            label.cost + *bounds_.end(frontiers_[frontier].kind, frontiers_[frontier].moving) < limit_;
     }
-    for (const Step& step : steps_[front]) {
+    for (const Step& step : steps_[frontier]) {
         if (!(*sum(onward_[step.to], Exact(label.reduced + step.reduced)) < most_)) continue;
         if (step.arc != kNoArc && !fits(label.taken, step.arc)) continue;
         waiting_[step.to].push_back(extended(label, step));

@@ -12,11 +12,11 @@
 
 namespace conelane {
 
-/// All pairs of legs below a limit, both legs abreast. A front is the pair of their last arcs; of the two,
+/// All pairs of legs below a limit, both legs abreast. A frontier is the pair of their last arcs; of the two,
 /// the one that stands earlier in the graph moves, and once its leg has ended the other one. So every pair is
-/// one walk from front to front. Beginnings of pairs are labels at fronts: a label is cut off by its cost
-/// with multipliers and the cheapest walk of fronts on, and dropped where another at its front costs no more
-/// and excludes nothing that this one leaves to any walk on.
+/// one walk from frontier to frontier. Beginnings of pairs are labels at frontiers: a label is cut off by its
+/// cost with multipliers and the cheapest walk of frontiers on, and dropped where another at its frontier
+/// costs no more and excludes nothing that this one leaves to any walk on.
 class PairEnumeration {
   public:
     /// Precondition: the bounds were found on the graph, and no walk gains from a cycle.
@@ -24,18 +24,18 @@ class PairEnumeration {
                     const WalkBounds& bounds, const Exact& limit);
 
     enum class Outcome { none_below, found_one, too_many_steps };
-    /// A step is a front that is extended or a label that is looked at; their number is taken off
+    /// A step is a frontier that is extended or a label that is looked at; their number is taken off
     /// `steps_left`.
     Outcome run(std::int64_t& steps_left);
 
   private:
     using Set = std::vector<std::uint64_t>;  ///< of edges and, after them, cones
-    struct Front {
+    struct Frontier {
         std::size_t moving;  ///< last arc of the leg that moves, by place in the graph
         std::size_t waiting;
         std::size_t kind;  ///< of the moving leg
         bool ended;        ///< the waiting leg has
-        auto operator<=>(const Front&) const = default;
+        auto operator<=>(const Frontier&) const = default;
     };
     struct Step {
         std::size_t to;
@@ -62,22 +62,22 @@ class PairEnumeration {
         return !contains(taken, edge_bit(place)) && !contains(taken, head_bit(place));
     }
 
-    [[nodiscard]] std::vector<Front> first_fronts() const;
-    [[nodiscard]] Exact start_cost(const Front& front) const;
+    [[nodiscard]] std::vector<Frontier> first_frontiers() const;
+    [[nodiscard]] Exact start_cost(const Frontier& frontier) const;
     template <typename Visit>
-    void for_each_step(const Front& front, const Visit& visit) const;
-    [[nodiscard]] bool is_last(const Front& front) const;
-    [[nodiscard]] bool may_be_below(const Front& front, const Exact& reduced) const;
-    bool find_fronts(std::int64_t& steps_left);
+    void for_each_step(const Frontier& frontier, const Visit& visit) const;
+    [[nodiscard]] bool is_last(const Frontier& frontier) const;
+    [[nodiscard]] bool may_be_below(const Frontier& frontier, const Exact& reduced) const;
+    bool find_frontiers(std::int64_t& steps_left);
     void find_steps();
     void find_onward();
-    void drop_fronts();
+    void drop_frontiers();
     void drop_taken_by_all();
     void find_forward();
     void find_wanted();
     Outcome enumerate(std::int64_t& steps_left);
-    bool settle(std::size_t front, std::int64_t& steps_left);
-    void expand(const Label& label, std::size_t front);
+    bool settle(std::size_t frontier, std::int64_t& steps_left);
+    void expand(const Label& label, std::size_t frontier);
     [[nodiscard]] Label extended(const Label& label, const Step& step) const;
 
     const ExactScene& scene_;
@@ -89,11 +89,11 @@ class PairEnumeration {
     std::size_t words_ = 0;
     std::vector<std::vector<WalkCost>> leg_onward_;  ///< by kind and place
     std::vector<Set> taken_by_;                      ///< by place
-    std::vector<Front> fronts_;                      ///< ascending
+    std::vector<Frontier> frontiers_;                ///< ascending
     std::vector<WalkCost> forward_;
     std::vector<WalkCost> onward_;
     std::vector<std::vector<Step>> steps_;
-    std::vector<Set> wanted_;  ///< by front: edges and cones of walks on
+    std::vector<Set> wanted_;  ///< by frontier: edges and cones of walks on
     std::vector<std::vector<Label>> waiting_;
     std::set<std::size_t> open_;
     bool found_one_ = false;

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 ordered_json to_json(const DrivableRecord& record) {
     const DrivableLane& lane = record.lane;
     ordered_json json{{"scene", record.scene},
-                      {"method", record.method},
+                      {"method", record.detector},
                       {"status", to_string(record.status)},
                       {"closed", lane.closed},
                       {"length_m", lane.length_m}};

@@ -9,10 +9,10 @@
 
 namespace conelane {
 
-/// A line of JSON: the centre line of what a method answered on a scene.
+/// A line of JSON: the centre line of what a detector answered on a scene.
 struct DrivableRecord {
     std::string scene;
-    std::string method;
+    std::string detector;
     LaneStatus status = LaneStatus::found;
     DrivableLane lane;
 };

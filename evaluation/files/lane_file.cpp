@@ -120,7 +120,7 @@ LaneRecord read_record(const JsonNode& json) {
     LaneRecord record;
     record.line = json.line();
     record.scene = json.member("scene").string();
-    record.method = json.member("method").string();
+    record.detector = json.member("method").string();
     read_answer(json, false, record);
     record.latency_ms = json.member("latency_ms").non_negative_number();
     if (const auto own = json.find("self_timed_ms")) record.self_timed_ms = own->non_negative_number();
@@ -154,7 +154,7 @@ ordered_json to_json(const std::vector<Point>& points, const std::string& key) {
 ordered_json to_json(const LaneRecord& record, const std::string& key) {
     const LaneAnswer& answer = record.answer;
     ordered_json json{{"scene", record.scene},
-                      {"method", record.method},
+                      {"method", record.detector},
                       {"status", to_string(answer.status)},
                       {"left", answer.lane.left},
                       {"right", answer.lane.right},
@@ -203,9 +203,9 @@ std::vector<LaneRecord> read_lanes(const std::filesystem::path& file) {
     for_each_json_line(file, [&](const JsonNode& json) {
         LaneRecord record = read_record(json);
         const auto [first, is_new] =
-            line_of.try_emplace({record.scene, record.method, record.nearest}, json.line());
+            line_of.try_emplace({record.scene, record.detector, record.nearest}, json.line());
         if (!is_new) {
-            json.member("scene").fail("method \"" + record.method + "\" answers scene \"" + record.scene +
+            json.member("scene").fail("method \"" + record.detector + "\" answers scene \"" + record.scene +
                                       "\" twice, first on line " + std::to_string(first->second));
         }
         records.push_back(std::move(record));

@@ -177,10 +177,10 @@ SolutionFile read_glpsol(Lines& lines, const BinaryProgram& program) {
         if (!(words >> kind) || kind == "c" || kind == "i") continue;
         if (kind == "e") return solution;
         if (kind == "s") {
-            std::string method, status;
+            std::string detector, status;
             std::size_t rows = 0, columns = 0;
             double objective = 0.0;
-            if (!(words >> method >> rows >> columns >> status) || method != "mip") {
+            if (!(words >> detector >> rows >> columns >> status) || detector != "mip") {
                 lines.fail("must be 's mip ROWS COLUMNS STATUS OBJECTIVE'");
             }
             if (columns != program.columns.size()) {

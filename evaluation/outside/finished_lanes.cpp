@@ -11,9 +11,9 @@
 
 namespace conelane {
 
-std::vector<LaneRecord> read_finished_lanes(const OutsideMethod& method,
+std::vector<LaneRecord> read_finished_lanes(const OutsideDetector& detector,
                                             std::span<const AnnotatedScene> scenes) {
-    std::vector<LaneRecord> answers = read_foreign_lanes(method.source);
+    std::vector<LaneRecord> answers = read_foreign_lanes(detector.source);
     std::unordered_map<std::string, LaneRecord*> answer_to;
     for (LaneRecord& answer : answers) answer_to.emplace(answer.scene, &answer);
     std::vector<LaneRecord> records;
@@ -24,22 +24,22 @@ std::vector<LaneRecord> read_finished_lanes(const OutsideMethod& method,
         const auto found = answer_to.find(scene.id);
         if (found == answer_to.end()) {
             ++missing;
-            records.push_back({scene.id, method.name, {}, OutsideLimits{}.answer_ms, {}});
+            records.push_back({scene.id, detector.name, {}, OutsideLimits{}.answer_ms, {}});
             records.back().answer.status = LaneStatus::error;
             records.back().answer.message = "the lanes file has no answer to this scene";
             continue;
         }
         LaneRecord& record = *found->second;
         if (const std::string fault = fault_of(record, scene); !fault.empty())
-            throw InputError(method.source, record.line, "", fault);
+            throw InputError(detector.source, record.line, "", fault);
         if (const std::string tangle = tangle_of(record, scene); !tangle.empty())
-            throw InputError(method.source, record.line, "", tangle);
+            throw InputError(detector.source, record.line, "", tangle);
         snap_to_cones(record, scene);
-        record.method = method.name;
+        record.detector = detector.name;
         record.latency_ms = record.self_timed_ms.value_or(0.0);
         records.push_back(std::move(record));
     }
-    if (missing == scenes.size()) throw InputError(method.source, 0, "scene", "answers none of the scenes");
+    if (missing == scenes.size()) throw InputError(detector.source, 0, "scene", "answers none of the scenes");
     return records;
 }
 

@@ -94,7 +94,7 @@ OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms)
             if (attempt.fault.empty()) {
                 snap_to_cones(record, scene);
                 record.scene = scene.id;
-                record.method = name_;
+                record.detector = name_;
                 attempt.record = std::move(record);
                 return attempt;
             }

@@ -70,8 +70,8 @@ void conclude_without_point(Status status, std::optional<double> cutoff, RldRepo
 
 }  // namespace
 
-OutsideSolver::OutsideSolver(const OutsideMethod& method, const OutsideSolverOptions& options)
-    : program_(method.source, options.patience), options_(options), model_(options.formulation) {}
+OutsideSolver::OutsideSolver(const OutsideDetector& detector, const OutsideSolverOptions& options)
+    : program_(detector.source, options.patience), options_(options), model_(options.formulation) {}
 
 void OutsideSolver::run(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
                         RldReport& report) {
@@ -182,12 +182,13 @@ std::optional<OutsideSolverText> parse_outside_solver(std::string_view text) {
     if (!text.starts_with(kProgram)) return std::nullopt;
     const std::size_t equals = std::min(text.find('='), text.size());
     const std::size_t slash = text.substr(0, equals).find('/');
-    if (slash == std::string_view::npos) return OutsideSolverText{*parse_outside_method(text), std::nullopt};
+    if (slash == std::string_view::npos)
+        return OutsideSolverText{*parse_outside_detector(text), std::nullopt};
     const std::string_view name = text.substr(slash + 1, equals - slash - 1);
     for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
         if (to_string(formulation) != name) continue;
         const std::string without = std::string(text.substr(0, slash)) + std::string(text.substr(equals));
-        return OutsideSolverText{*parse_outside_method(without), formulation};
+        return OutsideSolverText{*parse_outside_detector(without), formulation};
     }
     throw InvalidInput("solver", fmt::format("there is no formulation '{}': tight or paper", name));
 }

@@ -2,7 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "conelane/rld_solver.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/solver_program.hpp"
 #include "model/lane_graph_model.hpp"
 
@@ -29,8 +29,8 @@ struct OutsideSolverOptions {
 /// refute, a wrong optimum, is for the comparison to find.
 class OutsideSolver : public RldSolver {
   public:
-    /// Precondition: the method is a program. Throws as SolverProgram does.
-    OutsideSolver(const OutsideMethod& method, const OutsideSolverOptions& options);
+    /// Precondition: the detector is a program. Throws as SolverProgram does.
+    OutsideSolver(const OutsideDetector& detector, const OutsideSolverOptions& options);
 
     [[nodiscard]] EdgeExtent extent() const override { return parts(options_.formulation).extent; }
 
@@ -61,11 +61,11 @@ class OutsideSolver : public RldSolver {
     LaneGraphModel model_;
 };
 
-/// The method and the formulation that `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND` names; nothing
-/// where the text does not begin with `exec:`. Throws as parse_outside_method does, InvalidInput too where
-/// there is no such formulation.
+/// The detector and the formulation that `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND` names;
+/// nothing where the text does not begin with `exec:`. Throws as parse_outside_detector does, InvalidInput
+/// too where there is no such formulation.
 struct OutsideSolverText {
-    OutsideMethod method;
+    OutsideDetector detector;
     std::optional<Formulation> formulation;
 };
 [[nodiscard]] std::optional<OutsideSolverText> parse_outside_solver(std::string_view text);

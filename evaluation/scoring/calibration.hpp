@@ -6,7 +6,8 @@
 
 namespace conelane {
 
-/// How far what a method says of its own lanes holds. Shares are in [0, 1], and absent where nothing counts.
+/// How far what a detector says of its own lanes holds. Shares are in [0, 1], and absent where nothing
+/// counts.
 class Calibration {
   public:
     static constexpr std::size_t kBins = 10;

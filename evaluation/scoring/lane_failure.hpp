@@ -39,7 +39,7 @@ inline constexpr double kAtStart_m = 2.0;
 /// at: where they diverge the cause is wrong_start below kAtStart_m and leaves_path from there on, else
 /// stopped_early.
 enum class LaneFailure {
-    error,          ///< the method failed, or the checker rejected what it found
+    error,          ///< the detector failed, or the checker rejected what it found
     nothing_found,  ///< no lane
     wrong_start,
     wrong_leg,

@@ -69,10 +69,10 @@ struct EnumerationScore {
 };
 
 /// The measures of one answer. All IoU, lengths and categories refer to the ground truth of all that is
-/// visible, accuracy to that of the method's own cone set.
+/// visible, accuracy to that of the detector's own cone set.
 struct SceneScore {
     Category category = Category::none;
-    bool error = false;  ///< the method failed, or the checker rejected what it found
+    bool error = false;  ///< the detector failed, or the checker rejected what it found
     /// 0 where there is no lane; absent where the ground truth or the answer has no boundaries.
     std::optional<double> iou;
     double lane_length_m = 0.0;
@@ -88,10 +88,10 @@ struct SceneScore {
     /// Against the ground truth's centre line; absent where the lane is not usable or was not held against
     /// it.
     std::optional<CentreLineError> centre_line_error;
-    // What the method says of its lane; absent where it found none or does not say.
+    // What the detector says of its lane; absent where it found none or does not say.
     std::optional<double> confidence;
     std::optional<double> trusted_m;
-    bool trained_on = false;  ///< the method has learned from the course
+    bool trained_on = false;  ///< the detector has learned from the course
     /// Whether the centre line agrees with that of the pose before; absent at the first pose of a lap.
     std::optional<bool> steady;
 
@@ -111,7 +111,7 @@ struct SceneScore {
 /// driven path shows at least kMinDriven_m of the way ahead (see driven_path.hpp).
 [[nodiscard]] bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries = nullptr);
 
-/// Scores one answer by both papers' measures. `nearest`: the method saw only that many cones ahead, and
+/// Scores one answer by both papers' measures. `nearest`: the detector saw only that many cones ahead, and
 /// accuracy is held against the ground truth of those. `boundaries`: of the scene's track; without them
 /// divergence is unknown, no category is diverging and such lanes fall to too_short and near_ground_truth.
 ///
@@ -144,7 +144,7 @@ struct SceneScore {
 /// absent.
 struct ScoreSummary {
     std::size_t scenes = 0;
-    std::size_t errors = 0;                               ///< scenes on which the method failed
+    std::size_t errors = 0;                               ///< scenes on which the detector failed
     std::size_t trained_on = 0;                           ///< scenes of courses it has learned from
     std::size_t divergence_unknown = 0;                   ///< scenes scored without annotated boundaries
     std::array<double, kCategoryCount> category_share{};  ///< indexed by Category
@@ -158,7 +158,7 @@ struct ScoreSummary {
     std::optional<double> unsteady_share;      ///< of the poses that have one before them in their lap
     std::size_t accuracy_scenes = 0;           ///< scenes whose cone set holds a ground truth
     std::optional<double> accurate_share;      ///< of accuracy_scenes
-    Calibration calibration;  ///< of the lanes that their method says something of, divergence known
+    Calibration calibration;  ///< of the lanes that their detector says something of, divergence known
     std::optional<double> solved_share;
     std::optional<double> complete_share;
     std::optional<double> best_candidate_mean_iou;

@@ -18,7 +18,7 @@ namespace {
 
 struct Column {
     enum Index : std::size_t {
-        method,
+        detector,
         condition,
         rate,
         range,
@@ -73,7 +73,7 @@ Line empty_line() {
 Line line_of(const ScoreRow& row) {
     const ScoreSummary& summary = row.summary;
     Line line = empty_line();
-    line[Column::method] = row.key.method_label();
+    line[Column::detector] = row.key.detector_label();
     if (!row.key.condition.empty()) line[Column::condition] = row.key.condition;
     line[Column::rate] = percent(row.key.false_positive_rate);
     line[Column::range] = number(row.key.range_m, 0);
@@ -122,7 +122,7 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
     for (const PublishedClcRow& row : kPublishedClc) {
         if (any_rate && !has_rate(rows, row.false_positive_rate)) continue;
         Line line = empty_line();
-        line[Column::method] = "CLC paper";
+        line[Column::detector] = "CLC paper";
         line[Column::rate] = percent(row.false_positive_rate);
         line[Column::range] = "30+50";
         line[Column::ground_truth] = number(row.ground_truth, 1);
@@ -139,14 +139,14 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
     }
     for (const PublishedRldRow& row : kPublishedRld) {
         Line line = empty_line();
-        line[Column::method] = fmt::format("RLD paper {}", row.printed_ratio);
+        line[Column::detector] = fmt::format("RLD paper {}", row.printed_ratio);
         line[Column::rate] = percent(row.false_positive_rate);
         line[Column::accurate] =
             (row.upper_bound ? ">" : "") + number(100.0 - row.inaccurate, row.upper_bound ? 0 : 2);
         lines.push_back(line);
     }
     Line timing = empty_line();
-    timing[Column::method] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
+    timing[Column::detector] = fmt::format("RLD paper n={}", kPublishedRldConeSet);
     timing[Column::solved] = number(kPublishedRldSolved, 2);
     timing[Column::mean] = number(kPublishedRldMean_ms, 2);
     timing[Column::p95] = number(kPublishedRldP95_ms, 2);
@@ -157,14 +157,14 @@ std::vector<Line> published_lines(std::span<const ScoreRow> rows) {
 }  // namespace
 
 std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores) {
-    std::map<std::string, std::size_t> method_rank;
+    std::map<std::string, std::size_t> detector_rank;
     std::map<std::string, std::size_t> condition_rank;
     using Order = std::tuple<std::size_t, std::size_t, std::optional<double>, std::optional<double>>;
     std::map<Order, std::vector<SceneScore>> groups;
     std::map<Order, ScoreKey> keys;
     for (const KeyedScore& keyed : scores) {
         const std::size_t rank =
-            method_rank.emplace(keyed.key.method_label(), method_rank.size()).first->second;
+            detector_rank.emplace(keyed.key.detector_label(), detector_rank.size()).first->second;
         const std::size_t condition =
             condition_rank.emplace(keyed.key.condition, condition_rank.size()).first->second;
         const Order order{rank, condition, keyed.key.false_positive_rate, keyed.key.range_m};
@@ -196,7 +196,7 @@ std::string score_table(std::span<const ScoreRow> rows) {
         std::ranges::any_of(rows, [](const ScoreRow& row) { return !row.key.condition.empty(); });
     std::string table;
     const auto write = [&](const Line& line) {
-        table += fmt::format("{:<{}}", line[Column::method], widths[Column::method]);
+        table += fmt::format("{:<{}}", line[Column::detector], widths[Column::detector]);
         for (std::size_t i = 1; i < line.size(); ++i) {
             if (i == Column::condition && !is_condition_named) continue;
             table += fmt::format("  {:>{}}", line[i], widths[i]);
@@ -218,8 +218,8 @@ std::string score_table(std::span<const ScoreRow> rows) {
     return table;
 }
 
-std::string ScoreKey::method_label() const {
-    return nearest ? fmt::format("{} n={}", method, *nearest) : method;
+std::string ScoreKey::detector_label() const {
+    return nearest ? fmt::format("{} n={}", detector, *nearest) : detector;
 }
 
 namespace {
@@ -251,7 +251,7 @@ std::string summary_json(const ScoreRow& row) {
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) json[key] = *value;
     };
-    json["method"] = row.key.method;
+    json["method"] = row.key.detector;
     put_if_known("nearest", row.key.nearest);
     if (!row.key.condition.empty()) json["condition"] = row.key.condition;
     put_if_known("false_positive_rate", row.key.false_positive_rate);
@@ -287,7 +287,7 @@ std::string summary_json(const ScoreRow& row) {
                           {"max", latency.max_ms},
                           {"shifted_geometric_mean", latency.shifted_geometric_mean_ms}};
     json["within_budget_share"] = latency.share_within_budget;
-    // A method name from a file may hold bytes that are not UTF-8.
+    // A detector name from a file may hold bytes that are not UTF-8.
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -12,14 +12,14 @@ namespace conelane {
 
 /// What a row of a score table is about.
 struct ScoreKey {
-    std::string method;
+    std::string detector;
     std::optional<double> false_positive_rate;  ///< absent where the scenes state none
     std::optional<double> range_m;              ///< absent where the scenes state none
-    std::optional<std::size_t> nearest = {};    ///< cone-set size; absent where the method saw all cones
+    std::optional<std::size_t> nearest = {};    ///< cone-set size; absent where the detector saw all cones
     std::string condition = {};                 ///< empty where the scenes name none
 
-    /// As tables show the method: "rld-cbc n=12".
-    [[nodiscard]] std::string method_label() const;
+    /// As tables show the detector: "rld-cbc n=12".
+    [[nodiscard]] std::string detector_label() const;
     bool operator==(const ScoreKey&) const = default;
 };
 
@@ -34,7 +34,7 @@ struct ScoreRow {
     ScoreSummary summary;
 };
 
-/// A row for each key: methods in the order in which they first appear, within a method by condition,
+/// A row for each key: detectors in the order in which they first appear, within a detector by condition,
 /// rate and range, absent ones first; conditions in the order in which they first appear.
 [[nodiscard]] std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores);
 

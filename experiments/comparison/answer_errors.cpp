@@ -6,16 +6,17 @@
 
 namespace conelane::experiments {
 
-AnswerErrors::Count& AnswerErrors::count_of(std::string_view method) {
-    const auto known = std::ranges::find(counts_, method, &Count::method);
+AnswerErrors::Count& AnswerErrors::count_of(std::string_view detector) {
+    const auto known = std::ranges::find(counts_, detector, &Count::detector);
     if (known != counts_.end()) return *known;
     Count& count = counts_.emplace_back();
-    count.method = method;
+    count.detector = detector;
     return count;
 }
 
-void AnswerErrors::add_error(std::string_view method, const std::string& scene, const std::string& message) {
-    Count& count = count_of(method);
+void AnswerErrors::add_error(std::string_view detector, const std::string& scene,
+                             const std::string& message) {
+    Count& count = count_of(detector);
     ++count.answers;
     if (++count.errors == 1) count.first = scene + ": " + message;
 }
@@ -24,7 +25,7 @@ std::vector<std::string> AnswerErrors::lines() const {
     std::vector<std::string> lines;
     for (const Count& count : counts_) {
         if (count.errors == 0) continue;
-        std::string line = fmt::format("{}: {} of {} answers are errors, the first to {}", count.method,
+        std::string line = fmt::format("{}: {} of {} answers are errors, the first to {}", count.detector,
                                        count.errors, count.answers, count.first);
         // A message may hold what a program from outside said.
         std::ranges::replace_if(
@@ -40,12 +41,12 @@ bool AnswerErrors::any_answered_nothing() const {
 }
 
 void add_answer_of(AnswerErrors& errors, const LaneRecord& record) {
-    const std::string method =
-        record.nearest ? fmt::format("{} n={}", record.method, *record.nearest) : record.method;
+    const std::string detector =
+        record.nearest ? fmt::format("{} n={}", record.detector, *record.nearest) : record.detector;
     if (record.answer.status == LaneStatus::error) {
-        errors.add_error(method, record.scene, record.answer.message);
+        errors.add_error(detector, record.scene, record.answer.message);
     } else {
-        errors.add_answer(method);
+        errors.add_answer(detector);
     }
 }
 

@@ -9,29 +9,29 @@
 
 namespace conelane::experiments {
 
-/// Answers of status error, by the method or solver that gave them.
+/// Answers of status error, by the detector or solver that gave them.
 class AnswerErrors {
   public:
-    void add_answer(std::string_view method) { ++count_of(method).answers; }
-    void add_error(std::string_view method, const std::string& scene, const std::string& message);
+    void add_answer(std::string_view detector) { ++count_of(detector).answers; }
+    void add_error(std::string_view detector, const std::string& scene, const std::string& message);
 
-    /// One line for each method with errors: how many, and what the first of them was.
+    /// One line for each detector with errors: how many, and what the first of them was.
     [[nodiscard]] std::vector<std::string> lines() const;
-    /// Whether there is a method all of whose answers are errors.
+    /// Whether there is a detector all of whose answers are errors.
     [[nodiscard]] bool any_answered_nothing() const;
 
   private:
     struct Count {
-        std::string method;
+        std::string detector;
         std::size_t answers = 0;  ///< errors among them
         std::size_t errors = 0;
         std::string first;
     };
-    Count& count_of(std::string_view method);
-    std::vector<Count> counts_;  ///< in the order in which the methods are met
+    Count& count_of(std::string_view detector);
+    std::vector<Count> counts_;  ///< in the order in which the detectors are met
 };
 
-/// Counts a lane, or an error where that is what its method answered.
+/// Counts a lane, or an error where that is what its detector answered.
 void add_answer_of(AnswerErrors& errors, const LaneRecord& record);
 
 }  // namespace conelane::experiments

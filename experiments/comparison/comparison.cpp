@@ -29,44 +29,44 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 
-MethodMaker maker_of(const Entrant& entrant, const RunOptions& options) {
-    if (entrant.maker) return entrant.maker(options);
-    if (entrant.outside) return maker_of_program(entrant.method, entrant.outside->source, options);
-    const Method& method = find_method(entrant.method);
+DetectorMaker maker_of(const ComparedDetector& compared, const RunOptions& options) {
+    if (compared.maker) return compared.maker(options);
+    if (compared.outside) return maker_of_program(compared.name, compared.outside->source, options);
+    const KnownDetector& detector = find_detector(compared.name);
     RunOptions used = options;
-    used.method = options_used_by(method, options.method);
-    return maker_of(method, used);
+    used.detector = options_used_by(detector, options.detector);
+    return maker_of(detector, used);
 }
 
-/// Runs an entrant on the scenes that its lanes file does not answer yet.
-void answer_scenes(const Entrant& entrant, std::span<const AnnotatedScene> scenes, RunOptions options,
-                   const fs::path& file) {
+/// Runs a detector on the scenes that its lanes file does not answer yet.
+void answer_scenes(const ComparedDetector& compared, std::span<const AnnotatedScene> scenes,
+                   RunOptions options, const fs::path& file) {
     if (fs::exists(file)) return;
-    options.method.nearest = entrant.nearest;
+    options.detector.nearest = compared.nearest;
     LaneLog log(file);
     const std::vector<std::size_t> starts = lap_starts(scenes);
     // A lap that was broken off is driven again: a detector with state must see it from its beginning.
     const std::size_t stored = std::min(log.stored(), scenes.size());
     const std::size_t done = *std::prev(std::ranges::upper_bound(starts, stored));
     log.keep(done);
-    run(entrant.method, maker_of(entrant, options), scenes.subspan(done), options,
+    run(compared.name, maker_of(compared, options), scenes.subspan(done), options,
         [&](std::span<const LaneRecord> lap) { log.append(lap); });
     log.finish();
 }
 
-/// The answers of the lanes files among the entrants, by name. Read before anything is written: a file that
+/// The answers of the lanes files among the detectors, by name. Read before anything is written: a file that
 /// is wrong must not stop a run that has begun.
 std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOptions& options,
                                                               std::span<const AnnotatedScene> scenes,
                                                               const fs::path& directory) {
     std::map<std::string, std::vector<LaneRecord>> lanes;
-    for (const Entrant& entrant : options.entrants) {
-        if (!entrant.outside || entrant.outside->is_program()) continue;
-        const fs::path file = entrant.outside->source;
+    for (const ComparedDetector& compared : options.detectors) {
+        if (!compared.outside || compared.outside->is_program()) continue;
+        const fs::path file = compared.outside->source;
         std::error_code ignored;
         if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))
             throw InputError(file, 0, "", "lies in the directory of the results, which are written there");
-        lanes.emplace(entrant.method, read_finished_lanes(*entrant.outside, scenes));
+        lanes.emplace(compared.name, read_finished_lanes(*compared.outside, scenes));
     }
     return lanes;
 }
@@ -86,11 +86,11 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
                                   const std::string& run_record) {
     std::vector<std::vector<LaneRecord>> records;  // scored records refer to them
     records.reserve(lanes_files.size());
-    const OutsideMethods outside{outside_methods_of_record(run_record),
-                                 read_echo_floor(directory / kEchoFloorFile)};
+    const OutsideDetectors outside{outside_detectors_of_record(run_record),
+                                   read_echo_floor(directory / kEchoFloorFile)};
     const bool is_cross_validated = nlohmann::json::parse(run_record).contains("cross_validation");
-    RecordScorer scorer(set.scenes, set.tracks, [&](const std::string& method) {
-        return outside.courses_of(method, is_cross_validated);
+    RecordScorer scorer(set.scenes, set.tracks, [&](const std::string& detector) {
+        return outside.courses_of(detector, is_cross_validated);
     });
     std::vector<ScoredRecord> scored;
     for (const std::string& name : lanes_files) {
@@ -112,14 +112,15 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
 }
 
 ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
-    std::set<std::string> lanes_of_entrants;
+    std::set<std::string> lanes_files_seen;
     bool any_program = false;
-    for (const Entrant& entrant : options.entrants) {
-        if (!entrant.outside) (void)find_method(entrant.method);
-        any_program = any_program || (entrant.outside && entrant.outside->is_program());
-        if (lanes_of_entrants.insert(entrant.lanes_file()).second) continue;
-        const std::string cones = entrant.nearest ? " of " + std::to_string(*entrant.nearest) + " cones" : "";
-        throw InvalidInput("method", "'" + entrant.method + "'" + cones + " is named twice");
+    for (const ComparedDetector& compared : options.detectors) {
+        if (!compared.outside) (void)find_detector(compared.name);
+        any_program = any_program || (compared.outside && compared.outside->is_program());
+        if (lanes_files_seen.insert(compared.lanes_file()).second) continue;
+        const std::string cones =
+            compared.nearest ? " of " + std::to_string(*compared.nearest) + " cones" : "";
+        throw InvalidInput("method", "'" + compared.name + "'" + cones + " is named twice");
     }
     const std::string record = run_record(options);
     LeftOutScenes left_out;
@@ -133,14 +134,14 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     if (options.prepare) options.prepare();
     std::vector<std::string> lanes_files;
-    for (const Entrant& entrant : options.entrants) {
-        lanes_files.push_back(entrant.lanes_file());
+    for (const ComparedDetector& compared : options.detectors) {
+        lanes_files.push_back(compared.lanes_file());
         const fs::path file = directory / lanes_files.back();
-        const auto lanes = finished.find(entrant.method);
+        const auto lanes = finished.find(compared.name);
         if (lanes != finished.end()) {
             write_lanes(file, lanes->second);
         } else {
-            answer_scenes(entrant, set.scenes, options.run, file);
+            answer_scenes(compared, set.scenes, options.run, file);
         }
     }
     const fs::path echo_file = directory / kEchoFloorFile;

@@ -16,15 +16,15 @@ struct ComparisonOutcome {
     AnswerErrors errors;
 };
 
-/// The main job. Every entrant on the same scenes, scored in the same way, everything on file in the
+/// The main job. Every detector on the same scenes, scored in the same way, everything on file in the
 /// directory:
 ///   run.json                                 what the run depends on
-///   scenes.scenes.jsonl    what the methods saw
+///   scenes.scenes.jsonl    what the detectors saw
 ///   scenes.tracks.json     the boundaries they are scored against
 ///   METHOD.lanes.jsonl     what they answered; METHOD.lanes.jsonl.part until it is whole
 ///   echo_floor.json                          what an echo program takes, where a program from outside ran
-///   scores.jsonl           a line per scene and method
-///   results.jsonl          a line per method, rate and range, with provenance
+///   scores.jsonl           a line per scene and detector
+///   results.jsonl          a line per detector, rate and range, with provenance
 ///   table.txt              the same for reading
 ///
 /// A run that was stopped goes on after its last whole lap. Throws InputError or

@@ -10,8 +10,8 @@
 
 namespace conelane::experiments {
 
-/// A lanes file that grows while a method runs. Until it is whole it bears the name FILE.part; a run that was
-/// stopped finds there what it had answered.
+/// A lanes file that grows while a detector runs. Until it is whole it bears the name FILE.part; a run that
+/// was stopped finds there what it had answered.
 class LaneLog {
   public:
     /// Opens FILE.part, and drops an unfinished last line. Throws InputError.

@@ -113,10 +113,10 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
     const FolderLock lock = open_run(directory, run.record.dump(), overwrite);
     write_scene_set(directory / "scenes.scenes.jsonl", set, left_out);
     std::vector<std::string> lanes_files;
-    for (const ordered_json& method : run.record.at("methods")) {
-        Entrant entrant{method.at("name").get<std::string>()};
-        if (method.contains("nearest")) entrant.nearest = method["nearest"].get<std::size_t>();
-        lanes_files.push_back(entrant.lanes_file());
+    for (const ordered_json& detector : run.record.at("methods")) {
+        ComparedDetector compared{detector.at("name").get<std::string>()};
+        if (detector.contains("nearest")) compared.nearest = detector["nearest"].get<std::size_t>();
+        lanes_files.push_back(compared.lanes_file());
         std::vector<std::vector<LaneRecord>> lanes;
         for (const fs::path& shard : run.directories) lanes.push_back(read_lanes(shard / lanes_files.back()));
         for (std::size_t part = 0; part < lanes.size(); ++part) {

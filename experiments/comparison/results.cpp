@@ -4,8 +4,8 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scoring/statistics.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
-#include "experiments/comparison/training_courses.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -21,12 +21,12 @@ namespace conelane::experiments {
 namespace {
 
 ScoreKey key_of(const AnnotatedScene& scene, const LaneRecord& record) {
-    return {record.method, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
+    return {record.detector, scene.false_positive_rate, scene.range_m, record.nearest, scene.condition};
 }
 
 nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     const auto& [scene, record, score, failure] = scored;
-    nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->method}};
+    nlohmann::ordered_json line{{"scene", record->scene}, {"method", record->detector}};
     const auto put_if_known = [&](const char* key, const auto& value) {
         if (value) line[key] = *value;
     };
@@ -82,7 +82,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     return line;
 }
 
-/// What the methods themselves say that they took, of the records that `is_meant` picks.
+/// What the detectors themselves say that they took, of the records that `is_meant` picks.
 template <typename IsMeant>
 std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
     std::vector<double> times_ms;
@@ -97,23 +97,23 @@ nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
     return {{"median", median(times_ms)}, {"p95", quantile(times_ms, 0.95)}};
 }
 
-nlohmann::ordered_json outside_part(const OutsideMethod& method, const std::vector<double>& own_ms,
+nlohmann::ordered_json outside_part(const OutsideDetector& detector, const std::vector<double>& own_ms,
                                     const EchoFloor& echo) {
-    nlohmann::ordered_json part{{"outside", method.is_program() ? "exec" : "lanes"}};
+    nlohmann::ordered_json part{{"outside", detector.is_program() ? "exec" : "lanes"}};
     if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
-    if (method.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
-    const auto described = nlohmann::ordered_json::parse(outside_method_json(method));
+    if (detector.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
+    const auto described = nlohmann::ordered_json::parse(outside_detector_json(detector));
     if (described.contains("card")) part["card"] = described["card"];
     return part;
 }
 
 /// How many answers are errors, and the first of them; empty where none is.
-std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& method) {
+std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& detector) {
     std::size_t answers = 0;
     std::size_t errors = 0;
     std::string first;
     for (const ScoredRecord& record : scored) {
-        if (record.record->method != method) continue;
+        if (record.record->detector != detector) continue;
         ++answers;
         if (record.record->answer.status != LaneStatus::error) continue;
         if (++errors == 1) first = record.record->scene + ": " + record.record->answer.message;
@@ -128,9 +128,10 @@ double travel_m(const AnnotatedScene& from, const AnnotatedScene& to) {
 
 }  // namespace
 
-std::set<std::string> OutsideMethods::courses_of(const std::string& method, bool cross_validated) const {
-    const auto outside = std::ranges::find(methods, method, &OutsideMethod::name);
-    if (outside == methods.end()) return cross_validated ? std::set<std::string>{} : training_courses(method);
+std::set<std::string> OutsideDetectors::courses_of(const std::string& detector, bool cross_validated) const {
+    const auto outside = std::ranges::find(detectors, detector, &OutsideDetector::name);
+    if (outside == detectors.end())
+        return cross_validated ? std::set<std::string>{} : training_courses(detector);
     if (!outside->card || !outside->card->training_courses) return {};
     return {outside->card->training_courses->begin(), outside->card->training_courses->end()};
 }
@@ -190,11 +191,11 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
                                               const std::filesystem::path& lanes_file) {
     std::vector<const Truth*> truths;
     truths.reserve(records.size());
-    std::map<std::string, std::size_t> answered;  // by method and cone-set size
+    std::map<std::string, std::size_t> answered;  // by detector and cone-set size
     std::set<std::string> optimising;             // of these, those that state an objective
     for (const LaneRecord& record : records) {
         truths.push_back(&truth_of(record, lanes_file));
-        const std::string label = key_of(*truths.back()->scene, record).method_label();
+        const std::string label = key_of(*truths.back()->scene, record).detector_label();
         ++answered[label];
         if (record.answer.optimality) optimising.insert(label);
     }
@@ -211,23 +212,24 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
                 InputError(lanes_file, records[i].line, invalid.key(), invalid.what()));
         }
     });
-    std::map<std::string, std::set<std::string>> courses;  // by method
+    std::map<std::string, std::set<std::string>> courses;  // by detector
     for (const LaneRecord& record : records) {
-        if (!courses.contains(record.method)) courses.emplace(record.method, courses_of_(record.method));
+        if (!courses.contains(record.detector))
+            courses.emplace(record.detector, courses_of_(record.detector));
     }
     std::vector<ScoredRecord> scored;
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (failures[i]) std::rethrow_exception(failures[i]);
         if (!truths[i]->counts) continue;
-        if (i > 0 && truths[i - 1]->counts && records[i].method == records[i - 1].method &&
+        if (i > 0 && truths[i - 1]->counts && records[i].detector == records[i - 1].detector &&
             records[i].nearest == records[i - 1].nearest &&
             same_lap(*truths[i - 1]->scene, *truths[i]->scene) &&
             travel_m(*truths[i - 1]->scene, *truths[i]->scene) < kCentreLineLength_m) {
             all[i].score.steady = is_steady(lines[i - 1], lines[i]);
         }
-        all[i].score.trained_on = courses.at(records[i].method).contains(truths[i]->scene->track);
+        all[i].score.trained_on = courses.at(records[i].detector).contains(truths[i]->scene->track);
         if (records[i].answer.status == LaneStatus::none &&
-            optimising.contains(key_of(*truths[i]->scene, records[i]).method_label())) {
+            optimising.contains(key_of(*truths[i]->scene, records[i]).detector_label())) {
             all[i].score.solved_to_optimality = records[i].latency_ms <= kRldTimeLimit_ms;
         }
         scored.push_back(std::move(all[i]));
@@ -255,16 +257,16 @@ void write_scores(std::ostream& output, std::span<const ScoredRecord> scored) {
 }
 
 void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
-                   const OutsideMethods& outside, const std::string& run) {
+                   const OutsideDetectors& outside, const std::string& run) {
     const Provenance origin = provenance();
     for (const ScoreRow& row : rows) {
         nlohmann::ordered_json line = nlohmann::ordered_json::parse(summary_json(row));
-        const auto method = std::ranges::find(outside.methods, row.key.method, &OutsideMethod::name);
-        if (method != outside.methods.end()) {
+        const auto detector = std::ranges::find(outside.detectors, row.key.detector, &OutsideDetector::name);
+        if (detector != outside.detectors.end()) {
             const auto is_of_row = [&](const ScoredRecord& record) {
                 return key_of(*record.scene, *record.record) == row.key;
             };
-            line.update(outside_part(*method, self_times_ms(scored, is_of_row), outside.echo));
+            line.update(outside_part(*detector, self_times_ms(scored, is_of_row), outside.echo));
         }
         line["commit"] = origin.commit;
         line["compiler"] = origin.compiler;
@@ -274,16 +276,16 @@ void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::sp
     }
 }
 
-std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside) {
-    if (outside.methods.empty()) return "";
+std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideDetectors& outside) {
+    if (outside.detectors.empty()) return "";
     std::string notes = "methods from outside\n";
-    for (const OutsideMethod& method : outside.methods) {
-        const auto is_of_method = [&](const ScoredRecord& record) {
-            return record.record->method == method.name;
+    for (const OutsideDetector& detector : outside.detectors) {
+        const auto is_of_detector = [&](const ScoredRecord& record) {
+            return record.record->detector == detector.name;
         };
-        const std::vector<double> own_ms = self_times_ms(scored, is_of_method);
-        notes += "  " + method.name + ": ";
-        if (method.is_program()) {
+        const std::vector<double> own_ms = self_times_ms(scored, is_of_detector);
+        notes += "  " + detector.name + ": ";
+        if (detector.is_program()) {
             notes += "latency is the round trip of a scene and its answer; ";
             notes += outside.echo.empty()
                          ? "that of an echo program is unknown"
@@ -297,8 +299,8 @@ std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMet
             notes += "latency is self-timed, as the lanes file says";
         }
         notes += '\n';
-        if (method.card) notes += "    " + method.card->summary() + '\n';
-        notes += note_on_errors(scored, method.name);
+        if (detector.card) notes += "    " + detector.card->summary() + '\n';
+        notes += note_on_errors(scored, detector.name);
     }
     return notes;
 }

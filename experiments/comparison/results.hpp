@@ -1,7 +1,7 @@
 #pragma once
 
 #include "evaluation/files/lane_file.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scoring/centre_line_error.hpp"
 #include "evaluation/scoring/lane_failure.hpp"
@@ -30,20 +30,20 @@ struct ScoredRecord {
     std::optional<LaneFailure> failure = {};  ///< why the lane is not usable
 };
 
-/// Scores records against the scenes of one set. What all methods are held against is made once.
+/// Scores records against the scenes of one set. What all detectors are held against is made once.
 class RecordScorer {
   public:
-    /// The courses that a method has learned from.
-    using CoursesOf = std::function<std::set<std::string>(const std::string& method)>;
+    /// The courses that a detector has learned from.
+    using CoursesOf = std::function<std::set<std::string>(const std::string& detector)>;
 
     /// Scenes and tracks must outlive it.
     RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
                  CoursesOf courses_of);
 
     /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
-    /// records of one method and cone-set size must cover every scene once; a scene that does not count is
-    /// left out. A lane is held steady against the record before where that is of the same method and lap.
-    /// Where a method states the objective of its lanes, its status none is a proof and counts as solved.
+    /// records of one detector and cone-set size must cover every scene once; a scene that does not count is
+    /// left out. A lane is held steady against the record before where that is of the same detector and lap.
+    /// Where a detector states the objective of its lanes, its status none is a proof and counts as solved.
     /// `lanes_file` is named in errors; of several the first one is thrown. Throws InputError.
     [[nodiscard]] std::vector<ScoredRecord> score(std::span<const LaneRecord> records,
                                                   const std::filesystem::path& lanes_file);
@@ -64,31 +64,32 @@ class RecordScorer {
     std::unordered_map<std::string, Truth> truth_of_;  // for look-up only
 };
 
-/// A row for each method, cone-set size, condition, rate and range.
+/// A row for each detector, cone-set size, condition, rate and range.
 [[nodiscard]] std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored);
 
 /// Writes a line per record with every measure of it.
 void write_scores(std::ostream& output, std::span<const ScoredRecord> scored);
 
-/// The methods from outside among those scored, and what an echo program takes.
-struct OutsideMethods {
-    std::vector<OutsideMethod> methods;
+/// The detectors from outside among those scored, and what an echo program takes.
+struct OutsideDetectors {
+    std::vector<OutsideDetector> detectors;
     EchoFloor echo;
 
-    /// The courses that a method has learned from: those of its card where it is one of these, none where it
-    /// was `cross_validated`, else those of training_courses.
-    [[nodiscard]] std::set<std::string> courses_of(const std::string& method, bool cross_validated) const;
+    /// The courses that a detector has learned from: those of its card where it is one of these, none where
+    /// it was `cross_validated`, else those of training_courses.
+    [[nodiscard]] std::set<std::string> courses_of(const std::string& detector, bool cross_validated) const;
 };
 
-/// Writes a line per row: the summary, of a method from outside also `outside` (exec or lanes),
+/// Writes a line per row: the summary, of a detector from outside also `outside` (exec or lanes),
 /// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
 /// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
 /// seed).
 void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
-                   const OutsideMethods& outside, const std::string& run);
+                   const OutsideDetectors& outside, const std::string& run);
 
-/// What a table says below of methods from outside: what its latencies are, how many scenes they failed on,
+/// What a table says below of detectors from outside: what its latencies are, how many scenes they failed on,
 /// and their cards. Empty where there are none.
-[[nodiscard]] std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideMethods& outside);
+[[nodiscard]] std::string outside_notes(std::span<const ScoredRecord> scored,
+                                        const OutsideDetectors& outside);
 
 }  // namespace conelane::experiments

@@ -77,18 +77,18 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
     return json;
 }
 
-nlohmann::ordered_json to_json(const OutsideMethod& method) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_method_json(method));
-    if (method.is_program()) return json;
-    json["hash"] = file_hash(method.source);
-    if (json["hash"].empty()) throw InputError(method.source, 0, "", "cannot be read");
+nlohmann::ordered_json to_json(const OutsideDetector& detector) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_detector_json(detector));
+    if (detector.is_program()) return json;
+    json["hash"] = file_hash(detector.source);
+    if (json["hash"].empty()) throw InputError(detector.source, 0, "", "cannot be read");
     return json;
 }
 
 }  // namespace
 
-Entrant parse_entrant(const std::string& text, std::optional<std::size_t> nearest) {
-    if (auto outside = find_outside_method(text)) {
+ComparedDetector parse_compared_detector(const std::string& text, std::optional<std::size_t> nearest) {
+    if (auto outside = find_outside_detector(text)) {
         if (nearest && !outside->is_program()) {
             throw InvalidInput(
                 "method", "'" + outside->name + "' is a finished lanes file, no cone-set size can be given");
@@ -96,33 +96,34 @@ Entrant parse_entrant(const std::string& text, std::optional<std::size_t> neares
         std::string name = outside->name;
         return {std::move(name), nearest, std::move(outside)};
     }
-    return {std::string(find_method(text).name), nearest, {}};
+    return {std::string(find_detector(text).name), nearest, {}};
 }
 
-std::string Entrant::lanes_file() const {
-    return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", method, *nearest) : method + ".lanes.jsonl";
+std::string ComparedDetector::lanes_file() const {
+    return nearest ? fmt::format("{}.n{:03}.lanes.jsonl", name, *nearest) : name + ".lanes.jsonl";
 }
 
 std::string run_record(const ComparisonOptions& options) {
     const Provenance origin = provenance();
-    nlohmann::ordered_json methods = nlohmann::ordered_json::array();
-    for (const Entrant& entrant : options.entrants) {
-        nlohmann::ordered_json json{{"name", entrant.method}};
-        if (entrant.outside) json = to_json(*entrant.outside);
-        if (entrant.nearest) json["nearest"] = *entrant.nearest;
-        if (entrant.outside) {
-            methods.push_back(json);
+    nlohmann::ordered_json detectors = nlohmann::ordered_json::array();
+    for (const ComparedDetector& compared : options.detectors) {
+        nlohmann::ordered_json json{{"name", compared.name}};
+        if (compared.outside) json = to_json(*compared.outside);
+        if (compared.nearest) json["nearest"] = *compared.nearest;
+        if (compared.outside) {
+            detectors.push_back(json);
             continue;
         }
-        const Method& method = find_method(entrant.method);
-        if (method.is_rld()) json["rld_parameters"] = to_json(rld_parameters(method, options.run.method));
-        methods.push_back(json);
+        const KnownDetector& detector = find_detector(compared.name);
+        if (detector.is_rld())
+            json["rld_parameters"] = to_json(rld_parameters(detector, options.run.detector));
+        detectors.push_back(json);
     }
     nlohmann::ordered_json record{{"commit", origin.commit},
                                   {"compiler", origin.compiler},
                                   {"machine", origin.machine},
                                   {"tracks", options.tracks},
-                                  {"methods", methods}};
+                                  {"methods", detectors}};
     record.update(scene_options_json(options.scenes));
     record["threads"] = options.run.threads;
     record["candidates"] = options.run.limits.keep_candidates;

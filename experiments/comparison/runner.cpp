@@ -29,10 +29,10 @@ struct CheckedRld {
 };
 
 /// A detector of this program.
-class TimedDetector : public TimedMethod {
+class TimedLaneDetector : public TimedDetector {
   public:
-    TimedDetector(std::string name, std::unique_ptr<LaneDetector> detector, const RunOptions& options,
-                  std::optional<std::size_t> nearest, std::optional<CheckedRld> check = {})
+    TimedLaneDetector(std::string name, std::unique_ptr<LaneDetector> detector, const RunOptions& options,
+                      std::optional<std::size_t> nearest, std::optional<CheckedRld> check = {})
         : name_(std::move(name)),
           limits_(options.limits),
           detector_(std::move(detector)),
@@ -64,7 +64,7 @@ class TimedDetector : public TimedMethod {
 };
 
 /// A program from outside, taken from those that run already and given back.
-class TimedProgram : public TimedMethod {
+class TimedProgram : public TimedDetector {
   public:
     TimedProgram(std::shared_ptr<OutsideProgramPool> pool, std::optional<std::size_t> nearest)
         : pool_(std::move(pool)), program_(pool_->take()), nearest_(nearest) {}
@@ -91,9 +91,9 @@ class TimedProgram : public TimedMethod {
     std::optional<std::size_t> nearest_;
 };
 
-std::vector<LaneRecord> drive_lap(const MethodMaker& make, std::span<const AnnotatedScene> lap,
+std::vector<LaneRecord> drive_lap(const DetectorMaker& make, std::span<const AnnotatedScene> lap,
                                   Progress& progress) {
-    const std::unique_ptr<TimedMethod> timed = make(lap.front().track);
+    const std::unique_ptr<TimedDetector> timed = make(lap.front().track);
     timed->warm_up(lap.front().scene);
     std::vector<LaneRecord> records;
     records.reserve(lap.size());
@@ -127,25 +127,27 @@ class InOrder {
 
 }  // namespace
 
-MethodMaker maker_of(const Method& method, const RunOptions& options) {
-    return [&method, options](const std::string& /*track*/) {
-        const ConeSet cones = cone_set(method, options.method);
+DetectorMaker maker_of(const KnownDetector& detector, const RunOptions& options) {
+    return [&detector, options](const std::string& /*track*/) {
+        const ConeSet cones = cone_set(detector, options.detector);
         std::optional<CheckedRld> check;
-        if (method.is_rld()) check = CheckedRld{cones, rld_parameters(method, options.method)};
-        return std::make_unique<TimedDetector>(
-            std::string(method.name), make_detector(method, options.method), options, cones.nearest, check);
+        if (detector.is_rld()) check = CheckedRld{cones, rld_parameters(detector, options.detector)};
+        return std::make_unique<TimedLaneDetector>(std::string(detector.name),
+                                                   make_detector(detector, options.detector), options,
+                                                   cones.nearest, check);
     };
 }
 
-MethodMaker maker_of(const std::string& name, std::function<std::unique_ptr<LaneDetector>()> make_detector,
-                     const RunOptions& options) {
+DetectorMaker maker_of(const std::string& name, std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                       const RunOptions& options) {
     return [name, make_detector = std::move(make_detector), options](const std::string& /*track*/) {
-        return std::make_unique<TimedDetector>(name, make_detector(), options, std::nullopt);
+        return std::make_unique<TimedLaneDetector>(name, make_detector(), options, std::nullopt);
     };
 }
 
-MethodMaker maker_of_program(const std::string& name, const std::string& command, const RunOptions& options) {
-    return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.method.nearest](
+DetectorMaker maker_of_program(const std::string& name, const std::string& command,
+                               const RunOptions& options) {
+    return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.detector.nearest](
                const std::string& /*track*/) { return std::make_unique<TimedProgram>(pool, nearest); };
 }
 
@@ -163,7 +165,7 @@ std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes) {
     return starts;
 }
 
-void run(const std::string& name, const MethodMaker& make, std::span<const AnnotatedScene> scenes,
+void run(const std::string& name, const DetectorMaker& make, std::span<const AnnotatedScene> scenes,
          const RunOptions& options, const LapSink& sink) {
     Progress progress(name, options.show_progress ? scenes.size() : 0);
     const std::vector<std::size_t> starts = lap_starts(scenes);
@@ -187,7 +189,7 @@ void run(const std::string& name, const MethodMaker& make, std::span<const Annot
     });
 }
 
-std::vector<LaneRecord> run(const std::string& name, const MethodMaker& make,
+std::vector<LaneRecord> run(const std::string& name, const DetectorMaker& make,
                             std::span<const AnnotatedScene> scenes, const RunOptions& options) {
     std::vector<LaneRecord> records;
     run(name, make, scenes, options,

@@ -3,7 +3,7 @@
 #include "conelane/lane_detector.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -16,18 +16,18 @@
 namespace conelane::experiments {
 
 struct RunOptions {
-    DetectorOptions method;
+    DetectorOptions detector;
     DetectionLimits limits{.time_limit_ms = std::numeric_limits<double>::infinity()};
     /// One: on one processor. More disturb the latencies by contention.
     unsigned threads = 1;
     bool show_progress = true;
 };
 
-/// A method that answers scene after scene, each timed in the same way: from the scene in memory to the lane
-/// in memory, on the wall clock.
-class TimedMethod {
+/// A detector that answers scene after scene, each timed in the same way: from the scene in memory to the
+/// lane in memory, on the wall clock.
+class TimedDetector {
   public:
-    virtual ~TimedMethod() = default;
+    virtual ~TimedDetector() = default;
     [[nodiscard]] virtual LaneRecord answer(const Scene& scene) = 0;
     /// Answers the scene untimed and forgets it, so that no latency holds the loading of code.
     virtual void warm_up(const Scene& scene) = 0;
@@ -36,21 +36,21 @@ class TimedMethod {
 };
 
 /// Makes what answers a lap of the course of this name, in any thread.
-using MethodMaker = std::function<std::unique_ptr<TimedMethod>(const std::string& track)>;
+using DetectorMaker = std::function<std::unique_ptr<TimedDetector>(const std::string& track)>;
 
-/// A method of this program. What an RLD method found and the independent checker rejects becomes an answer
-/// of status error (see check_answer; not timed). The method must outlive what is made.
-[[nodiscard]] MethodMaker maker_of(const Method& method, const RunOptions& options);
+/// A detector of this program. What an RLD detector found and the independent checker rejects becomes an
+/// answer of status error (see check_answer; not timed). The detector must outlive what is made.
+[[nodiscard]] DetectorMaker maker_of(const KnownDetector& detector, const RunOptions& options);
 
 /// Any detector under a name, on all cones.
-[[nodiscard]] MethodMaker maker_of(const std::string& name,
-                                   std::function<std::unique_ptr<LaneDetector>()> make_detector,
-                                   const RunOptions& options);
+[[nodiscard]] DetectorMaker maker_of(const std::string& name,
+                                     std::function<std::unique_ptr<LaneDetector>()> make_detector,
+                                     const RunOptions& options);
 
 /// A program from outside, timed by its round trip. It stays from lap to lap, as long as the maker lives; of
 /// the options it knows the cone-set size alone, and has its own limits (see OutsideLimits).
-[[nodiscard]] MethodMaker maker_of_program(const std::string& name, const std::string& command,
-                                           const RunOptions& options);
+[[nodiscard]] DetectorMaker maker_of_program(const std::string& name, const std::string& command,
+                                             const RunOptions& options);
 
 /// Whether two scenes are of one lap: the same track, condition, rate and range.
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
@@ -63,13 +63,13 @@ using MethodMaker = std::function<std::unique_ptr<TimedMethod>(const std::string
 /// Gets the records of each lap, in the order of the laps, from one thread at a time.
 using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
-/// Runs a method on every scene, a TimedMethod for each lap. The first scene of a lap is answered once
-/// untimed before. The cut to the cone set is part of the method and of its time.
-void run(const std::string& name, const MethodMaker& make, std::span<const AnnotatedScene> scenes,
+/// Runs a detector on every scene, a TimedDetector for each lap. The first scene of a lap is answered once
+/// untimed before. The cut to the cone set is part of the detector and of its time.
+void run(const std::string& name, const DetectorMaker& make, std::span<const AnnotatedScene> scenes,
          const RunOptions& options, const LapSink& sink);
 
 /// The same, all records at once.
-[[nodiscard]] std::vector<LaneRecord> run(const std::string& name, const MethodMaker& make,
+[[nodiscard]] std::vector<LaneRecord> run(const std::string& name, const DetectorMaker& make,
                                           std::span<const AnnotatedScene> scenes, const RunOptions& options);
 
 }  // namespace conelane::experiments

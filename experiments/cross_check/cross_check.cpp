@@ -132,7 +132,7 @@ class CrossCheck {
         : options_(options), directory_(std::move(directory)) {
         for (const fs::path& file : options.scenes)
             std::ranges::move(read_scenes(file), std::back_inserter(given_));
-        (void)contestants(Formulation::tight);  // a wrong name is told before the work
+        (void)solvers(Formulation::tight);  // a wrong name is told before the work
     }
 
     CrossCheckSummary run() {
@@ -160,14 +160,14 @@ class CrossCheck {
     }
 
   private:
-    [[nodiscard]] std::vector<Contestant> contestants(Formulation formulation) const {
-        return options_.contestants ? options_.contestants(formulation)
-                                    : make_contestants(options_.solvers, formulation);
+    [[nodiscard]] std::vector<CheckedSolver> solvers(Formulation formulation) const {
+        return options_.make_solvers ? options_.make_solvers(formulation)
+                                     : make_checked_solvers(options_.solvers, formulation);
     }
 
     /// By new solvers, so that it does not depend on the cases before.
     [[nodiscard]] CrossCheckVerdict verdict_on(const CrossCheckCase& drawn) const {
-        return judge(drawn, contestants(drawn.formulation), options_.time_limit_ms);
+        return judge(drawn, solvers(drawn.formulation), options_.time_limit_ms);
     }
 
     [[nodiscard]] std::vector<JudgedCase> judge_block(std::size_t first, std::size_t count,
@@ -231,7 +231,7 @@ CrossCheckVerdict judge_stored_case(const fs::path& file, std::size_t repetition
     const StoredCase stored = read_case(file);
     CrossCheckVerdict verdict;
     for (std::size_t k = 0; k < repetitions && verdict.findings.empty(); ++k) {
-        verdict = judge(stored.drawn, make_contestants(stored.solvers, stored.drawn.formulation),
+        verdict = judge(stored.drawn, make_checked_solvers(stored.solvers, stored.drawn.formulation),
                         stored.time_limit_ms);
     }
     return verdict;

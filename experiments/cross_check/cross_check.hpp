@@ -24,7 +24,7 @@ struct CrossCheckOptions {
     double time_limit_ms = 5'000.0;  ///< the generous limit of each solve
     unsigned threads = 1;
     /// How the solvers of a case are made; by their names where it is empty.
-    std::function<std::vector<Contestant>(Formulation)> contestants = {};
+    std::function<std::vector<CheckedSolver>(Formulation)> make_solvers = {};
 };
 
 /// What a folder of cases holds, and what this run added.

@@ -66,8 +66,8 @@ bool is_proof(const RldReport& report) {
 
 class Judgement {
   public:
-    Judgement(const CrossCheckCase& drawn, std::span<const Contestant> contestants, double time_limit_ms)
-        : drawn_(drawn), contestants_(contestants), time_limit_ms_(time_limit_ms) {}
+    Judgement(const CrossCheckCase& drawn, std::span<const CheckedSolver> solvers, double time_limit_ms)
+        : drawn_(drawn), solvers_(solvers), time_limit_ms_(time_limit_ms) {}
 
     CrossCheckVerdict run() {
         ask(time_limit_ms_, Asked::generously);
@@ -89,25 +89,25 @@ class Judgement {
     }
 
     void ask(double limit_ms, Asked asked) {
-        for (const Contestant& contestant : contestants_) {
-            if (contestant.max_cones && drawn_.scene.cones.size() > *contestant.max_cones) continue;
-            answers_.push_back({fmt::format("{} within {} ms", contestant.name, limit_ms), asked,
-                                contestant.solve(drawn_.scene, drawn_.parameters, limit_ms)});
+        for (const CheckedSolver& solver : solvers_) {
+            if (solver.max_cones && drawn_.scene.cones.size() > *solver.max_cones) continue;
+            answers_.push_back({fmt::format("{} within {} ms", solver.name, limit_ms), asked,
+                                solver.solve(drawn_.scene, drawn_.parameters, limit_ms)});
         }
     }
 
-    /// The first contestant's lane graph of the frame before, when the car stood a metre behind. Cones and
+    /// The first solver's lane graph of the frame before, when the car stood a metre behind. Cones and
     /// edges are those of this frame; near ends and headings may differ.
     [[nodiscard]] std::optional<LaneGraph> answer_of_previous_frame() const {
-        if (contestants_.empty()) return std::nullopt;
-        const Contestant& first = contestants_.front();
+        if (solvers_.empty()) return std::nullopt;
+        const CheckedSolver& first = solvers_.front();
         if (first.max_cones && drawn_.scene.cones.size() > *first.max_cones) return std::nullopt;
         Scene previous = drawn_.scene;
         previous.pose.position -= kTravelOfAFrame_m * previous.pose.heading();
         return first.solve(previous, drawn_.parameters, time_limit_ms_).lane_graph;
     }
 
-    /// What there is to start from for the contestant of this name.
+    /// What there is to start from for the solver of this name.
     [[nodiscard]] std::vector<NamedStart> starts(const std::string& name,
                                                  const std::optional<LaneGraph>& previous) const {
         std::vector<NamedStart> all;
@@ -136,18 +136,17 @@ class Judgement {
     void ask_from_starts() {
         const LaneGraphProblem problem = make_problem(drawn_.scene, drawn_.parameters);
         const std::optional<LaneGraph> previous = answer_of_previous_frame();
-        for (const Contestant& contestant : contestants_) {
-            if (!contestant.solve_from) continue;
-            if (contestant.max_cones && drawn_.scene.cones.size() > *contestant.max_cones) continue;
-            for (const NamedStart& start : starts(contestant.name, previous)) {
+        for (const CheckedSolver& solver : solvers_) {
+            if (!solver.solve_from) continue;
+            if (solver.max_cones && drawn_.scene.cones.size() > *solver.max_cones) continue;
+            for (const NamedStart& start : starts(solver.name, previous)) {
                 const bool is_feasible_start = is_feasible(problem, start.graph);
                 std::vector<double> limits{drawn_.tight_limit_ms};
                 if (start.name == "its own answer") limits.push_back(time_limit_ms_);
                 for (const double limit_ms : limits) {
-                    Answer answer{
-                        fmt::format("{} within {} ms from {}", contestant.name, limit_ms, start.name),
-                        Asked::from_a_start,
-                        contestant.solve_from(drawn_.scene, drawn_.parameters, limit_ms, start.graph)};
+                    Answer answer{fmt::format("{} within {} ms from {}", solver.name, limit_ms, start.name),
+                                  Asked::from_a_start,
+                                  solver.solve_from(drawn_.scene, drawn_.parameters, limit_ms, start.graph)};
                     if (is_feasible_start) hold_against_start(answer, objective(problem, start.graph));
                     answers_.push_back(std::move(answer));
                 }
@@ -234,7 +233,7 @@ class Judgement {
     }
 
     const CrossCheckCase& drawn_;
-    std::span<const Contestant> contestants_;
+    std::span<const CheckedSolver> solvers_;
     double time_limit_ms_;
     std::vector<Answer> answers_;
     CrossCheckVerdict verdict_;
@@ -250,14 +249,14 @@ std::vector<std::string> exact_solver_names() {
     return names;
 }
 
-std::vector<Contestant> make_contestants(std::span<const std::string> names, Formulation formulation) {
-    std::vector<Contestant> contestants;
+std::vector<CheckedSolver> make_checked_solvers(std::span<const std::string> names, Formulation formulation) {
+    std::vector<CheckedSolver> solvers;
     for (const std::string& name : names) {
         const RldSolverEntry* const entry = find_rld_solver(name);
         if (entry == nullptr || !entry->exact)
             throw InvalidInput("--solvers", "'" + name + "' is not an exact solver of this build");
         const std::shared_ptr<RldSolver> solver = entry->make(formulation);
-        contestants.push_back(
+        solvers.push_back(
             {entry->uses_formulation ? fmt::format("{} ({})", name, to_string(formulation)) : name,
              [solver](const Scene& scene, const RldParameters& parameters, double time_limit_ms) {
                  return solve_scene(*solver, scene, parameters, {time_limit_ms}).report;
@@ -268,7 +267,7 @@ std::vector<Contestant> make_contestants(std::span<const std::string> names, For
                  return solve_scene(*solver, scene, parameters, {time_limit_ms}, &start).report;
              }});
     }
-    return contestants;
+    return solvers;
 }
 
 std::string_view to_string(CrossCheckOutcome outcome) {
@@ -285,9 +284,9 @@ std::string_view to_string(CrossCheckOutcome outcome) {
     return "differ";
 }
 
-CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const Contestant> contestants,
+CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const CheckedSolver> solvers,
                         double time_limit_ms) {
-    return Judgement(drawn, contestants, time_limit_ms).run();
+    return Judgement(drawn, solvers, time_limit_ms).run();
 }
 
 }  // namespace conelane::experiments

@@ -14,7 +14,7 @@
 namespace conelane::experiments {
 
 /// A solver that claims to be exact, for one case after the other.
-struct Contestant {
+struct CheckedSolver {
     std::string name;
     std::function<RldReport(const Scene&, const RldParameters&, double time_limit_ms)> solve;
     std::optional<std::size_t> max_cones{};  ///< it is not asked about more
@@ -27,8 +27,8 @@ struct Contestant {
 [[nodiscard]] std::vector<std::string> exact_solver_names();
 
 /// New solvers of these names. Throws InvalidInput where one is no exact solver.
-[[nodiscard]] std::vector<Contestant> make_contestants(std::span<const std::string> names,
-                                                       Formulation formulation);
+[[nodiscard]] std::vector<CheckedSolver> make_checked_solvers(std::span<const std::string> names,
+                                                              Formulation formulation);
 
 enum class CrossCheckOutcome {
     same_optimum,  ///< at the generous limit all have proven one, and it is the same
@@ -40,14 +40,14 @@ enum class CrossCheckOutcome {
 
 struct CrossCheckVerdict {
     CrossCheckOutcome outcome = CrossCheckOutcome::undecided;
-    std::optional<double> objective;    ///< of the first contestant, where it is proven optimal
+    std::optional<double> objective;    ///< of the first solver, where it is proven optimal
     std::vector<std::string> findings;  ///< a sentence each
     bool certified = false;             ///< the proof was repeated in rational arithmetic
     std::size_t tight_answers = 0;
     std::size_t tight_proofs = 0;  ///< of these claimed optimal or infeasible, and not refuted
 };
 
-/// Asks each contestant under the generous limit, then each again under the case's tight limit, and from
+/// Asks each solver under the generous limit, then each again under the case's tight limit, and from
 /// starts: its own answer under both limits, and under the tight one the answer of another, an answer without
 /// its last edge, edges drawn at random, and an answer with an edge of a cone that is gone. Holds everything
 /// claimed against everything known, whoever said it, under which limit and from which start:
@@ -60,7 +60,7 @@ struct CrossCheckVerdict {
 /// - where all say `infeasible`, a search by the checker alone finds no lane graph in the 20 ms it has;
 /// - the proof of path-pair, of up to 12 cones, can be repeated in rational arithmetic from the scene alone,
 ///   as far as a few thousand steps get.
-[[nodiscard]] CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const Contestant> contestants,
+[[nodiscard]] CrossCheckVerdict judge(const CrossCheckCase& drawn, std::span<const CheckedSolver> solvers,
                                       double time_limit_ms);
 
 }  // namespace conelane::experiments

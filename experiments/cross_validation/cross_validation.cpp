@@ -89,17 +89,17 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
         for (const CourseFamily& family : options.families) {
             const LearningOptions learning = without(options, family);
             fs::create_directories(folds / family.name);
-            for (const Entrant& entrant : options.comparison.entrants) {
-                const Learner* learner = entrant.outside ? nullptr : find_learner(entrant.method);
+            for (const ComparedDetector& compared : options.comparison.detectors) {
+                const Learner* learner = compared.outside ? nullptr : find_learner(compared.name);
                 if (learner != nullptr) learner->learn(learning, folds / family.name);
             }
         }
     };
-    for (Entrant& entrant : comparison.entrants) {
-        const Learner* learner = entrant.outside ? nullptr : find_learner(entrant.method);
+    for (ComparedDetector& compared : comparison.detectors) {
+        const Learner* learner = compared.outside ? nullptr : find_learner(compared.name);
         if (learner == nullptr) continue;
-        entrant.maker = [learner, folds, family_of, &options](const RunOptions& run) -> MethodMaker {
-            std::map<std::string, MethodMaker> of_family;
+        compared.maker = [learner, folds, family_of, &options](const RunOptions& run) -> DetectorMaker {
+            std::map<std::string, DetectorMaker> of_family;
             for (const CourseFamily& family : options.families)
                 of_family.emplace(family.name, learner->maker(folds / family.name, run));
             return [of_family = std::move(of_family), family_of](const std::string& track) {

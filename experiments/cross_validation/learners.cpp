@@ -3,19 +3,19 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/file_text.hpp"
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
-#include "evaluation/files/method_parameter_file.hpp"
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/files/rank_net_file.hpp"
 #include "evaluation/files/step_score_file.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "experiments/training/front_training_run.hpp"
 #include "experiments/training/training_run.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
 #include "experiments/tuning/evaluation_log.hpp"
-#include "experiments/tuning/method_tuning.hpp"
 #include "experiments/tuning/tuner.hpp"
 #include "graph_search/clc/clc_detector.hpp"
 #include "graph_search/front/front_detector.hpp"
@@ -111,19 +111,19 @@ ClcOptions clc_options(const fs::path& folder) {
     return options;
 }
 
-MethodMaker make_clc(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_clc(const fs::path& folder, const RunOptions& options) {
     return maker_of(
         "clc", [clc = clc_options(folder)] { return make_clc_detector(clc); }, options);
 }
 
-MethodMaker make_warm_clc(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_warm_clc(const fs::path& folder, const RunOptions& options) {
     ClcOptions clc = clc_options(folder);
     clc.warm_start = true;
     return maker_of(
         "clc-warm", [clc] { return make_clc_detector(clc); }, options);
 }
 
-MethodMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_paper_clc(const fs::path& folder, const RunOptions& options) {
     ClcOptions clc = paper_clc_options();
     clc.ranking =
         make_rank_net(parsed_file(folder / kPaperNet, [](auto text) { return parse_rank_net(text); }));
@@ -142,12 +142,12 @@ SceneSet scenes_to_tune_on(const LearningOptions& options) {
 
 // The baselines, by random search over their parameters.
 
-void learn_parameters(std::string_view method, const LearningOptions& options, const fs::path& file) {
+void learn_parameters(std::string_view detector, const LearningOptions& options, const fs::path& file) {
     if (fs::exists(file)) return;
-    const TunableMethod& tunable = find_tunable_method(method);
+    const TunableDetector& tunable = find_tunable_detector(detector);
     const SceneSet set = scenes_to_tune_on(options);
-    const TunedMethod tuned =
-        tune_method(tunable, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
+    const TunedDetector tuned =
+        tune_detector(tunable, set, {options.evaluations, options.scenes.seed, options.scenes.threads});
     write(file, to_json_text(tunable, tuned.values));
 }
 
@@ -159,7 +159,7 @@ void learn_astar_lane(const LearningOptions& options, const fs::path& folder) {
     learn_parameters("astar-lane", options, folder / kAstarLane);
 }
 
-MethodMaker make_delaunay_beam(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_delaunay_beam(const fs::path& folder, const RunOptions& options) {
     const fs::path file = folder / kDelaunayBeam;
     return maker_of(
         "delaunay-beam",
@@ -169,7 +169,7 @@ MethodMaker make_delaunay_beam(const fs::path& folder, const RunOptions& options
         options);
 }
 
-MethodMaker make_astar_lane(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_astar_lane(const fs::path& folder, const RunOptions& options) {
     const fs::path file = folder / kAstarLane;
     return maker_of(
         "astar-lane",
@@ -194,10 +194,10 @@ void learn_shape(const LearningOptions& options, const fs::path& folder) {
     write_rld_parameters(file, tuned.parameters);
 }
 
-MethodMaker make_shape(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
     RunOptions learned = options;
-    learned.method.rld_parameters = read_rld_parameters(folder / kShape);
-    return maker_of(find_method("rld-shape"), learned);
+    learned.detector.rld_parameters = read_rld_parameters(folder / kShape);
+    return maker_of(find_detector("rld-shape"), learned);
 }
 
 // The weights of front. It draws its scenes itself, so that of the options only seed and threads count.
@@ -224,12 +224,12 @@ FrontOptions front_options(const fs::path& folder) {
     return front;
 }
 
-MethodMaker make_front(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_front(const fs::path& folder, const RunOptions& options) {
     return maker_of(
         "front", [front = front_options(folder)] { return make_front_detector(front); }, options);
 }
 
-MethodMaker make_warm_front(const fs::path& folder, const RunOptions& options) {
+DetectorMaker make_warm_front(const fs::path& folder, const RunOptions& options) {
     FrontOptions front = front_options(folder);
     front.repeat_bonus = warm_front_options().repeat_bonus;
     return maker_of(
@@ -251,8 +251,8 @@ std::span<const Learner> learners() {
     return kLearners;
 }
 
-const Learner* find_learner(std::string_view method) {
-    const auto learner = std::ranges::find(kLearners, method, &Learner::method);
+const Learner* find_learner(std::string_view detector) {
+    const auto learner = std::ranges::find(kLearners, detector, &Learner::detector);
     return learner == kLearners.end() ? nullptr : &*learner;
 }
 

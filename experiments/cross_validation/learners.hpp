@@ -12,7 +12,7 @@
 
 namespace conelane::experiments {
 
-/// What a method learns from, and how much work it may take.
+/// What a detector learns from, and how much work it may take.
 struct LearningOptions {
     std::vector<std::string> tracks;  ///< SPECs of load_tracks
     SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
@@ -21,20 +21,20 @@ struct LearningOptions {
     double front_steps = 1.0;  ///< of the training of `front`, as a share of those of the shipped weights
 };
 
-/// A method whose weights or parameters come from courses, by the recipe of those that are shipped.
+/// A detector whose weights or parameters come from courses, by the recipe of those that are shipped.
 struct Learner {
-    std::string_view method;
-    /// Learns and writes its files to the folder; what is there already is not learned again, so that methods
-    /// share it and a run that was stopped goes on. Throws InputError or InvalidInput.
+    std::string_view detector;
+    /// Learns and writes its files to the folder; what is there already is not learned again, so that
+    /// detectors share it and a run that was stopped goes on. Throws InputError or InvalidInput.
     void (*learn)(const LearningOptions& options, const std::filesystem::path& folder);
     /// What answers by these files. Throws InputError where one is missing or wrong.
-    MethodMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
+    DetectorMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
 };
 
 /// front, clc, clc-warm, clc-paper, delaunay-beam, astar-lane and rld-shape.
 [[nodiscard]] std::span<const Learner> learners();
 
-/// None where the method learns nothing, so answers the same in every fold.
-[[nodiscard]] const Learner* find_learner(std::string_view method);
+/// None where the detector learns nothing, so answers the same in every fold.
+[[nodiscard]] const Learner* find_learner(std::string_view detector);
 
 }  // namespace conelane::experiments

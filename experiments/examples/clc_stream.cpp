@@ -1,4 +1,4 @@
-// A method from outside in C++: conelane's own `clc` behind the line protocol, as any detector can stand
+// A detector from outside in C++: conelane's own `clc` behind the line protocol, as any detector can stand
 // there. For `conelane compare --methods "exec:clc-stream=./clc_stream"`.
 #include <iostream>
 #include <string>

@@ -3,7 +3,7 @@
 #include "conelane/rld_parameters.hpp"
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -25,7 +25,7 @@ struct ParameterSource {
     std::string pairing;  ///< empty: as in the parameters
     /// What was asked for, RldParameters{} where nothing was.
     [[nodiscard]] RldParameters load() const;
-    /// Tells methods what was asked for; they have parameters of their own.
+    /// Tells detectors what was asked for; they have parameters of their own.
     void apply_to(DetectorOptions& options) const;
     /// Throws InvalidInput naming the option that was given although `who` has no RLD parameters.
     void require_not_given(const std::string& who) const;
@@ -36,7 +36,7 @@ void add_parameter_options(CLI::App& command, ParameterSource& source, const std
 /// --nearest N
 void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest,
                         const std::string& description);
-/// For methods that are compared in real time, as in the RLD paper.
+/// For detectors that are compared in real time, as in the RLD paper.
 inline constexpr double kRealTimeLimit_ms = 400.0;
 /// --time-limit MS; what `time_limit_ms` holds is the default
 void add_time_limit_option(CLI::App& command, double& time_limit_ms);

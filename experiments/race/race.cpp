@@ -219,10 +219,10 @@ class Delivery {
 /// One race as it goes on.
 class Run {
   public:
-    Run(const RaceCourse& course, const RaceOptions& options, const Entrant& entrant)
+    Run(const RaceCourse& course, const RaceOptions& options, const Driver& driver)
         : course_(course),
           options_(options),
-          entrant_(entrant),
+          driver_(driver),
           random_(generator_of(fmt::format("{}/{}/run", course.name, options.sight.false_positive_rate),
                                options.sight.seed)),
           world_(course, options.sight),
@@ -336,7 +336,7 @@ class Run {
     void answer(const Frame& frame, int step) {
         ++result_.frames;
         const auto begin = std::chrono::steady_clock::now();
-        Drive drive = entrant_(frame);
+        Drive drive = driver_(frame);
         result_.answer_ms.push_back(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
         if (drive.is_refused) {
@@ -487,7 +487,7 @@ class Run {
 
     const RaceCourse& course_;
     const RaceOptions& options_;
-    const Entrant& entrant_;
+    const Driver& driver_;
     Generator random_;
     World world_;
     Delivery delivery_;
@@ -579,7 +579,7 @@ std::string_view to_string(RaceEnd end) {
     return "";
 }
 
-Entrant truth_entrant(const RaceCourse& course, int laps) {
+Driver truth_driver(const RaceCourse& course, int laps) {
     return [&course, laps, at = Follower(course, course.start_m),
             finish_m = std::optional<double>{}](const Frame& frame) mutable {
         at.follow(frame.pose.position, 6.0);
@@ -596,8 +596,8 @@ Entrant truth_entrant(const RaceCourse& course, int laps) {
     };
 }
 
-RaceResult race(const RaceCourse& course, const RaceOptions& options, const Entrant& entrant) {
-    return Run(course, options, entrant).drive();
+RaceResult race(const RaceCourse& course, const RaceOptions& options, const Driver& driver) {
+    return Run(course, options, driver).drive();
 }
 
 }  // namespace conelane::experiments

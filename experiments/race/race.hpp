@@ -60,7 +60,7 @@ struct Drive {
     bool is_refused = false;  ///< the frame was not accepted; the path before goes on
 };
 
-using Entrant = std::function<Drive(const Frame&)>;
+using Driver = std::function<Drive(const Frame&)>;
 
 struct ReplayFrame {
     double time_s = 0.0;
@@ -110,10 +110,10 @@ struct RaceResult {
 
 /// Answers the next 20 m of the true centre line, by the pose that the car believes; stops behind the last
 /// line. It takes the map frame for that of the world: not for any map, drift or jumps.
-[[nodiscard]] Entrant truth_entrant(const RaceCourse& course, int laps);
+[[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps);
 
-/// Drives a course by the answers of an entrant. The result, `answer_ms` aside, depends on nothing but the
-/// arguments and what the entrant answers. Precondition: the course was made by a function of course.hpp.
-[[nodiscard]] RaceResult race(const RaceCourse& course, const RaceOptions& options, const Entrant& entrant);
+/// Drives a course by the answers of a driver. The result, `answer_ms` aside, depends on nothing but the
+/// arguments and what the driver answers. Precondition: the course was made by a function of course.hpp.
+[[nodiscard]] RaceResult race(const RaceCourse& course, const RaceOptions& options, const Driver& driver);
 
 }  // namespace conelane::experiments

@@ -99,11 +99,11 @@ std::string race_table(std::span<const Heat> heats, int laps) {
                      {"unsteady %"},
                      {"wrong path %"}});
     using Row = std::pair<std::string, double>;
-    for (const Row& row :
-         distinct<Row>(heats, [](const Heat& heat) { return Row(heat.method, heat.false_positive_rate); })) {
+    for (const Row& row : distinct<Row>(
+             heats, [](const Heat& heat) { return Row(heat.detector, heat.false_positive_rate); })) {
         Sums sums;
         for (const Heat& heat : heats) {
-            if (Row(heat.method, heat.false_positive_rate) == row) sums.add(heat.result);
+            if (Row(heat.detector, heat.false_positive_rate) == row) sums.add(heat.result);
         }
         const auto count = static_cast<double>(sums.races);
         table.add(
@@ -122,13 +122,13 @@ std::string race_table(std::span<const Heat> heats, int laps) {
     bool any = false;
     using Place = std::pair<std::string, Row>;
     for (const Place& place : distinct<Place>(heats, [](const Heat& heat) {
-             return Place(heat.course, Row(heat.method, heat.false_positive_rate));
+             return Place(heat.course, Row(heat.detector, heat.false_positive_rate));
          })) {
         std::size_t races = 0;
         std::vector<double> driven_m;
         std::vector<std::string> how;
         for (const Heat& heat : heats) {
-            if (Place(heat.course, Row(heat.method, heat.false_positive_rate)) != place) continue;
+            if (Place(heat.course, Row(heat.detector, heat.false_positive_rate)) != place) continue;
             ++races;
             if (heat.result.finished()) continue;
             driven_m.push_back(heat.result.driven_m);
@@ -148,14 +148,14 @@ std::string race_table(std::span<const Heat> heats, int laps) {
 
 std::string answer_time_table(std::span<const Heat> heats) {
     TextTable table({{"method", true}, {"answer median ms"}, {"p99 ms"}});
-    for (const std::string& method :
-         distinct<std::string>(heats, [](const Heat& heat) { return heat.method; })) {
+    for (const std::string& detector :
+         distinct<std::string>(heats, [](const Heat& heat) { return heat.detector; })) {
         std::vector<double> times_ms;
         for (const Heat& heat : heats) {
-            if (heat.method != method) continue;
+            if (heat.detector != detector) continue;
             times_ms.insert(times_ms.end(), heat.result.answer_ms.begin(), heat.result.answer_ms.end());
         }
-        table.add({method, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
+        table.add({detector, fixed(quantile(times_ms, 0.5), 3), fixed(quantile(times_ms, 0.99), 3)});
     }
     return table.text();
 }
@@ -163,7 +163,7 @@ std::string answer_time_table(std::span<const Heat> heats) {
 Json heat_json(const Heat& heat) {
     const RaceResult& r = heat.result;
     Json json{{"track", heat.course},
-              {"method", heat.method},
+              {"method", heat.detector},
               {"false_positive_rate", heat.false_positive_rate},
               {"seed", heat.seed},
               {"finished", r.finished()},
@@ -208,7 +208,7 @@ Json replay_json(const Heat& heat, const RaceCourse& course) {
                           {"seen", flat(frame.seen)}});
     }
     return {{"track", heat.course},
-            {"method", heat.method},
+            {"method", heat.detector},
             {"false_positive_rate", heat.false_positive_rate},
             {"seed", heat.seed},
             {"end", to_string(heat.result.end)},

@@ -13,17 +13,17 @@ namespace conelane::experiments {
 /// A race of a table.
 struct Heat {
     std::string course;
-    std::string method;
+    std::string detector;
     double false_positive_rate = 0.0;
     std::uint64_t seed = 0;
     RaceResult result = {};
 };
 
-/// A row for each method and share of false positives, in the order in which they come first; then, for each
-/// course and method, how far the races went that were not finished.
+/// A row for each detector and share of false positives, in the order in which they come first; then, for
+/// each course and detector, how far the races went that were not finished.
 [[nodiscard]] std::string race_table(std::span<const Heat> heats, int laps);
 
-/// Median and 99th percentile of the real time of an answer, by method; not the same in two runs.
+/// Median and 99th percentile of the real time of an answer, by detector; not the same in two runs.
 [[nodiscard]] std::string answer_time_table(std::span<const Heat> heats);
 
 [[nodiscard]] nlohmann::ordered_json heat_json(const Heat& heat);

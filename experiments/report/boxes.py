@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .theme import INK, SURFACE, logarithmic, method_colour
+from .theme import INK, SURFACE, logarithmic, method_color
 
 
 def box_plot(axes, results, samples):
@@ -14,12 +14,12 @@ def box_plot(axes, results, samples):
     shapes = axes.bxp(boxes, positions=places, vert=False, widths=0.5, patch_artist=True,
                       flierprops={"marker": "|", "markersize": 7})
     for i, sample in enumerate(samples):
-        colour = method_colour(results.methods, sample.method)
-        shapes["boxes"][i].set(facecolor=colour, edgecolor=colour)
+        color = method_color(results.methods, sample.method)
+        shapes["boxes"][i].set(facecolor=color, edgecolor=color)
         shapes["medians"][i].set(color=SURFACE, linewidth=1.8)
-        shapes["fliers"][i].set(markeredgecolor=colour)
+        shapes["fliers"][i].set(markeredgecolor=color)
         for line in shapes["whiskers"][2 * i:2 * i + 2] + shapes["caps"][2 * i:2 * i + 2]:
-            line.set(color=colour)
+            line.set(color=color)
     axes.set_xscale("log")
     logarithmic(axes.xaxis)
     axes.grid(False, axis="y")

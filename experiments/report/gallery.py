@@ -5,7 +5,7 @@ from html import escape
 from .drawing import MARKS, driven_ahead, solid_and_bridged
 from .load import CATEGORIES, CAUSES
 from .scenes import WORST, WORST_APART_M, WORST_OF_A_TRACK
-from .theme import METHOD_COLOURS
+from .theme import METHOD_COLORS
 
 CATEGORY_WORDS = {"ground_truth": "ground truth", "near_ground_truth": "near ground truth", "too_short": "too short",
                   "diverging_from_20": "diverges after 20 m", "diverging_below_20": "diverges within 20 m",
@@ -81,13 +81,13 @@ def _dashes(mark):
 
 def style():
     """The look of the drawings, from marks.json, for the page."""
-    rules = [f'.scene .band {{ fill: var(--{MARKS["band"]["colour"]}); fill-opacity: {MARKS["band"]["opacity"]:g}; }}',
-             f'.scene .car {{ fill: var(--{MARKS["car"]["colour"]}); }}']
+    rules = [f'.scene .band {{ fill: var(--{MARKS["band"]["color"]}); fill-opacity: {MARKS["band"]["opacity"]:g}; }}',
+             f'.scene .car {{ fill: var(--{MARKS["car"]["color"]}); }}']
     for kind in ("driven", "false", "missed"):
         mark = MARKS[kind]
         dash = f"; stroke-dasharray: {_dashes(mark)}" if "dash" in mark else ""
-        rules.append(f'.scene .{kind} {{ stroke: var(--{mark["colour"]}); stroke-width: {mark["width"]:g}{dash}; }}')
-    rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["colour"]}); stroke-width: {_CONE_PX:g}; '
+        rules.append(f'.scene .{kind} {{ stroke: var(--{mark["color"]}); stroke-width: {mark["width"]:g}{dash}; }}')
+    rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["color"]}); stroke-width: {_CONE_PX:g}; '
                  "stroke-linecap: round; }")
     rules.append(f'.scene .lane {{ stroke-width: {MARKS["lane"]["width"]:g}; stroke-linejoin: round; }}')
     rules.append(f'.scene .bridged {{ stroke-dasharray: {_dashes(MARKS["bridged"])}; }}')
@@ -113,12 +113,12 @@ def drawing(results, frame, slot, track, longest_gap_m):
                      for x, y in view.inside(cones[split:]))
     if strays:
         parts.append(f'<path class="false" d="{strays}"/>')
-    colour = results.methods.index(results.samples[slot].method) % METHOD_COLOURS
+    color = results.methods.index(results.samples[slot].method) % METHOD_COLORS
     pieces = [solid_and_bridged(side, answer[2], longest_gap_m) for side in sides]
     for kind, lines in (("lane", [line for solid, _ in pieces for line in solid]),
                         ("lane bridged", [line for _, bridged in pieces for line in bridged])):
         if lines:
-            parts.append(f'<path class="{kind}" style="stroke:var(--m{colour})" d="{"".join(map(_path, lines))}"/>')
+            parts.append(f'<path class="{kind}" style="stroke:var(--m{color})" d="{"".join(map(_path, lines))}"/>')
     dots = "".join(f"M{_number(x)} {_number(y)}h0" for x, y in view.inside(cones[:split]))
     if dots:
         parts.append(f'<path class="cone" d="{dots}"/>')
@@ -153,7 +153,7 @@ def html(results, data):
     track_of = {scene: lap["track"] for lap in data.laps for scene in lap["scenes"]}
     blocks = []
     for slot, sample in enumerate(results.samples):
-        colour = results.methods.index(sample.method) % METHOD_COLOURS
+        color = results.methods.index(sample.method) % METHOD_COLORS
         for condition in results.conditions:
             scenes = data.worst.get((sample.label, condition), ())
             if not scenes:
@@ -164,7 +164,7 @@ def html(results, data):
             cards = "".join(_card(results, data, slot, track_of, scene) for scene in scenes)
             blocks.append(f'<details class="worst" open data-method="{escape(sample.label)}" '
                           f'data-condition="{escape(condition)}"><summary>'
-                          f'<span class="swatch" style="background:var(--m{colour})"></span><b>{escape(title)}</b> '
+                          f'<span class="swatch" style="background:var(--m{color})"></span><b>{escape(title)}</b> '
                           f'<small>{tail}</small></summary><div class="scenes">{cards}</div></details>')
     return (f"<p>The {WORST} worst scenes of each method in each condition, over all rates and ranges: those whose "
             "lane is not usable come first, then the lowest IoU. To show different things, at most "

@@ -14,7 +14,7 @@ from .methods import CLC_PAPER, RLD_PAPER, described
 from .rows import note_on_training, scenes_cell
 from .scenes import gallery_rate
 from .tables import Column, block_table, method_cell, milliseconds, percent, table
-from .theme import METHOD_COLOURS
+from .theme import METHOD_COLORS
 
 _IN_TIME_SHARE = 0.99  # of the scenes
 _NBSP = "\u00a0"
@@ -209,12 +209,12 @@ def _methods(results, data):
     cards = []
     for slot, sample in enumerate(results.samples):
         about = described(results, sample.method)
-        colour = results.methods.index(sample.method) % METHOD_COLOURS
+        color = results.methods.index(sample.method) % METHOD_COLORS
         picture = "" if scene is None else (
             f'<div role="img" aria-label="lane of {escape(sample.label)}">'
             f"{gallery.drawing(results, data.frames[scene], slot, track_of[scene], data.longest_gap_m)}</div>")
         cards.append(f'<figure class="scene" data-method="{escape(sample.label)}">{picture}<figcaption>'
-                     f'<span class="swatch" style="background:var(--m{colour})"></span><b>{escape(sample.label)}</b> '
+                     f'<span class="swatch" style="background:var(--m{color})"></span><b>{escape(sample.label)}</b> '
                      f"{escape(about.line)} <i>{escape(about.source)}</i></figcaption></figure>")
     shown = ("" if scene is None else
              f'<p class="note">The same scene for all, <button type="button" class="link" data-open="{escape(scene)}">'

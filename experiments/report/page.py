@@ -9,7 +9,7 @@ from .drawing import MARKS
 from .experiment import blocks
 from .load import CATEGORIES
 from .scenes import read_scenes
-from .theme import METHOD_COLOURS
+from .theme import METHOD_COLORS
 
 _VIEWER = """
 <div id="viewer" tabindex="0" aria-label="Scene viewer">
@@ -71,7 +71,7 @@ def _viewer(results, data):
     tracks = {track: {side: _flat(boundaries.get(side, [])) for side in ("left", "right", "driven")} |
               {"closed": bool(boundaries.get("closed", True))}
               for track, boundaries in results.tracks.items() if track in shown}
-    methods = [{"label": sample.label, "colour": results.methods.index(sample.method) % METHOD_COLOURS}
+    methods = [{"label": sample.label, "color": results.methods.index(sample.method) % METHOD_COLORS}
                for sample in results.samples]
     content = {"methods": methods, "marks": MARKS, "longest_gap": 100 * data.longest_gap_m,
                "usual_width": 100 * data.usual_width_m, "tracks": tracks, "laps": data.laps, "start": data.start,

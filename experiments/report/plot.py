@@ -14,7 +14,7 @@ from matplotlib.path import Path
 from .drawing import MARKS, driven_ahead, in_car_frame, solid_and_bridged
 from .load import InputError, label_of, read_lines
 from .scenes import boundary_points, frame_of, sides_of
-from .theme import METHOD_COLOURS, SURFACE, picture_colours, pyplot
+from .theme import METHOD_COLORS, SURFACE, picture_colors, pyplot
 
 _POINTS = 0.75  # of a pixel
 _ARC_EVERY_M = 10.0
@@ -35,7 +35,7 @@ def _of_frame(flat):
     return _up(np.array(flat, dtype=float).reshape(-1, 2) / 100.0)
 
 
-def _colour(name):
+def _color(name):
     return f"conelane:{name}"
 
 
@@ -46,8 +46,8 @@ def _line_style(kind, base=None):
     style = {"linewidth": _POINTS * width}
     if "dash" in mark:
         style["linestyle"] = (0, [part / width for part in mark["dash"]])
-    if "colour" in mark:
-        style["color"] = _colour(mark["colour"])
+    if "color" in mark:
+        style["color"] = _color(mark["color"])
     return style
 
 
@@ -59,9 +59,9 @@ class _Panel:
         axes.set_aspect("equal")
         axes.axis("off")
 
-    def line(self, points, kind, colour=None, **style):
+    def line(self, points, kind, color=None, **style):
         if len(points) > 1:
-            style = {"zorder": 2} | _line_style(kind) | ({"color": colour} if colour else {}) | style
+            style = {"zorder": 2} | _line_style(kind) | ({"color": color} if color else {}) | style
             drawn, = self.axes.plot(*_columns(points), solid_joinstyle="round", **style)
             self.shown.setdefault(kind, drawn)
 
@@ -69,10 +69,10 @@ class _Panel:
         if not len(points):
             return
         mark = MARKS[kind]
-        colour = _colour(mark["colour"])
+        color = _color(mark["color"])
         marker = {"dot": "o", "cross": "x", "ring": "o"}[mark["shape"]]
-        drawn, = self.axes.plot(*_columns(points), marker, markersize=2 * _POINTS * mark["radius"], markeredgecolor=colour,
-                                markerfacecolor=colour if mark["shape"] == "dot" else "none",
+        drawn, = self.axes.plot(*_columns(points), marker, markersize=2 * _POINTS * mark["radius"], markeredgecolor=color,
+                                markerfacecolor=color if mark["shape"] == "dot" else "none",
                                 markeredgewidth=_POINTS * mark.get("width", 0.0), linestyle="", zorder=4)
         drawn.set_gid(f"{self.name}-{kind}")
         self.shown.setdefault(kind, drawn)
@@ -81,17 +81,17 @@ class _Panel:
         """Distances from the car, named beside it on the right, where no lane is; as far as the drawing goes there."""
         angles = np.linspace(0.0, math.pi, 91)
         for radius in np.arange(_ARC_EVERY_M, reach + 1e-6, _ARC_EVERY_M):
-            self.axes.plot(radius * np.cos(angles), radius * np.sin(angles), color=_colour("grid"), linewidth=0.75,
+            self.axes.plot(radius * np.cos(angles), radius * np.sin(angles), color=_color("grid"), linewidth=0.75,
                            zorder=0)
             if radius <= right:
                 self.axes.annotate(f"{radius:g} m", (radius, 0), xytext=(-2, -9), textcoords="offset points", ha="right",
-                                   fontsize=7, color=_colour("muted"), annotation_clip=False)
+                                   fontsize=7, color=_color("muted"), annotation_clip=False)
 
     def car(self):
         outline = np.array(MARKS["car"]["outline"], dtype=float) * (1, -1)
         span = np.abs(outline).max()
         self.axes.plot(0, 0, marker=np.vstack([outline, outline[:1]]), markersize=2 * _POINTS * span, linestyle="",
-                       color=_colour(MARKS["car"]["colour"]), markeredgewidth=0, zorder=5)
+                       color=_color(MARKS["car"]["color"]), markeredgewidth=0, zorder=5)
 
 
 def _columns(points):
@@ -109,31 +109,31 @@ def _band(panel, cones, truth):
         panel.axes.add_patch(patch)
     else:
         patch, = panel.axes.fill(*_columns(left + right[::-1]), linewidth=0, zorder=1)
-    patch.set(color=_colour(MARKS["band"]["colour"]), alpha=MARKS["band"]["opacity"], linewidth=0)
+    patch.set(color=_color(MARKS["band"]["color"]), alpha=MARKS["band"]["opacity"], linewidth=0)
     panel.shown["band"] = patch
 
 
-def _lane(panel, cones, lane, pose, colour, width, longest_gap_m):
+def _lane(panel, cones, lane, pose, color, width, longest_gap_m):
     """`lane`: sides and closed as in a frame, and what is drawn beside."""
     for side in lane["sides"]:
         points = _of_frame(side["p"]) if isinstance(side, dict) else [cones[i] for i in side]
         solid, bridged = solid_and_bridged([tuple(point) for point in points], lane["closed"], longest_gap_m)
         for piece in solid:
-            panel.line(piece, "lane", colour, linewidth=width)
+            panel.line(piece, "lane", color, linewidth=width)
         for piece in bridged:
-            panel.line(piece, "bridged", colour, linewidth=width)
+            panel.line(piece, "bridged", color, linewidth=width)
     beside = lane["beside"]
     if "inferred" in beside:
-        panel.line(_up(in_car_frame(pose, np.array(beside["inferred"]).reshape(-1, 2))), "inferred", colour, linewidth=width)
+        panel.line(_up(in_car_frame(pose, np.array(beside["inferred"]).reshape(-1, 2))), "inferred", color, linewidth=width)
     if "trusted_end" in beside:
-        panel.line(_up(in_car_frame(pose, np.array(beside["trusted_end"]))), "trusted", colour, zorder=3)
+        panel.line(_up(in_car_frame(pose, np.array(beside["trusted_end"]))), "trusted", color, zorder=3)
 
 
-def _candidates(panel, cones, candidates, colour):
+def _candidates(panel, cones, candidates, color):
     """Every step that a candidate takes, once."""
     steps = {(min(step), max(step)) for sides in candidates for side in sides for step in zip(side, side[1:])}
     gap = (np.nan, np.nan)
-    panel.line([point for start, end in sorted(steps) for point in (cones[start], cones[end], gap)], "candidate", colour,
+    panel.line([point for start, end in sorted(steps) for point in (cones[start], cones[end], gap)], "candidate", color,
                alpha=MARKS["candidate"]["opacity"])
 
 
@@ -202,11 +202,11 @@ def draw(scene_file, tracks_file, lanes_file, how):
     mark = MARKS["lane"]
     wider = min(mark["wider"], (mark["widest"] - mark["width"]) / max(1, len(lanes) - 1))
     for place, lane in enumerate(lanes):  # lanes that lie on one another show as stripes: the first ones are broader
-        colour = _colour(f"m{place % METHOD_COLOURS}")
+        color = _color(f"m{place % METHOD_COLORS}")
         width = _POINTS * (mark["width"] + wider * (len(lanes) - 1 - place))
-        _candidates(found, cones, lane["candidates"], colour)
-        _lane(found, cones, lane, pose, colour, width, how["longest_gap_m"])
-        handles.append((pyplot.Line2D([], [], color=colour, linewidth=width), lane["said"]))
+        _candidates(found, cones, lane["candidates"], color)
+        _lane(found, cones, lane, pose, color, width, how["longest_gap_m"])
+        handles.append((pyplot.Line2D([], [], color=color, linewidth=width), lane["said"]))
     found.points(cones[:count], "cone")
     found.points(cones[count:], "false")
     found.points(_of_frame(frame.get("m", [])), "missed")
@@ -231,7 +231,7 @@ def main(arguments):
     with open(how_file, encoding="utf-8") as stream:
         how = json.load(stream)
     try:
-        with picture_colours(), pyplot.rc_context({"svg.hashsalt": "conelane"}):
+        with picture_colors(), pyplot.rc_context({"svg.hashsalt": "conelane"}):
             figure = draw(scene_file, tracks_file, lanes_file, how)
             metadata = {"Date": None} if picture.endswith(".svg") else {"Software": None}
             figure.savefig(picture, dpi=160, facecolor=SURFACE, metadata=metadata)

@@ -9,7 +9,7 @@
   const reach_m = 25;
   let frame = 0, timer = null;
   slider.max = Math.max(0, race.frames.length - 1);
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   const draw = () => {
     const now = race.frames[frame];
@@ -27,11 +27,11 @@
       for (let i = 0; i + 1 < flat.length; i += 2) mark(x(flat[i]), y(flat[i + 1]));
     };
     const dots = (flat, radius, name) => {
-      context.fillStyle = colour(name);
+      context.fillStyle = color(name);
       each(flat, (px, py) => { context.beginPath(); context.arc(px, py, radius, 0, 2 * Math.PI); context.fill(); });
     };
     const line = (points, name, thickness) => {
-      context.strokeStyle = colour(name);
+      context.strokeStyle = color(name);
       context.lineWidth = thickness;
       context.beginPath();
       points.forEach(([px, py], i) => (i ? context.lineTo(px, py) : context.moveTo(px, py)));
@@ -40,7 +40,7 @@
     dots(race.left, 3, "--m0");
     dots(race.right, 3, "--m1");
     dots(race.other, 3, "--muted");
-    context.strokeStyle = colour("--muted");
+    context.strokeStyle = color("--muted");
     context.lineWidth = 1;
     each(race.false_positives, (px, py) => {
       context.beginPath();
@@ -48,7 +48,7 @@
       context.moveTo(px - 3, py + 3); context.lineTo(px + 3, py - 3);
       context.stroke();
     });
-    context.strokeStyle = colour("--ink");
+    context.strokeStyle = color("--ink");
     each(now.seen, (px, py) => { context.beginPath(); context.arc(px, py, 5, 0, 2 * Math.PI); context.stroke(); });
     line(race.frames.slice(0, frame + 1).map((past) => [x(past.x), y(past.y)]), "--muted", 1.5);
     const path = [];

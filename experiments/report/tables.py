@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, field
 from html import escape
 
-from .theme import METHOD_COLOURS
+from .theme import METHOD_COLORS
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Cell:
     value: object = None
     extra: str = ""
     attributes: dict = field(default_factory=dict)
-    colour: int | None = None  # of a method's swatch
+    color: int | None = None  # of a method's swatch
 
 
 def text(value):
@@ -29,7 +29,7 @@ def text(value):
 
 
 def method_cell(methods, method, label):
-    return Cell(label, label, colour=methods.index(method) % METHOD_COLOURS)
+    return Cell(label, label, color=methods.index(method) % METHOD_COLORS)
 
 
 def _range(interval, show):
@@ -73,7 +73,7 @@ def _cell_html(cell, column, tag):
     extra = f' <small>{escape(cell.extra)}</small>' if cell.extra else ""
     name = ' class="number"' if column.kind == "number" else ""
     scope = ' scope="row"' if tag == "th" else ""
-    swatch = "" if cell.colour is None else f'<span class="swatch" style="background:var(--m{cell.colour})"></span>'
+    swatch = "" if cell.color is None else f'<span class="swatch" style="background:var(--m{cell.color})"></span>'
     return f"<{tag}{scope}{name}{attributes}>{swatch}{escape(cell.text)}{extra}</{tag}>"
 
 

@@ -19,14 +19,14 @@ _STAND_INS = {variable: f"#0102{index:02x}" for index, variable in enumerate(_VA
 _NAMES = matplotlib.colors.get_named_colors_mapping()
 
 
-def _use(colours):
-    for variable, colour in colours.items():
-        _NAMES[f"conelane:{variable}"] = colour
+def _use(colors):
+    for variable, color in colors.items():
+        _NAMES[f"conelane:{variable}"] = color
 
 
 _use(_STAND_INS)
 INK, MUTED, GRID, ACCENT, SURFACE = (f"conelane:{variable}" for variable in _VARIABLES[:5])
-METHOD_COLOURS = 8  # --m0 ... --m7 of style.css
+METHOD_COLORS = 8  # --m0 ... --m7 of style.css
 _DASHES = ("-", (0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)))
 MARKERS = "osD^vPX*"
 
@@ -40,22 +40,22 @@ pyplot.rcParams.update({
     "figure.facecolor": "none", "axes.facecolor": "none", "savefig.facecolor": "none"})
 
 
-def method_colour(methods, method):
+def method_color(methods, method):
     """A method's colour, the same in every figure."""
-    return f"conelane:m{methods.index(method) % METHOD_COLOURS}"
+    return f"conelane:m{methods.index(method) % METHOD_COLORS}"
 
 
 def method_style(methods, method, variant=0):
     """Colour, marker and dashes: what colour cannot tell apart, the others do. `variant` counts the cone-set
     sizes of one method."""
     index = methods.index(method)
-    return {"gid": f"curve:{method}", "color": method_colour(methods, method), "marker": MARKERS[index % len(MARKERS)],
-            "linestyle": _DASHES[(index // METHOD_COLOURS + variant) % len(_DASHES)]}
+    return {"gid": f"curve:{method}", "color": method_color(methods, method), "marker": MARKERS[index % len(MARKERS)],
+            "linestyle": _DASHES[(index // METHOD_COLORS + variant) % len(_DASHES)]}
 
 
 def series_style(index):
     """As method_style, for curves that are no methods."""
-    return {"color": f"conelane:m{index % METHOD_COLOURS}", "linestyle": _DASHES[index % len(_DASHES)]}
+    return {"color": f"conelane:m{index % METHOD_COLORS}", "linestyle": _DASHES[index % len(_DASHES)]}
 
 
 def logarithmic(axis):
@@ -85,7 +85,7 @@ def legend(axes):
 
 
 @contextlib.contextmanager
-def picture_colours():
+def picture_colors():
     """Figures made and saved within have the colours of the light page."""
     style = pkgutil.get_data(__package__, "style.css").decode("utf-8")
     light = dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", style[:style.index("}")]))

@@ -12,7 +12,7 @@
   const trackFrames = new Map(); // of each track, what its map shows
 
   const frame = () => data.frames[state.lap.scenes[state.pose]];
-  const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   /// Canvas sized to the screen's pixels, and its context in CSS pixels.
   const prepare = (canvas) => {
@@ -45,8 +45,8 @@
 
   const drawRange = (context, view) => {
     const reach = 100 * state.lap.range;
-    context.strokeStyle = colour("--grid");
-    context.fillStyle = colour("--muted");
+    context.strokeStyle = color("--grid");
+    context.fillStyle = color("--muted");
     context.font = "11px system-ui, sans-serif";
     for (let radius = 1000; radius <= reach + 1; radius += 1000) {
       context.beginPath();
@@ -78,8 +78,8 @@
     };
     const { boundary, driven } = marks;
     for (const side of [track.left, track.right])
-      drawDashed(side, colour("--" + boundary.colour), boundary.width, boundary.dash, track.closed);
-    drawDashed(track.driven, colour("--" + driven.colour), driven.width, driven.dash, false);
+      drawDashed(side, color("--" + boundary.color), boundary.width, boundary.dash, track.closed);
+    drawDashed(track.driven, color("--" + driven.color), driven.width, driven.dash, false);
     context.setLineDash([]);
   };
 
@@ -87,7 +87,7 @@
   const drawMark = (context, [x, y], mark) => {
     const { shape, radius } = mark;
     context.lineWidth = mark.width || 1;
-    context.strokeStyle = context.fillStyle = colour("--" + mark.colour);
+    context.strokeStyle = context.fillStyle = color("--" + mark.color);
     context.beginPath();
     if (shape === "cross") {
       context.moveTo(x - radius, y - radius); context.lineTo(x + radius, y + radius);
@@ -160,7 +160,7 @@
     drawBoundaries(context, view);
 
     const [left, right, closed] = current.g;
-    context.fillStyle = colour("--" + marks.band.colour);
+    context.fillStyle = color("--" + marks.band.color);
     context.globalAlpha = marks.band.opacity;
     context.beginPath();
     if (closed) {
@@ -177,7 +177,7 @@
     const wider = Math.min(marks.lane.wider, (marks.lane.widest - marks.lane.width) / Math.max(1, visible.length - 1));
     visible.forEach((i, place) => {
       const answer = current.a[i];
-      context.strokeStyle = colour("--m" + data.methods[i].colour);
+      context.strokeStyle = color("--m" + data.methods[i].color);
       context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
       const sides = answer.slice(0, 2).map(side), trusted = answer[10];
       for (const points of sides) strokeSide(context, points, answer[2], data.longest_gap * view.scale);
@@ -192,7 +192,7 @@
     points.forEach((point, i) => drawMark(context, point, i < cones ? marks.cone : marks.false));
     for (const point of missed(view)) drawMark(context, point, marks.missed); // what the car does not see is hollow
 
-    context.fillStyle = colour("--" + marks.car.colour);
+    context.fillStyle = color("--" + marks.car.color);
     context.beginPath();
     trace(context, marks.car.outline.map(([x, y]) => [view.x(0, 0) + x, view.y(0) + y]), true);
     context.fill();
@@ -229,13 +229,13 @@
     for (const [line, stroke, closed] of lines) {
       const points = [];
       for (let i = 0; i < line.length; i += 2) points.push(place([line[i], line[i + 1]]));
-      context.strokeStyle = colour(stroke);
+      context.strokeStyle = color(stroke);
       context.beginPath();
       trace(context, points, closed);
       context.stroke();
     }
     const [x, y] = place(poses[state.pose]);
-    context.fillStyle = colour("--accent");
+    context.fillStyle = color("--accent");
     context.beginPath();
     context.arc(x, y, 4.5, 0, 2 * Math.PI);
     context.fill();
@@ -246,7 +246,7 @@
     const head = document.createElement("th");
     head.scope = "row";
     head.innerHTML = '<label><input type="checkbox" checked><span class="swatch"></span><span></span></label>';
-    head.querySelector(".swatch").style.background = `var(--m${method.colour})`;
+    head.querySelector(".swatch").style.background = `var(--m${method.color})`;
     head.querySelector("label > :last-child").textContent = method.label;
     const toggle = head.querySelector("input");
     toggle.addEventListener("change", () => { state.shown[i] = toggle.checked; drawScene(); });

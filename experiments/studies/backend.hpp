@@ -2,7 +2,7 @@
 
 #include "conelane/formulation.hpp"
 #include "conelane/rld_solver.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct Backend {
     std::string solver;  ///< of the registry, or the NAME of a program from outside
     Formulation formulation = Formulation::tight;
     bool warm_start = false;
-    std::optional<OutsideMethod> outside{};
+    std::optional<OutsideDetector> outside{};
     bool all_rows = false;  ///< of a program from outside: one file with all rows
 
     /// "cbc/tight", "cbc/tight warm", "highs/tight whole"; only the solver's name where it ignores

@@ -332,7 +332,7 @@ class BackendsStudy : public Study {
                 if (all_rows_ && one.outside) all.push_back(one), all.back().all_rows = true;
             }
         };
-        for (const std::string& solver : split_methods(solvers_)) {
+        for (const std::string& solver : split_detectors(solvers_)) {
             if (solver == "all") {
                 for (const Backend& backend : exact_backends()) add(backend, false);
                 continue;

@@ -132,7 +132,7 @@ nlohmann::ordered_json to_json(const OverrunStatistics& overrun) {
 
 nlohmann::ordered_json row_to_json(const DeadlineRow& row) {
     nlohmann::ordered_json json{
-        {"method", row.method}, {"limit_ms", row.limit_ms}, {"calls", row.calls}, {"struck", row.struck}};
+        {"method", row.detector}, {"limit_ms", row.limit_ms}, {"calls", row.calls}, {"struck", row.struck}};
     if (row.struck == 0) return json;
     json["wall"] = to_json(row.wall);
     json["cpu"] = to_json(row.cpu);
@@ -150,13 +150,13 @@ class DeadlinesStudy : public Study {
                  "from the limit to the answer, and the thread's processor time between the two, which other "
                  "programs do not lengthen. Quantiles by nearest rank: p99.9 of fewer than 1000 calls is the "
                  "largest."}) {
-        for (const DetectorInfo& detector : detectors()) methods_.emplace_back(detector.name);
-        methods_.emplace_back("path-pair");
+        for (const DetectorInfo& detector : detectors()) detectors_.emplace_back(detector.name);
+        detectors_.emplace_back("path-pair");
     }
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl")->required();
-        command.add_option("--methods", methods_, "methods, and solvers of the registry")
+        command.add_option("--methods", detectors_, "methods, and solvers of the registry")
             ->delimiter(',')
             ->capture_default_str();
         command.add_option("--limits", options_.limits_ms, "milliseconds")
@@ -175,13 +175,13 @@ class DeadlinesStudy : public Study {
 
     StudyResult run() override {
         const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
-        const std::vector<DeadlineRow> rows = deadline_rows(scenes, timed_calls(methods_), options_);
+        const std::vector<DeadlineRow> rows = deadline_rows(scenes, timed_calls(detectors_), options_);
         return study_result(deadline_table(rows), rows, row_to_json);
     }
 
   private:
     std::string scenes_;
-    std::vector<std::string> methods_;
+    std::vector<std::string> detectors_;
     DeadlineOptions options_;
 };
 
@@ -224,7 +224,7 @@ std::string deadline_table(std::span<const DeadlineRow> rows) {
         const auto cell = [&](double value) {
             return fixed(row.struck == 0 ? std::nullopt : std::optional(value), 3);
         };
-        table.add({row.method, fmt::format("{:g}", row.limit_ms), std::to_string(row.calls),
+        table.add({row.detector, fmt::format("{:g}", row.limit_ms), std::to_string(row.calls),
                    std::to_string(row.struck), cell(row.wall.median_ms), cell(row.wall.p99_ms),
                    cell(row.wall.p999_ms), cell(row.wall.max_ms), cell(row.cpu.median_ms),
                    cell(row.cpu.p99_ms), cell(row.cpu.p999_ms), cell(row.cpu.max_ms),

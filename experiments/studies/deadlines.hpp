@@ -14,7 +14,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// By how much methods and solvers overrun their time limits.
+/// By how much detectors and solvers overrun their time limits.
 [[nodiscard]] std::unique_ptr<Study> make_deadlines_study();
 
 struct DeadlineOptions {
@@ -35,7 +35,7 @@ struct OverrunStatistics {
 
 /// One method under one limit. Statistics are of the calls that were still running when the limit expired.
 struct DeadlineRow {
-    std::string method;
+    std::string detector;
     double limit_ms = 0.0;
     std::size_t calls = 0;
     std::size_t struck = 0;     ///< of these, those still running
@@ -45,8 +45,8 @@ struct DeadlineRow {
     std::size_t slowest_cones = 0;  ///< that it has
 };
 
-/// Method by method, in the order of the limits. Throws InvalidInput where there is no scene, or an answer is
-/// an error.
+/// Detector by detector, in the order of the limits. Throws InvalidInput where there is no scene, or an
+/// answer is an error.
 [[nodiscard]] std::vector<DeadlineRow> deadline_rows(std::span<const AnnotatedScene> scenes,
                                                      std::span<const TimedCall> calls,
                                                      const DeadlineOptions& options);

@@ -22,29 +22,29 @@ namespace conelane::experiments {
 namespace {
 
 /// A formulation and who solves it.
-struct Contestant {
+struct FormulatedSolver {
     Formulation formulation;
-    std::string_view solver;
+    std::string_view name;
 };
-constexpr std::array kContestants{Contestant{Formulation::tight, "cbc"},
-                                  Contestant{Formulation::paper, "cbc-main"}};
+constexpr std::array kFormulatedSolvers{FormulatedSolver{Formulation::tight, "cbc"},
+                                        FormulatedSolver{Formulation::paper, "cbc-main"}};
 
-std::unique_ptr<RldSolver> solver_of(const Contestant& contestant) {
-    const RldSolverEntry* entry = find_rld_solver(contestant.solver);
+std::unique_ptr<RldSolver> solver_of(const FormulatedSolver& solver) {
+    const RldSolverEntry* entry = find_rld_solver(solver.name);
     if (entry == nullptr) {
-        throw InvalidInput("solver", fmt::format("'{}' is not in this build", contestant.solver));
+        throw InvalidInput("solver", fmt::format("'{}' is not in this build", solver.name));
     }
-    return entry->make(contestant.formulation);
+    return entry->make(solver.formulation);
 }
 
 /// What the scenes of one row add up to.
 class RowSums {
   public:
-    RowSums(std::size_t cones, const Contestant& contestant, const FormulationOptions& options)
-        : options_(options), solver_(solver_of(contestant)) {
+    RowSums(std::size_t cones, const FormulatedSolver& solver, const FormulationOptions& options)
+        : options_(options), solver_(solver_of(solver)) {
         row_.cones = cones;
-        row_.formulation = contestant.formulation;
-        row_.solver = contestant.solver;
+        row_.formulation = solver.formulation;
+        row_.solver = solver.name;
     }
 
     /// The optimum, where it was proven.
@@ -148,8 +148,8 @@ std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> sce
             scenes_of_size(scenes, size, options.limit, [](const AnnotatedScene&) { return true; });
         if (of_size.empty()) continue;
         Progress progress(fmt::format("n = {}", size), of_size.size());
-        RowSums tight(size, kContestants[0], options);
-        RowSums paper(size, kContestants[1], options);
+        RowSums tight(size, kFormulatedSolvers[0], options);
+        RowSums paper(size, kFormulatedSolvers[1], options);
         for (const AnnotatedScene* annotated : of_size) {
             const Scene scene = nearest_ahead(annotated->scene, size);
             const std::optional<double> ours = tight.add(scene);

@@ -65,7 +65,7 @@ nlohmann::ordered_json to_json(const MemoryReading& reading) {
 }
 
 nlohmann::ordered_json row_to_json(const MemoryRow& row) {
-    return {{"method", row.method},
+    return {{"method", row.detector},
             {"warm", to_json(row.warm)},
             {"middle", to_json(row.middle)},
             {"end", to_json(row.end)},
@@ -84,7 +84,7 @@ class MemoryStudy : public Study {
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl")->required();
-        command.add_option("--methods", methods_, "methods, and solvers of the registry")
+        command.add_option("--methods", detectors_, "methods, and solvers of the registry")
             ->delimiter(',')
             ->capture_default_str();
         command.add_option("--calls", options_.calls, "number of calls of each method")
@@ -98,13 +98,13 @@ class MemoryStudy : public Study {
 
     StudyResult run() override {
         const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
-        const std::vector<MemoryRow> rows = memory_rows(scenes, timed_calls(methods_), options_);
+        const std::vector<MemoryRow> rows = memory_rows(scenes, timed_calls(detectors_), options_);
         return study_result(memory_table(rows), rows, row_to_json);
     }
 
   private:
     std::string scenes_;
-    std::vector<std::string> methods_{"front", "clc", "path-pair"};
+    std::vector<std::string> detectors_{"front", "clc", "path-pair"};
     MemoryOptions options_;
 };
 
@@ -137,7 +137,7 @@ std::string memory_table(std::span<const MemoryRow> rows) {
                      {"bytes a call"}});
     const auto kib = [](std::size_t bytes) { return fixed(static_cast<double>(bytes) / 1024.0, 1); };
     for (const MemoryRow& row : rows) {
-        table.add({row.method, std::to_string(row.end.calls), kib(row.warm.resident_bytes),
+        table.add({row.detector, std::to_string(row.end.calls), kib(row.warm.resident_bytes),
                    kib(row.middle.resident_bytes), kib(row.end.resident_bytes), kib(row.warm.heap_bytes),
                    kib(row.middle.heap_bytes), kib(row.end.heap_bytes), fixed(row.bytes_per_call, 3)});
     }

@@ -14,7 +14,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// Whether the memory of the process grows with the calls of a method.
+/// Whether the memory of the process grows with the calls of a detector.
 [[nodiscard]] std::unique_ptr<Study> make_memory_study();
 
 struct MemoryOptions {
@@ -30,9 +30,9 @@ struct MemoryReading {
 };
 [[nodiscard]] MemoryReading memory_now();
 
-/// One method. The first tenth of the calls, and every scene once at least, fills workspaces.
+/// One detector. The first tenth of the calls, and every scene once at least, fills workspaces.
 struct MemoryRow {
-    std::string method;
+    std::string detector;
     MemoryReading warm;
     MemoryReading middle;  ///< halfway from there to the end
     MemoryReading end;

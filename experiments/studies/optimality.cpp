@@ -8,7 +8,7 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/answer_check.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/cone_sets.hpp"
@@ -31,19 +31,19 @@
 namespace conelane::experiments {
 namespace {
 
-/// The parameters are of the objective that lanes are measured by; most methods know none.
-std::unique_ptr<LaneDetector> made(const Method& method, const OptimalityOptions& options) {
-    return make_detector(method, options_used_by(method, {options.parameters, {}, options.nearest}));
+/// The parameters are of the objective that lanes are measured by; most detectors know none.
+std::unique_ptr<LaneDetector> made(const KnownDetector& detector, const OptimalityOptions& options) {
+    return make_detector(detector, options_used_by(detector, {options.parameters, {}, options.nearest}));
 }
 
-/// One lap with the state that a method carries along it.
+/// One lap with the state that a detector carries along it.
 class Lap {
   public:
     Lap(const TrackBoundariesByName& tracks, const OptimalityOptions& options)
         : tracks_(tracks),
           options_(options),
           solver_(find_rld_solver("path-pair")->make(Formulation::tight)),
-          detector_(made(find_method(options.method), options)) {}
+          detector_(made(find_detector(options.detector), options)) {}
 
     OptimalityRow drive(const AnnotatedScene& annotated) {
         const Scene cones =
@@ -56,7 +56,8 @@ class Lap {
         take_optimum(row, report, cones);
         const LaneAnswer answer =
             detector_->detect(annotated.scene, {std::numeric_limits<double>::infinity(), true});
-        if (!answer.enumeration) throw InvalidInput("method", "'" + options_.method + "' does not enumerate");
+        if (!answer.enumeration)
+            throw InvalidInput("method", "'" + options_.detector + "' does not enumerate");
         if (answer.status == LaneStatus::found)
             row.choice = with_objective(answer.lane, problem, cones, annotated);
         compare_candidates(row, answer.enumeration->candidates, problem, cones);
@@ -147,7 +148,7 @@ nlohmann::ordered_json to_json(const OptimalityRow& row, const OptimalityOptions
     nlohmann::ordered_json json{{"scene", scene.scene.id}, {"track", scene.track}};
     if (scene.false_positive_rate) json["false_positive_rate"] = *scene.false_positive_rate;
     if (scene.range_m) json["range"] = *scene.range_m;
-    json["method"] = options.method;
+    json["method"] = options.detector;
     if (options.nearest) json["nearest"] = *options.nearest;
     json["status"] = to_string(row.status);
     if (row.bound) put_bound(json, *row.bound, "bound");
@@ -199,7 +200,7 @@ class OptimalityStudy : public Study {
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);
-        command.add_option("--method", options_.method, "a method that enumerates")->capture_default_str();
+        command.add_option("--method", options_.detector, "a method that enumerates")->capture_default_str();
         add_nearest_option(command, options_.nearest, "the N nearest cones ahead only; all without it");
         add_time_limit_option(command, options_.time_limit_ms);
         add_threads_option(command, options_.threads, "nothing is timed");
@@ -235,7 +236,7 @@ bool OptimalityRow::is_optimal() const {
 std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,
                                            const TrackBoundariesByName& tracks,
                                            const OptimalityOptions& options) {
-    (void)find_method(options.method);
+    (void)find_detector(options.detector);
     const std::vector<std::size_t> starts = lap_starts(scenes);
     std::vector<OptimalityRow> rows(scenes.size());
     Progress progress("optimality", scenes.size());

@@ -20,7 +20,7 @@ class Study;
 [[nodiscard]] std::unique_ptr<Study> make_optimality_study();
 
 struct OptimalityOptions {
-    std::string method = "clc";          ///< one that enumerates
+    std::string detector = "clc";        ///< one that enumerates
     std::optional<std::size_t> nearest;  ///< cone set of both; all cones where absent
     RldParameters parameters;
     double time_limit_ms = 400.0;  ///< of the exact search, a scene
@@ -43,7 +43,7 @@ struct OptimalityRow {
     std::size_t feasible = 0;             ///< of them, under RLD's constraints
     std::optional<JudgedLane> optimum;    ///< with status optimal and feasible
     std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
-    std::optional<JudgedLane> choice;     ///< the lane that the method's own ranking chose
+    std::optional<JudgedLane> choice;     ///< the lane that the detector's own ranking chose
 
     /// (candidate - optimum) / max(1, |optimum|), at least 0; where the optimum is proven and a candidate
     /// feasible.
@@ -52,7 +52,7 @@ struct OptimalityRow {
     [[nodiscard]] bool is_optimal() const;
 };
 
-/// A row per scene that has a ground truth, in order. Throws InvalidInput where the method does not
+/// A row per scene that has a ground truth, in order. Throws InvalidInput where the detector does not
 /// enumerate, and naming the scene where a candidate has a lower objective than an optimum said to be proven
 /// or the independent checker rejects the optimum or the best candidate.
 [[nodiscard]] std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,

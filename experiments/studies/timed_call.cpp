@@ -2,7 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "solvers/registry.hpp"
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace conelane::experiments {
 namespace {
 
-TimedCall call_of(const Method& method) {
-    const std::shared_ptr<LaneDetector> detector = make_detector(method);
-    return {std::string(method.name), [detector](const Scene& scene, double time_limit_ms) {
+TimedCall call_of(const KnownDetector& known) {
+    const std::shared_ptr<LaneDetector> detector = make_detector(known);
+    return {std::string(known.name), [detector](const Scene& scene, double time_limit_ms) {
                 const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = time_limit_ms});
                 if (answer.status == LaneStatus::error) throw InvalidInput(scene.id, answer.message);
             }};
@@ -35,10 +35,10 @@ TimedCall call_of(const RldSolverEntry& entry) {
 std::vector<TimedCall> timed_calls(std::span<const std::string> names) {
     std::vector<TimedCall> calls;
     for (const std::string& name : names) {
-        const auto method = std::ranges::find(methods(), name, &Method::name);
+        const auto detector = std::ranges::find(known_detectors(), name, &KnownDetector::name);
         const RldSolverEntry* const solver = find_rld_solver(name);
-        if (method != methods().end()) {
-            calls.push_back(call_of(*method));
+        if (detector != known_detectors().end()) {
+            calls.push_back(call_of(*detector));
         } else if (solver != nullptr) {
             calls.push_back(call_of(*solver));
         } else {

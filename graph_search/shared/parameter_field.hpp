@@ -8,7 +8,7 @@
 
 namespace conelane {
 
-/// One numeric parameter of a method: how files spell it, where it is, and what it may be.
+/// One numeric parameter of a detector: how files spell it, where it is, and what it may be.
 template <typename Parameters>
 struct ParameterField {
     std::string_view key;

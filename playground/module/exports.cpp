@@ -223,7 +223,7 @@ CONELANE_EXPORT(conelane_detect)
 void conelane_detect(const char* name, std::size_t name_size, const double* scene_numbers,
                      std::size_t scene_count, const double* parameters, std::size_t parameter_count,
                      double nearest, double limit_ms) {
-    const std::string method(name, name_size);
+    const std::string asked(name, name_size);
     const Scene scene = read_scene({scene_numbers, scene_count});
     DetectorOptions options;
     if (parameter_count > 0) options.rld_parameters = read_parameters({parameters, parameter_count});
@@ -231,18 +231,18 @@ void conelane_detect(const char* name, std::size_t name_size, const double* scen
     std::unique_ptr<LaneDetector> made;
     LaneDetector* detector = nullptr;
     if (parameter_count > 0 || nearest >= 0.0) {
-        made = make_detector(method, options);
+        made = make_detector(asked, options);
         detector = made.get();
     } else {
-        auto kept = kept_detectors.find(method);
-        if (kept == kept_detectors.end()) kept = kept_detectors.emplace(method, make_detector(method)).first;
+        auto kept = kept_detectors.find(asked);
+        if (kept == kept_detectors.end()) kept = kept_detectors.emplace(asked, make_detector(asked)).first;
         detector = kept->second.get();
     }
     const Stopwatch watch;
     const LaneAnswer answer = detector->detect(scene, {.time_limit_ms = limit_ms});
     const double latency_ms = watch.elapsed_ms();
     begin();
-    out.member("method", std::string_view(method));
+    out.member("method", std::string_view(asked));
     write_answer(answer);
     out.member("latency_ms", latency_ms).key("merged").begin('[');
     for (const MergedCone& one : answer.merged) out.begin('[').value(one.cone).value(one.into).end(']');

@@ -24,7 +24,7 @@ namespace {
 /// What `compare` and `sweep` share.
 struct Options {
     ComparisonOptions comparison;
-    std::vector<std::string> methods;
+    std::vector<std::string> detectors;
     ParameterSource parameters;
     std::string directory;
 };
@@ -52,7 +52,7 @@ void add_shared_options(CLI::App& command, Options& options) {
                        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
                        "ones without it");
     command
-        .add_option("--methods", options.methods,
+        .add_option("--methods", options.detectors,
                     "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "
                     "takes the rest of its argument; lanes:NAME=FILE scores a finished lanes file "
                     "(docs/methods-from-outside.md)")
@@ -81,11 +81,11 @@ void compare_and_print(Options& options) {
         for (const std::string& name : generated_track_names())
             comparison.tracks.push_back("generated:" + name);
     }
-    const bool any_rld = std::ranges::any_of(comparison.entrants, [](const Entrant& entrant) {
-        return !entrant.outside && find_method(entrant.method).is_rld();
+    const bool any_rld = std::ranges::any_of(comparison.detectors, [](const ComparedDetector& compared) {
+        return !compared.outside && find_detector(compared.name).is_rld();
     });
     if (!any_rld) options.parameters.require_not_given("these methods have");
-    options.parameters.apply_to(comparison.run.method);
+    options.parameters.apply_to(comparison.run.detector);
     comparison.scenes.threads = comparison.run.threads;
     const bool is_whole = comparison.shard.count == 1;  // merge makes the page of all shards
     if (is_whole) require_own_page(options.directory);
@@ -102,8 +102,8 @@ void add_compare_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
-    options->methods = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
-                        "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
+    options->detectors = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
+                          "clc",     "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0};
@@ -125,8 +125,8 @@ void add_compare_command(CLI::App& program) {
                                       command.count("--miss") + command.count("--persist") >
                                   0;
         if (is_disturbed && command.count("--condition") == 0) chosen.conditions.clear();
-        for (const std::string& method : split_methods(options->methods))
-            options->comparison.entrants.push_back(parse_entrant(method, *nearest));
+        for (const std::string& detector : split_detectors(options->detectors))
+            options->comparison.detectors.push_back(parse_compared_detector(detector, *nearest));
         compare_and_print(*options);
     });
 }
@@ -136,7 +136,7 @@ void add_sweep_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     auto sizes = std::make_shared<std::vector<std::size_t>>(
         std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
-    options->methods = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
+    options->detectors = {"rld-cbc", "rld-pair", "rld-shape", "clc"};
     SceneOptions& scenes = options->comparison.scenes;
     scenes.false_positive_rates = {0.2};
     scenes.ranges_m = {30.0};
@@ -147,9 +147,9 @@ void add_sweep_command(CLI::App& program) {
         ->check(whole_number(1, kMaxCones))
         ->capture_default_str();
     command.callback([options, sizes] {
-        for (const std::string& method : split_methods(options->methods)) {
+        for (const std::string& detector : split_detectors(options->detectors)) {
             for (const std::size_t size : *sizes)
-                options->comparison.entrants.push_back(parse_entrant(method, size));
+                options->comparison.detectors.push_back(parse_compared_detector(detector, size));
         }
         compare_and_print(*options);
     });

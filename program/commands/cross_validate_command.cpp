@@ -1,4 +1,4 @@
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "experiments/cross_validation/cross_validation.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
@@ -19,7 +19,7 @@ namespace {
 struct Options {
     CrossValidationOptions run;
     std::vector<std::string> families;
-    std::vector<std::string> methods;
+    std::vector<std::string> detectors;
     std::vector<std::string> learning_conditions{"paper", "car"};
     double learning_every_m = 12.0;
     unsigned threads = 1;
@@ -50,8 +50,8 @@ std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts) 
 void run(Options& options) {
     CrossValidationOptions& run = options.run;
     run.families = parse_families(options.families);
-    for (const std::string& text : split_methods(options.methods))
-        run.comparison.entrants.push_back(parse_entrant(text));
+    for (const std::string& text : split_detectors(options.detectors))
+        run.comparison.detectors.push_back(parse_compared_detector(text));
     SceneOptions& learned = run.learning.scenes;
     learned.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     learned.ranges_m = {30.0, 50.0};
@@ -75,7 +75,8 @@ void add_cross_validate_command(CLI::App& program) {
         "cross-validate",
         "compares methods on courses that none of them has learned from: a fold for each family of courses");
     auto options = std::make_shared<Options>();
-    options->methods = {"front", "rld-pair", "rld-shape", "clc", "clc-paper", "delaunay-beam", "astar-lane"};
+    options->detectors = {"front",     "rld-pair",      "rld-shape", "clc",
+                          "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->run.comparison.scenes;
     scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     scenes.ranges_m = {30.0, 50.0};
@@ -87,7 +88,7 @@ void add_cross_validate_command(CLI::App& program) {
                     "several SPECs")
         ->required();
     command.add_option("--always", options->run.always, "SPECs that every fold learns from");
-    command.add_option("--methods", options->methods, "see `conelane methods`")
+    command.add_option("--methods", options->detectors, "see `conelane methods`")
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, scenes);

@@ -4,9 +4,9 @@
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
@@ -32,7 +32,7 @@ namespace {
 constexpr const char* kStandardStream = "-";
 
 struct Options {
-    std::string method;
+    std::string detector;
     std::string scenes;
     std::string out;
     std::string weights;  ///< empty: the shipped ones
@@ -64,41 +64,42 @@ class LaneSink {
     AnswerErrors errors_;
 };
 
-/// A method and the name that its answers bear.
+/// A detector and the name that its answers bear.
 struct Answering {
     std::string name;
-    MethodMaker make;
+    DetectorMaker make;
 };
-Answering method_of(Options& options) {
-    const auto outside = find_outside_method(options.method);
+Answering detector_of(Options& options) {
+    const auto outside = find_outside_detector(options.detector);
     const auto refuse_weights = [&options](const std::string& who) {
         if (options.weights.empty()) return;
         throw InvalidInput("--weights", who + " does not take them: only front and front-warm do");
     };
     if (!outside) {
-        const Method& method = find_method(options.method);
-        if (!method.is_rld()) options.parameters.require_not_given("'" + options.method + "' has");
-        if (!method.takes_weights()) refuse_weights("'" + options.method + "'");
+        const KnownDetector& detector = find_detector(options.detector);
+        if (!detector.is_rld()) options.parameters.require_not_given("'" + options.detector + "' has");
+        if (!detector.takes_weights()) refuse_weights("'" + options.detector + "'");
         if (!options.weights.empty()) {
             // Read once, and before the work: what is wrong with them is said at once.
-            options.run.method.weights = parsed_file(options.weights, [](std::string text) {
+            options.run.detector.weights = parsed_file(options.weights, [](std::string text) {
                 (void)parse_front_weights(text);
                 return WeightsBytes{std::move(text)};
             });
         }
-        return {std::string(method.name), maker_of(method, options.run)};
+        return {std::string(detector.name), maker_of(detector, options.run)};
     }
     if (!outside->is_program())
-        throw InvalidInput("--method", "'" + options.method + "' holds lanes already, none can be detected");
+        throw InvalidInput("--method",
+                           "'" + options.detector + "' holds lanes already, none can be detected");
     options.parameters.require_not_given("the program '" + outside->name + "' has");
     refuse_weights("the program '" + outside->name + "'");
     return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
 }
 
 /// One scene after the other; nothing is answered untimed before, since no scene is known before.
-void detect_streamed(const Answering& method, const Options& options) {
+void detect_streamed(const Answering& detector, const Options& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
-    const std::unique_ptr<TimedMethod> timed = method.make("");
+    const std::unique_ptr<TimedDetector> timed = detector.make("");
     LaneSink sink(options.out);
     if (options.scenes == kStandardStream) {
         for_each_scene_line(std::cin, [&](const SceneLine& line) {
@@ -107,7 +108,7 @@ void detect_streamed(const Answering& method, const Options& options) {
             } else if (line.scene) {
                 sink.put(timed->answer(line.scene->scene));
             } else {
-                LaneRecord wrong{std::to_string(line.number), method.name, {}, 0.0, {}};
+                LaneRecord wrong{std::to_string(line.number), detector.name, {}, 0.0, {}};
                 wrong.answer.status = LaneStatus::error;
                 wrong.answer.message = line.fault;
                 sink.put(wrong);
@@ -124,14 +125,14 @@ void detect_streamed(const Answering& method, const Options& options) {
 }
 
 void detect(Options& options) {
-    options.parameters.apply_to(options.run.method);
-    const Answering method = method_of(options);
+    options.parameters.apply_to(options.run.detector);
+    const Answering detector = detector_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
-        detect_streamed(method, options);
+        detect_streamed(detector, options);
         return;
     }
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
-    const std::vector<LaneRecord> lanes = run(method.name, method.make, scenes, options.run);
+    const std::vector<LaneRecord> lanes = run(detector.name, detector.make, scenes, options.run);
     write_lanes(options.out, lanes);
     AnswerErrors errors;
     for (const LaneRecord& record : lanes) add_answer_of(errors, record);
@@ -145,12 +146,12 @@ void add_methods_command(CLI::App& program) {
     auto all = std::make_shared<bool>(false);
     command.add_flag("--all", *all, "also variants that leave a part out, to show what the part is worth");
     command.callback([all] {
-        for (const Method& method : methods()) {
-            if (method.is_ablation && !*all) continue;
-            const ConeSet set = cone_set(method, {});
+        for (const KnownDetector& detector : known_detectors()) {
+            if (detector.is_ablation && !*all) continue;
+            const ConeSet set = cone_set(detector, {});
             std::string cones = set.nearest ? fmt::format("{} nearest", *set.nearest) : "all";
             if (set.context) cones += fmt::format(" of {}", *set.context);
-            fmt::print("{:<16} cones: {:<16} {}\n", method.name, cones, method.description);
+            fmt::print("{:<16} cones: {:<16} {}\n", detector.name, cones, detector.description);
         }
     });
 }
@@ -165,7 +166,7 @@ void add_detect_command(CLI::App& program) {
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command
         .add_option(
-            "--method", options->method,
+            "--method", options->detector,
             "see `conelane methods`, or exec:NAME=COMMAND for any program (docs/methods-from-outside.md)")
         ->required();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; - reads standard input line by line")
@@ -173,7 +174,7 @@ void add_detect_command(CLI::App& program) {
     add_output_option(command, "--out", options->out,
                       "*.lanes.jsonl; - writes each line to standard output at once", true)
         ->required();
-    add_nearest_option(command, options->run.method.nearest, "cone-set size instead of the method's own");
+    add_nearest_option(command, options->run.detector.nearest, "cone-set size instead of the method's own");
     add_time_limit_option(command, options->run.limits.time_limit_ms);
     add_threads_option(command, options->run.threads,
                        "number of threads; with more than one, latencies are disturbed");

@@ -29,7 +29,7 @@ struct Options {
     std::string format = "json";
     std::string out;
     std::optional<std::string> id;
-    std::optional<std::string> method;
+    std::optional<std::string> detector;
     DrivableOptions drivable;
     FollowOptions follow;  ///< what it shares with the others is set from those
 };
@@ -42,11 +42,11 @@ std::vector<LaneRecord> chosen_lanes(const Options& options) {
     if (records.empty())
         throw InputError(options.lanes, 0, "--id", "'" + *options.id + "' is not a scene of it");
     std::erase_if(records, [&](const LaneRecord& record) {
-        return options.method && record.method != *options.method;
+        return options.detector && record.detector != *options.detector;
     });
     if (records.empty()) {
         throw InputError(options.lanes, 0, "--method",
-                         "'" + *options.method + "' answers none of the scenes");
+                         "'" + *options.detector + "' answers none of the scenes");
     }
     if (options.format == "json" || records.size() == 1) return records;
     const LaneRecord& second = records[1];
@@ -62,7 +62,7 @@ std::vector<LaneRecord> chosen_lanes(const Options& options) {
 
 DrivableRecord drive(const LaneRecord& record, const Scene& scene, const Options& options) {
     try {
-        return {record.scene, record.method, record.answer.status,
+        return {record.scene, record.detector, record.answer.status,
                 drivable(record.answer, scene, options.drivable)};
     } catch (const InvalidInput& error) {
         throw InputError(options.lanes, record.line, error.key(), reason_of(error));
@@ -77,7 +77,7 @@ AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
 
 void follow(const Options& options) {
     FollowOptions wanted = options.follow;
-    if (options.method) wanted.detector = *options.method;
+    if (options.detector) wanted.detector = *options.detector;
     wanted.format = options.format;
     wanted.out = options.out;
     wanted.drivable = options.drivable;
@@ -166,7 +166,7 @@ void add_drive_command(CLI::App& program) {
                       "the file to write; with --follow - writes each line to standard output at once", true)
         ->required();
     command.add_option("--id", options->id, "only lanes of this scene");
-    command.add_option("--method", options->method,
+    command.add_option("--method", options->detector,
                        "only lanes of this method; with --follow the detector, front-warm by default");
     command
         .add_option("--step", options->drivable.step_m, "distance from point to point [m], in [0.01, 100]")

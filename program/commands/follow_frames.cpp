@@ -62,7 +62,7 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
 /// Plans, line by line: a file that appears when all is done, or standard output, each at once.
 class PlanSink {
   public:
-    explicit PlanSink(const FollowOptions& options) : method_(options.detector) {
+    explicit PlanSink(const FollowOptions& options) : detector_(options.detector) {
         if (options.format != "json") return;  // the course alone is written
         if (options.out == kStandardStream) {
             stream_ = &std::cout;
@@ -73,14 +73,14 @@ class PlanSink {
     void put(const FrameLine& line, const Plan& plan) {
         write(plan_line(line.number, line.frame->time_s, plan));
         if (plan.answer.status == LaneStatus::error) {
-            errors_.add_error(method_, std::to_string(line.number), plan.answer.message);
+            errors_.add_error(detector_, std::to_string(line.number), plan.answer.message);
         } else {
-            errors_.add_answer(method_);
+            errors_.add_answer(detector_);
         }
     }
     void put_refused(const FrameLine& line, const std::string& message) {
         write(refused_frame_line(line.number, message));
-        errors_.add_error(method_, std::to_string(line.number), message);
+        errors_.add_error(detector_, std::to_string(line.number), message);
     }
     void commit() {
         if (file_) file_->commit();
@@ -96,7 +96,7 @@ class PlanSink {
             throw std::system_error(errno, std::generic_category(), "--out cannot be written to its end");
     }
 
-    std::string method_;
+    std::string detector_;
     std::optional<AtomicFile> file_;
     std::ostream* stream_ = nullptr;
     AnswerErrors errors_;

@@ -26,7 +26,7 @@ struct Options {
     std::vector<std::string> lanes;
     std::string id;
     std::string out;
-    std::vector<std::string> methods;
+    std::vector<std::string> detectors;
     bool with_given = false;
     bool without_truth = false;
     std::string title;
@@ -54,8 +54,8 @@ void add_lanes(const std::string& file, const Options& options, Picture& picture
     const std::size_t before = picture.lanes.size();
     for (LaneRecord& record : read_lanes(file)) {
         if (record.scene != options.id) continue;
-        if (!options.methods.empty() &&
-            std::ranges::find(options.methods, record.method) == options.methods.end())
+        if (!options.detectors.empty() &&
+            std::ranges::find(options.detectors, record.detector) == options.detectors.end())
             continue;
         PicturedLane lane{std::move(record), {}};
         try {
@@ -65,7 +65,7 @@ void add_lanes(const std::string& file, const Options& options, Picture& picture
         }
         picture.lanes.push_back(std::move(lane));
     }
-    if (options.methods.empty() && picture.lanes.size() == before)
+    if (options.detectors.empty() && picture.lanes.size() == before)
         throw InputError(file, 0, "--id", "'" + options.id + "' is not a scene of it");
 }
 
@@ -77,11 +77,11 @@ void plot(const Options& options) {
     picture.with_truth = !options.without_truth;
     picture.title = options.title;
     for (const std::string& file : options.lanes) add_lanes(file, options, picture);
-    for (const std::string& method : options.methods) {
-        const auto is_of = [&](const PicturedLane& lane) { return lane.record.method == method; };
+    for (const std::string& detector : options.detectors) {
+        const auto is_of = [&](const PicturedLane& lane) { return lane.record.detector == detector; };
         if (std::ranges::none_of(picture.lanes, is_of)) {
             throw InputError(options.lanes.front(), 0, "--method",
-                             "'" + method + "' answers scene '" + options.id + "' in no file of --lanes");
+                             "'" + detector + "' answers scene '" + options.id + "' in no file of --lanes");
         }
     }
     try {
@@ -113,7 +113,7 @@ void add_plot_command(CLI::App& program) {
                                                                         : "must end in .svg or .png: " + file;
             },
             ""));
-    command.add_option("--method", options->methods, "only lanes of these methods")
+    command.add_option("--method", options->detectors, "only lanes of these methods")
         ->delimiter(',')
         ->needs("--lanes");
     command.add_flag("--given", options->with_given, "also draw what a detector gets: only cones and pose");

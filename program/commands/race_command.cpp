@@ -5,7 +5,7 @@
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/options/shared_options.hpp"
-#include "experiments/race/entrants.hpp"
+#include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
 
@@ -35,7 +35,7 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 struct Options {
     std::vector<std::string> tracks;
-    std::vector<std::string> methods{"front"};
+    std::vector<std::string> detectors{"front"};
     bool planner = false;
     bool both = false;
     std::string mission;
@@ -110,7 +110,7 @@ std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission
 /// A heat and what it needs to be driven.
 struct Entry {
     const RaceCourse* course;
-    const RaceMethod* method;
+    const RaceDetector* detector;
 };
 
 void run_all(const Options& options, const std::vector<Entry>& entries, std::vector<Heat>& heats) {
@@ -125,9 +125,9 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 race_options.sight.false_positive_rate = heat.false_positive_rate;
                 race_options.sight.seed = heat.seed;
                 race_options.keep_replay = options.replay != "none";
-                race_options.with_any_map = !entries[i].course->closed && heat.method != "truth";
+                race_options.with_any_map = !entries[i].course->closed && heat.detector != "truth";
                 heat.result = race(*entries[i].course, race_options,
-                                   make_entrant(*entries[i].method, *entries[i].course, race_options));
+                                   make_driver(*entries[i].detector, *entries[i].course, race_options));
                 // What was not lost is not kept; the first race is, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
@@ -146,9 +146,9 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
     if (failure) std::rethrow_exception(failure);
 }
 
-nlohmann::ordered_json parameters_of(const Options& options, const std::vector<RaceMethod>& methods) {
+nlohmann::ordered_json parameters_of(const Options& options, const std::vector<RaceDetector>& detectors) {
     std::vector<std::string> names;
-    for (const RaceMethod& method : methods) names.push_back(method.name);
+    for (const RaceDetector& detector : detectors) names.push_back(detector.name);
     const Provenance origin = provenance();
     return {{"commit", origin.commit},
             {"compiler", origin.compiler},
@@ -183,9 +183,9 @@ class Outputs {
           replay_(folder / "replay.jsonl"),
           times_(folder / "times.txt") {}
 
-    void write(const Options& options, const std::vector<RaceMethod>& methods,
+    void write(const Options& options, const std::vector<RaceDetector>& detectors,
                const std::vector<Entry>& entries, const std::vector<Heat>& heats) {
-        nlohmann::ordered_json json = parameters_of(options, methods);
+        nlohmann::ordered_json json = parameters_of(options, detectors);
         json["races"] = nlohmann::ordered_json::array();
         for (std::size_t i = 0; i < heats.size(); ++i) {
             json["races"].push_back(heat_json(heats[i]));
@@ -239,21 +239,21 @@ void run_races(Options& options) {
             throw InvalidInput("--seed", fmt::format("{} is there twice", seed));
         }
     }
-    const std::vector<RaceMethod> methods =
-        race_methods(options.methods, options.both      ? WithPlanner::both
-                                      : options.planner ? WithPlanner::only
-                                                        : WithPlanner::no);
+    const std::vector<RaceDetector> detectors =
+        race_detectors(options.detectors, options.both      ? WithPlanner::both
+                                          : options.planner ? WithPlanner::only
+                                                            : WithPlanner::no);
     const std::vector<RaceCourse> courses = courses_of(options, mission);
     std::vector<Heat> heats;
     std::vector<Entry> entries;
     const std::size_t distinct_courses = options.vary ? 1 : courses.size();
     for (std::size_t first = 0; first < distinct_courses; ++first) {
-        for (const RaceMethod& method : methods) {
+        for (const RaceDetector& detector : detectors) {
             for (const double rate : options.rates) {
                 for (std::size_t i = 0; i < options.seeds.size(); ++i) {
                     const RaceCourse& course = courses[options.vary ? i : first];
-                    heats.push_back({course.name, method.name, rate, options.seeds[i]});
-                    entries.push_back({&course, &method});
+                    heats.push_back({course.name, detector.name, rate, options.seeds[i]});
+                    entries.push_back({&course, &detector});
                 }
             }
         }
@@ -261,7 +261,7 @@ void run_races(Options& options) {
     make_folder(options.out);
     Outputs outputs(options.out);
     run_all(options, entries, heats);
-    outputs.write(options, methods, entries, heats);
+    outputs.write(options, detectors, entries, heats);
 }
 
 }  // namespace
@@ -273,7 +273,7 @@ void add_race_command(CLI::App& program) {
     command.add_option("--tracks", options->tracks,
                        "closed courses, as for `scenes`. Acceleration and skidpad have a course by default");
     command.add_option(
-        "--methods", options->methods,
+        "--methods", options->detectors,
         "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");
     command.add_flag("--planner", options->planner, "each detector drives through a planner");
     command.add_flag("--both", options->both, "each detector drives alone and through a planner");

@@ -3,7 +3,7 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/outside/finished_lanes.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_file.hpp"
@@ -33,19 +33,19 @@ namespace {
 struct Options {
     std::string scenes;
     std::vector<std::string> lanes;
-    std::vector<std::string> methods;
+    std::vector<std::string> detectors;
     std::string json;
 };
 
-/// A file and what it holds; of a method from outside where it was named as one.
+/// A file and what it holds; of a detector from outside where it was named as one.
 struct LanesFile {
     std::string file;
-    std::optional<OutsideMethod> method;
+    std::optional<OutsideDetector> detector;
     std::vector<LaneRecord> records;
 };
 
 std::vector<LanesFile> read_all(const Options& options, std::span<const AnnotatedScene> scenes) {
-    if (options.lanes.empty() && options.methods.empty())
+    if (options.lanes.empty() && options.detectors.empty())
         throw InvalidInput("--lanes", "is required, or --methods lanes:NAME=FILE");
     std::unordered_map<std::string, const Scene*> scene_of;
     for (const AnnotatedScene& annotated : scenes) scene_of.emplace(annotated.scene.id, &annotated.scene);
@@ -58,12 +58,12 @@ std::vector<LanesFile> read_all(const Options& options, std::span<const Annotate
             if (scene != scene_of.end()) snap_to_cones(record, *scene->second);
         }
     }
-    for (const std::string& text : split_methods(options.methods)) {
-        auto method = find_outside_method(text);
-        if (!method || method->is_program())
+    for (const std::string& text : split_detectors(options.detectors)) {
+        auto detector = find_outside_detector(text);
+        if (!detector || detector->is_program())
             throw InvalidInput("--methods", "'" + text + "' is not of the form lanes:NAME=FILE");
-        std::vector<LaneRecord> records = read_finished_lanes(*method, scenes);
-        all.push_back({method->source, std::move(method), std::move(records)});
+        std::vector<LaneRecord> records = read_finished_lanes(*detector, scenes);
+        all.push_back({detector->source, std::move(detector), std::move(records)});
     }
     return all;
 }
@@ -78,26 +78,26 @@ void score_all(const Options& options) {
         left_out = read_left_out(companion);
     }
     std::vector<LanesFile> files = read_all(options, scenes);
-    OutsideMethods outside;
+    OutsideDetectors outside;
     RecordScorer scorer(scenes, tracks,
-                        [&](const std::string& method) { return outside.courses_of(method, false); });
+                        [&](const std::string& detector) { return outside.courses_of(detector, false); });
     std::vector<ScoredRecord> scored;
-    std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by method
+    std::map<std::pair<std::string, std::optional<std::size_t>>, std::size_t> file_of;  // by detector
     for (std::size_t i = 0; i < files.size(); ++i) {
-        const auto& [file, method, records] = files[i];
-        if (method) outside.methods.push_back(*method);
+        const auto& [file, detector, records] = files[i];
+        if (detector) outside.detectors.push_back(*detector);
         for (const LaneRecord& record : records) {
-            const std::size_t first = file_of.try_emplace({record.method, record.nearest}, i).first->second;
+            const std::size_t first = file_of.try_emplace({record.detector, record.nearest}, i).first->second;
             if (first == i) continue;
             throw InputError(file, record.line, "method",
-                             "lanes of '" + record.method + "' are in " + files[first].file + " too");
+                             "lanes of '" + record.detector + "' are in " + files[first].file + " too");
         }
         std::ranges::move(scorer.score(records, file), std::back_inserter(scored));
     }
     const std::vector<ScoreRow> rows = summarise(scored);
     if (!options.json.empty()) {
         nlohmann::ordered_json run{{"scenes", options.scenes}, {"lanes", options.lanes}};
-        if (!options.methods.empty()) run["lanes_of_methods"] = options.methods;
+        if (!options.detectors.empty()) run["lanes_of_methods"] = options.detectors;
         AtomicFile output(options.json);
         write_results(output.stream(), rows, scored, outside, run.dump());
         output.commit();
@@ -114,7 +114,7 @@ void add_score_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more");
-    command.add_option("--methods", options->methods,
+    command.add_option("--methods", options->detectors,
                        "lanes:NAME=FILE: answers of another program, scored under that name "
                        "(docs/methods-from-outside.md)");
     add_output_option(command, "--json", options->json, "write the rows as JSON lines too");

@@ -6,7 +6,7 @@
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
-#include "experiments/tuning/method_tuning.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 #include "program/commands/commands.hpp"
 
 #include <array>
@@ -23,20 +23,20 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Options {
-    std::string method;
+    std::string detector;
     std::vector<std::string> tracks;
     SceneOptions scenes;
-    MethodTuningOptions tuning;
+    DetectorTuningOptions tuning;
     std::string out;
 };
 
-ordered_json describe(const MethodFigure& figure) {
+ordered_json describe(const DetectorFigure& figure) {
     return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
 }
 
-ordered_json record_of(const Options& options, const TunedMethod& tuned) {
+ordered_json record_of(const Options& options, const TunedDetector& tuned) {
     const Provenance origin = provenance();
-    ordered_json json{{"method", options.method},
+    ordered_json json{{"method", options.detector},
                       {"commit", origin.commit},
                       {"compiler", origin.compiler},
                       {"machine", origin.machine},
@@ -49,24 +49,24 @@ ordered_json record_of(const Options& options, const TunedMethod& tuned) {
 }
 
 void run(Options& options) {
-    const TunableMethod& method = find_tunable_method(options.method);
+    const TunableDetector& detector = find_tunable_detector(options.detector);
     options.scenes.threads = options.tuning.threads;
     options.tuning.seed = options.scenes.seed;
     const SceneSet set = make_scene_set(options.tracks, options.scenes);
-    TunedMethod tuned;
+    TunedDetector tuned;
     {
-        Progress progress("tune " + options.method, options.tuning.evaluations);
-        tuned = tune_method(method, set, options.tuning, [&] { progress.advance(); });
+        Progress progress("tune " + options.detector, options.tuning.evaluations);
+        tuned = tune_detector(detector, set, options.tuning, [&] { progress.advance(); });
     }
     AtomicFile record(std::filesystem::path(options.out).replace_extension(".record.json"));
     record.stream() << record_of(options, tuned).dump(2) << '\n';
     AtomicFile parameters(options.out);
-    parameters.stream() << to_json_text(method, tuned.values);
+    parameters.stream() << to_json_text(detector, tuned.values);
     commit_together(std::array{&record, &parameters});
-    const auto text = [](const MethodFigure& figure) {
+    const auto text = [](const DetectorFigure& figure) {
         return fmt::format("{:.1f} % usable, IoU {:.1f} %", 100.0 * figure.usable, 100.0 * figure.iou);
     };
-    fmt::print("{} on {} scenes: {} before, {} after\n", options.method, tuned.figure.scenes,
+    fmt::print("{} on {} scenes: {} before, {} after\n", options.detector, tuned.figure.scenes,
                text(tuned.figure_of_start), text(tuned.figure));
 }
 
@@ -81,7 +81,7 @@ void add_tune_method_command(CLI::App& program) {
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 8.8;
-    command.add_option("--method", options->method, "delaunay-beam or astar-lane")->required();
+    command.add_option("--method", options->detector, "delaunay-beam or astar-lane")->required();
     command
         .add_option("--tracks", options->tracks, "generated:NAME, fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();

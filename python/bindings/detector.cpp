@@ -91,7 +91,7 @@ class DetectorObject {
         if (std::isnan(limit_ms)) throw InvalidInput("time_limit_ms", "is not a number");
         LaneObject lane{{}, std::move(scene)};
         lane.record.scene = lane.scene->id;
-        lane.record.method = name_;
+        lane.record.detector = name_;
         lane.record.nearest = nearest_;
         const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
         {

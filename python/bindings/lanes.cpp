@@ -141,7 +141,7 @@ another one (front, front-warm: 0.35 m), and the id that stands for both; empty 
             "latency_ms", [](const LaneObject& l) { return l.record.latency_ms; },
             "float: wall clock of the search [ms]")
         .def_property_readonly(
-            "method", [](const LaneObject& l) { return l.record.method; }, "str: who answered")
+            "method", [](const LaneObject& l) { return l.record.detector; }, "str: who answered")
         .def_property_readonly(
             "scene_id", [](const LaneObject& l) { return l.record.scene; },
             "str: of the scene that it answers; empty for arrays");

@@ -10,8 +10,9 @@ struct PathPairOptions {
     bool clique_multipliers = true;  ///< multipliers on cliques of incompatible edges, not on cones alone
     bool complete_walks = true;      ///< complete the relaxation's walks to incumbents
     bool search_windows = true;      ///< improve incumbents in small parts of a large graph
-    bool search_frontiers = true;    ///< end nodes by the search on fronts, not by branching to the last edge
-    bool drop_dominated_edges = true;  ///< there, drop what every way up to a front, or on, excludes
+    bool search_frontiers =
+        true;  ///< end nodes by the search on frontiers, not by branching to the last edge
+    bool drop_dominated_edges = true;  ///< there, drop what every way up to a frontier, or on, excludes
     int root_steps = 150;              ///< most ascent steps at the root
     int node_steps = 30;               ///< and at each other node
     SearchTuning tuning = {};

@@ -35,26 +35,27 @@ struct AscentTuning {
     std::int64_t first_completion_tries = 1000;  ///< and without one
 };
 
-/// The search on the fronts.
+/// The search on the frontiers.
 struct FrontierTuning {
-    // How many fronts a try may take before the ascent's end.
-    std::int64_t first_fronts = 1000;  ///< row "1000 fronts at first in place of 2000"
-    std::int64_t first_fronts_of_small_graph = 2000;
-    int small_graph_arcs = 200;           ///< arcs below which it is one: the same row
-    std::int64_t updates_per_front = 30;  ///< label updates of the ascent that allow one more front
+    // How many frontiers a try may take before the ascent's end.
+    std::int64_t first_frontiers = 1000;  ///< row "1000 fronts at first in place of 2000"
+    std::int64_t first_frontiers_of_small_graph = 2000;
+    int small_graph_arcs = 200;              ///< arcs below which it is one: the same row
+    std::int64_t updates_per_frontier = 30;  ///< label updates of the ascent that allow one more frontier
     int steps_per_try = 4;
-    double retry_gap = 0.6;  ///< share of the gap that had too many fronts: row "fronts tried again at 0.6"
+    double retry_gap =
+        0.6;  ///< share of the gap that had too many frontiers: row "fronts tried again at 0.6"
 
     // Limits of memory, see docs/path-pair.md: of a try at the ascent's end.
-    std::size_t max_fronts = 300'000;
+    std::size_t max_frontiers = 300'000;
     std::size_t max_table_bytes = 200'000'000;  ///< of the onward tables together
     std::size_t max_labels = 1'000'000;
     std::size_t max_label_words = 40'000'000;  ///< of 8 bytes, of the labels' sets of edges together
 
     /// Steps of the clock to make one: half a microsecond, docs/path-pair.md.
-    std::size_t work_per_front = 500;
-    int wide_fronts = 4000;         ///< from here on there are detours, and a narrow search first
-    std::size_t narrow_labels = 2;  ///< that it expands at a front
+    std::size_t work_per_frontier = 500;
+    int wide_frontiers = 4000;      ///< from here on there are detours, and a narrow search first
+    std::size_t narrow_labels = 2;  ///< that it expands at a frontier
 
     // Beams for an incumbent. Widths in labels at an arc.
     std::size_t first_beam_width = 2;  ///< before the root's first try: row "a beam before the first fronts"
@@ -103,10 +104,10 @@ struct WindowTuning {
                                         {256, 32, 150},
                                         {0, 0, 700},
                                         {512, 32, 200}}};
-    std::size_t new_pair_arcs = 100;  ///< of windows around an incumbent that the ascent found
-    int max_steps = 15;               ///< of a window's ascent
-    std::size_t max_fronts = 3000;    ///< of a window
-    std::size_t beam_width = 8;       ///< labels at an arc, where those were not enough
+    std::size_t new_pair_arcs = 100;   ///< of windows around an incumbent that the ascent found
+    int max_steps = 15;                ///< of a window's ascent
+    std::size_t max_frontiers = 3000;  ///< of a window
+    std::size_t beam_width = 8;        ///< labels at an arc, where those were not enough
 
     // When windows are searched.
     int first_step = 2;               ///< of the root's ascent: row "windows from the third step on"

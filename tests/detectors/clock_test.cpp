@@ -7,7 +7,7 @@
 #include "evaluation/scenes/scene_set.hpp"
 #include "graph_search/front/front_search.hpp"
 #include "solvers/registry.hpp"
-#include "tests/support/fake_clocks.hpp"
+#include "tests/support/clocks/fake_system_clocks.hpp"
 #include "tests/support/front_fixture.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/slowness.hpp"

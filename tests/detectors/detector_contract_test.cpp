@@ -1,9 +1,9 @@
 // What a detector promises (see LaneDetector, LaneAnswer and DetectorOptions), for every detector of the
-// library and every method that is compared with them. A new one is tested here by being listed.
+// library and every detector that is compared with them. A new one is tested here by being listed.
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/processor_time.hpp"
 #include "tests/support/random_scenes.hpp"
@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -41,8 +42,8 @@ bool is_in_library(std::string_view name) {
 std::vector<std::string> names() {
     std::vector<std::string> all;
     for (const DetectorInfo& detector : detectors()) all.emplace_back(detector.name);
-    for (const experiments::Method& method : experiments::methods()) {
-        if (!is_in_library(method.name)) all.emplace_back(method.name);
+    for (const experiments::KnownDetector& detector : experiments::known_detectors()) {
+        if (!is_in_library(detector.name)) all.emplace_back(detector.name);
     }
     return all;
 }
@@ -151,7 +152,7 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     static bool answers_one_boundary() { return GetParam().starts_with("front"); }
     static std::unique_ptr<LaneDetector> make(const DetectorOptions& options = {}) {
         return is_in_library(GetParam()) ? make_detector(GetParam(), options)
-                                         : make_detector(experiments::find_method(GetParam()), options);
+                                         : make_detector(experiments::find_detector(GetParam()), options);
     }
     static LaneAnswer detect(LaneDetector& detector, const Scene& scene, const DetectionLimits& limits) {
         LaneAnswer answer;
@@ -181,24 +182,28 @@ TEST_P(DetectorContract, WhatIsNotValidIsAnErrorThatNamesIt) {
         {"pose.x", [](Scene& s, DetectionLimits&) { s.pose.position.x() = -kInfinity; }},
         {"time_limit", [](Scene&, DetectionLimits& l) { l.time_limit_ms = kNaN; }},
     };
-    const auto detector = make();
-    for (const Fault& fault : faults) {
-        SCOPED_TRACE(fault.key);
-        Scene scene = straight(5);
-        DetectionLimits limits = tests::kNoTimeLimit;
-        fault.make(scene, limits);
-        const LaneAnswer answer = detect(*detector, scene, limits);
-        EXPECT_EQ(answer.status, LaneStatus::error);
-        EXPECT_THAT(answer.message, HasSubstr(fault.key));
+    // What is wrong with cones that a detector is not shown is told, too.
+    for (const std::optional<std::size_t> nearest :
+         {std::optional<std::size_t>(), std::optional<std::size_t>(2)}) {
+        const auto detector = make({.nearest = nearest});
+        for (const Fault& fault : faults) {
+            SCOPED_TRACE(fault.key);
+            Scene scene = straight(5);
+            DetectionLimits limits = tests::kNoTimeLimit;
+            fault.make(scene, limits);
+            const LaneAnswer answer = detect(*detector, scene, limits);
+            EXPECT_EQ(answer.status, LaneStatus::error);
+            EXPECT_THAT(answer.message, HasSubstr(fault.key));
+        }
+        if (!nearest) expect_same(detect(*detector, straight(5), tests::kNoTimeLimit), detect(straight(5)));
     }
-    expect_same(detect(*detector, straight(5), tests::kNoTimeLimit), detect(straight(5)));
 }
 
 TEST_P(DetectorContract, FindsAStraightLane) {
     const LaneAnswer answer = detect(straight(5));
     ASSERT_EQ(answer.status, LaneStatus::found);
     EXPECT_FALSE(detect(straight(3)).stopped_by) << "so few cones are searched to the end";
-    // At the far end methods differ: the longest lane takes one more cone across.
+    // At the far end detectors differ: the longest lane takes one more cone across.
     ASSERT_GE(answer.lane.left.size(), 4U);
     ASSERT_GE(answer.lane.right.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -384,7 +389,7 @@ TEST_P(DetectorContract, InstancesServeAThreadEach) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, DetectorContract, testing::ValuesIn(names()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorContract, testing::ValuesIn(names()), [](const auto& test) {
     std::string name = test.param;
     std::ranges::replace(name, '-', '_');
     return name;
@@ -405,9 +410,9 @@ TEST(Detectors, AreKnownByNamesOfTheirOwnThatAnErrorLists) {
     }
 }
 
-TEST(Detectors, AreAllMethods) {
+TEST(Detectors, AreAllDetectors) {
     for (const DetectorInfo& detector : detectors()) {
-        EXPECT_NO_THROW((void)experiments::find_method(detector.name)) << detector.name;
+        EXPECT_NO_THROW((void)experiments::find_detector(detector.name)) << detector.name;
     }
 }
 

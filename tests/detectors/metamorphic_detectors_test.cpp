@@ -178,7 +178,7 @@ TEST(DelaunayBeamMetamorphic, FindsTheSameLaneAtAnotherScale) {
     EXPECT_EQ(outcome.different, 0U);
 }
 
-/// Learned methods have lengths in metres among their inputs, and astar-lane a lattice in metres: lanes are
+/// Learned detectors have lengths in metres among their inputs, and astar-lane a lattice in metres: lanes are
 /// not the same at another scale. A scale that is off by a billionth, as a survey may be, changes none.
 TEST_P(DetectorScale, AlmostTheSameIsAsGood) {
     const Change larger{"Larger", [](Scene scene) { return tests::scaled(std::move(scene), 1.0 + 1e-9); }};

@@ -2,10 +2,13 @@
 
 #include "conelane/rld_detector.hpp"
 
+#include "conelane/solve_scene.hpp"
 #include "solvers/registry.hpp"
 #include "tests/support/no_time_limit.hpp"
 
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -15,7 +18,9 @@
 namespace conelane {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 /// A straight lane along +x, cones every 3.2 m: left 1 to 8, right 101 to 108; the car is 1 m before it.
 Scene straight() {
@@ -79,6 +84,28 @@ TEST(RldDetector, AnswersNoLaneWhereTheCutLeavesASideEmpty) {
     const LaneAnswer answer = detect(scene, 1, 20);  // cone 101 alone
     EXPECT_EQ(answer.status, LaneStatus::none);
     EXPECT_EQ(answer.lane, Lane{});
+}
+
+TEST(RldDetector, ScenesThatAreNotValidAreRefusedByItAndBySolveScene) {
+    const auto solver = find_rld_solver("path-pair")->make(Formulation::tight);
+    const auto refusals = [&](const Scene& scene) {
+        const SolvedScene solved = solve_scene(*solver, scene, {}, {});
+        EXPECT_EQ(solved.report.status, SolveStatus::error);
+        const LaneAnswer answer = detect(scene, std::nullopt, std::nullopt);
+        EXPECT_EQ(answer.status, LaneStatus::error);
+        return std::array{solved.report.message, answer.message};
+    };
+    Scene scene = straight();
+    scene.cones[3].id = scene.cones[1].id;
+    EXPECT_THAT(refusals(scene), Each(HasSubstr("cones[3].id")));
+    scene = straight();
+    scene.cones[2].position.y() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(refusals(scene), Each(HasSubstr("cones[2].y")));
+    // Valid, but the distance is infinite.
+    scene = straight();
+    scene.pose.position.x() = 1.5e308;
+    scene.cones[4].position.x() = -1.5e308;
+    EXPECT_THAT(refusals(scene), Each(HasSubstr("cones[4].x")));
 }
 
 TEST(CutToNearest, EvensFarEndsAndOpensWhatItCuts) {

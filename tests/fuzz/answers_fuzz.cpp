@@ -1,5 +1,6 @@
-// The readers of what methods and solvers answered: lanes, lanes from outside, the log of an unfinished run,
-// solutions, and the solution files of other people's solvers. What is read can be written and read again.
+// The readers of what detectors and solvers answered: lanes, lanes from outside, the log of an unfinished
+// run, solutions, and the solution files of other people's solvers. What is read can be written and read
+// again.
 
 #include "conelane/formulation.hpp"
 #include "conelane/lane_graph_problem.hpp"

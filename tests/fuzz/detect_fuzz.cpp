@@ -2,7 +2,7 @@
 // limit, and a centre line of it.
 
 #include "conelane/drivable_lane.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/fuzzed_scene.hpp"
 
@@ -21,10 +21,10 @@ namespace conelane::fuzz {
 namespace {
 
 /// Made once, since some read large tables.
-LaneDetector& detector(const experiments::Method& method) {
+LaneDetector& made_detector(const experiments::KnownDetector& known) {
     static std::map<std::string_view, std::unique_ptr<LaneDetector>> made;
-    std::unique_ptr<LaneDetector>& entry = made[method.name];
-    if (!entry) entry = make_detector(method);
+    std::unique_ptr<LaneDetector>& entry = made[known.name];
+    if (!entry) entry = make_detector(known);
     return *entry;
 }
 
@@ -98,9 +98,10 @@ void detect_on(FuzzedDataProvider& input) {
     constexpr double kLimits_ms[]{0.0, 0.5, 2.0, 5.0, 20.0};
     constexpr double kMaxSeconds =
         2.0;  // of a processor under a sanitizer; the limits above are 0.02 s at most
-    const std::span<const experiments::Method> all = experiments::methods();
-    const experiments::Method& method = all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)];
-    LaneDetector& chosen = detector(method);
+    const std::span<const experiments::KnownDetector> all = experiments::known_detectors();
+    const experiments::KnownDetector& known =
+        all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)];
+    LaneDetector& chosen = made_detector(known);
     chosen.reset();
     const int scenes = input.ConsumeIntegralInRange(1, 3);
     for (int i = 0; i < scenes; ++i) {
@@ -111,7 +112,7 @@ void detect_on(FuzzedDataProvider& input) {
         const double begin_s = processor_seconds();
         const LaneAnswer answer = chosen.detect(scene, limits);
         require(processor_seconds() - begin_s < kMaxSeconds, "a detector ends soon after its limit");
-        require_contract(scene, answer, method.name.starts_with("front"));
+        require_contract(scene, answer, known.name.starts_with("front"));
         require_centre_line(answer, scene);
     }
 }

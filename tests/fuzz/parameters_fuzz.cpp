@@ -1,12 +1,12 @@
 // The readers of parameters and of what else tells a run what to do: RLD parameters, those of other
-// detectors, the cards of methods, the record of a tuning, the round trips of an echo, what names a method
-// from outside.
+// detectors, the cards of detectors, the record of a tuning, the round trips of an echo, what names a
+// detector from outside.
 
-#include "evaluation/files/method_parameter_file.hpp"
+#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/parameter_file.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "experiments/comparison/echo_floor.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/studies/confidence_and_colour.hpp"
 #include "tests/fuzz/expectations.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
@@ -37,13 +37,13 @@ void read_all(std::string_view bytes) {
     });
     answers([&] { (void)make_delaunay_beam_detector(parse_delaunay_beam_parameters(bytes, "input.json")); });
     answers([&] { (void)make_astar_lane_detector(parse_astar_lane_parameters(bytes, "input.json")); });
-    answers([&] { (void)read_method_card(file).summary(); });
+    answers([&] { (void)read_detector_card(file).summary(); });
     answers([&] { (void)experiments::read_echo_floor(file); });
     answers([&] { (void)experiments::read_tuning_record(file); });
     const std::string text(bytes);
-    answers([&] { (void)outside_methods_of_record(text); });
-    answers([&] { (void)experiments::find_outside_method(text); });
-    (void)split_methods({text});
+    answers([&] { (void)outside_detectors_of_record(text); });
+    answers([&] { (void)experiments::find_outside_detector(text); });
+    (void)split_detectors({text});
 }
 
 }  // namespace

@@ -52,8 +52,8 @@ class DriveCommand : public ProgramFixture {
                       R"(", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [)" + cones + "]}\n";
         }
         file_with(scenes, "s.scenes.jsonl");
-        const auto found = [&](const std::string& scene, const std::string& method) {
-            return R"({"scene": ")" + scene + R"(", "method": ")" + method +
+        const auto found = [&](const std::string& scene, const std::string& detector) {
+            return R"({"scene": ")" + scene + R"(", "method": ")" + detector +
                    R"(", "status": "found", "left": [)" + left + R"(], "right": [)" + right +
                    R"(], "closed": false, "latency_ms": 1, "trusted_m": 12.5})" + "\n";
         };

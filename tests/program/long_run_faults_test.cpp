@@ -1,6 +1,6 @@
 // What a long run must survive: being killed anywhere, another run in its folder, a disk that is full, a
-// folder that cannot be written, files cut short, methods that die. Nothing that was written before is lost,
-// errors name the file, and the next run gives what an undisturbed one gives.
+// folder that cannot be written, files cut short, detectors that die. Nothing that was written before is
+// lost, errors name the file, and the next run gives what an undisturbed one gives.
 
 #include "evaluation/files/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
@@ -128,10 +128,10 @@ class LongRun : public ProgramFixture {
 };
 
 /// Four laps of a few scenes each; a limit that no solve hits, so that answers depend on the scenes alone.
-std::string compare(const std::string& method, const std::string& folder, int every_m = 12) {
+std::string compare(const std::string& detector, const std::string& folder, int every_m = 12) {
     return "compare --tracks generated:circle generated:kidney --condition paper --fp 0,0.3 "
            "--nearest 14 --time-limit 60000 --every " +
-           std::to_string(every_m) + " --methods " + method + " --out " + folder;
+           std::to_string(every_m) + " --methods " + detector + " --out " + folder;
 }
 
 /// The beginning of a file of lanes that holds whole laps only. `whole`: the same file of a run that ended.
@@ -159,15 +159,15 @@ class KilledRun : public LongRun, public testing::WithParamInterface<const char*
 // Killed again and again inside each solver, by a signal that nobody can catch and by Ctrl-C; each run goes
 // on where the one before was. In the end everything is as if nothing had happened.
 TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
-    const std::string method = GetParam();
+    const std::string detector = GetParam();
     constexpr int kEvery_m = 3;
-    ASSERT_EQ(run(compare(method, "whole", kEvery_m)).exit_code, 0);
-    const std::string lanes = method + ".n014.lanes.jsonl";
+    ASSERT_EQ(run(compare(detector, "whole", kEvery_m)).exit_code, 0);
+    const std::string lanes = detector + ".n014.lanes.jsonl";
     const fs::path part = path("killed") / (lanes + ".part");
     int killed = 0;
     for (std::size_t attempt = 0; attempt < 6; ++attempt) {
         const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
-        const Started started = start(compare(method, "killed", kEvery_m));
+        const Started started = start(compare(detector, "killed", kEvery_m));
         // Some milliseconds after the answers of a further lap: in the middle of the next one.
         wait_until(started, [&] {
             return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
@@ -184,7 +184,7 @@ TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
     EXPECT_GT(killed, 0) << "it was always done too early";
     // What was being written when the signal came.
     std::ofstream(path("killed/scores.jsonl.tmp4711_0")) << "half of a";
-    const Outcome resumed = run(compare(method, "killed", kEvery_m));
+    const Outcome resumed = run(compare(detector, "killed", kEvery_m));
     ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
     EXPECT_EQ(answers("killed/" + lanes), answers("whole/" + lanes));
     EXPECT_EQ(results("killed"), results("whole"));
@@ -192,7 +192,7 @@ TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
     EXPECT_FALSE(fs::exists(part));
     expect_no_temporary_file();
 }
-INSTANTIATE_TEST_SUITE_P(Methods, KilledRun,
+INSTANTIATE_TEST_SUITE_P(Detectors, KilledRun,
                          testing::Values("rld-cbc", "rld-pair", "rld-shape", "clc", "front"),
                          [](const auto& tested) {
                              std::string name = tested.param;
@@ -377,15 +377,16 @@ TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
     }
 }
 
-/// A method from outside that dies, hangs, or prints what is no answer; it is killed with the run, too.
-TEST_F(LongRun, MethodsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
+/// A detector from outside that dies, hangs, or prints what is no answer; it is killed with the run, too.
+TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
     const std::string child = outside_child();
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     for (const char* fault : {"crash", "hang", "nonsense", "half-a-line", "endless-line"}) {
         SCOPED_TRACE(fault);
         const std::string folder = std::string("with_") + fault;
-        const std::string method = "'exec:other=" + child + " ids " + fault + " 5 " + fault + ".marker' clc";
-        const Outcome outcome = run(compare(method, folder));
+        const std::string detector =
+            "'exec:other=" + child + " ids " + fault + " 5 " + fault + ".marker' clc";
+        const Outcome outcome = run(compare(detector, folder));
         ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
         EXPECT_THAT(outcome.output, HasSubstr("answers are errors"));
         const auto others = answers(folder + "/other.n014.lanes.jsonl");

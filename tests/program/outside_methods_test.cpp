@@ -1,5 +1,5 @@
-// Methods from outside through the real program: what a program or a file brings in, and that nothing which a
-// program does hurts the run.
+// Detectors from outside through the real program: what a program or a file brings in, and that nothing which
+// a program does hurts the run.
 
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
@@ -38,7 +38,7 @@ std::string child(const std::string& arguments) {
     return outside_child() + " " + arguments;
 }
 
-class OutsideMethods : public ProgramFixture {
+class OutsideDetectors : public ProgramFixture {
   protected:
     std::string run_well(const std::string& arguments) {
         const Outcome outcome = run(arguments);
@@ -72,12 +72,12 @@ class OutsideMethods : public ProgramFixture {
     }
 };
 
-TEST_F(OutsideMethods, ConeIdsScoreAsTheMethodBehindThemAndTimesAreShown) {
+TEST_F(OutsideDetectors, ConeIdsScoreAsTheDetectorBehindThemAndTimesAreShown) {
     const std::string table =
         run_well(std::string(kCompare) + "r --methods clc 'exec:other=" + child("ids") + "'");
     EXPECT_EQ(only_lanes(lanes("r/other")), only_lanes(lanes("r/clc")));
     for (const LaneRecord& record : lanes("r/other")) {
-        EXPECT_EQ(record.method, "other");
+        EXPECT_EQ(record.detector, "other");
         EXPECT_EQ(record.self_timed_ms, 0.25);
         EXPECT_GT(record.latency_ms, 0.0);
     }
@@ -101,7 +101,7 @@ TEST_F(OutsideMethods, ConeIdsScoreAsTheMethodBehindThemAndTimesAreShown) {
 }
 
 /// The child is told what a detector may know, lap by lap, by ids that say nothing.
-TEST_F(OutsideMethods, AProgramSeesScenesWithoutWhatIsForScoring) {
+TEST_F(OutsideDetectors, AProgramSeesScenesWithoutWhatIsForScoring) {
     run_well(std::string(kLaps) + "r --condition car --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") +
              "'");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("r/scenes.scenes.jsonl"));
@@ -129,7 +129,7 @@ TEST_F(OutsideMethods, AProgramSeesScenesWithoutWhatIsForScoring) {
     EXPECT_EQ(next, told.size());
 }
 
-TEST_F(OutsideMethods, PointsAtConesCountAsTheseCones) {
+TEST_F(OutsideDetectors, PointsAtConesCountAsTheseCones) {
     run_well(std::string(kCompare) + "r --methods clc 'exec:near=" + child("points") +
              "' 'exec:beside=" + child("points-beside") + "'");
     EXPECT_EQ(only_lanes(lanes("r/near")), only_lanes(lanes("r/clc")));
@@ -151,7 +151,7 @@ TEST_F(OutsideMethods, PointsAtConesCountAsTheseCones) {
     }
 }
 
-TEST_F(OutsideMethods, ACentreLineIsScoredByWhereItLeads) {
+TEST_F(OutsideDetectors, ACentreLineIsScoredByWhereItLeads) {
     run_well(std::string(kCompare) + "r --methods clc 'exec:line=" + child("centre-line") + "'");
     for (const LaneRecord& record : lanes("r/line")) EXPECT_GT(record.centre_line.size(), 10U);
     for (const json& row : lines("r/results.jsonl")) {
@@ -172,7 +172,7 @@ struct Fault {
     std::size_t place = 2;
     friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 };
-class OutsideFaults : public OutsideMethods, public testing::WithParamInterface<Fault> {};
+class OutsideFaults : public OutsideDetectors, public testing::WithParamInterface<Fault> {};
 
 /// Its fourth scene is the third of the run, since the first is asked twice.
 TEST_P(OutsideFaults, CostOneAnswerAndTheRunGoesOn) {
@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-TEST_F(OutsideMethods, AProgramThatIsNotThereGivesErrorsAtOnce) {
+TEST_F(OutsideDetectors, AProgramThatIsNotThereGivesErrorsAtOnce) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome outcome = run(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
     EXPECT_EQ(outcome.exit_code, 1) << "nothing was answered";
@@ -237,7 +237,7 @@ TEST_F(OutsideMethods, AProgramThatIsNotThereGivesErrorsAtOnce) {
     EXPECT_THAT(table, HasSubstr("nowhere: not found"));
 }
 
-TEST_F(OutsideMethods, ASignalEndsTheProgramToo) {
+TEST_F(OutsideDetectors, ASignalEndsTheProgramToo) {
     const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
                                 kCompare + "r --methods 'exec:bad=OUTSIDE_PID=pid " +
                                 child("ids hang 3 marker") + "' >stdout 2>stderr";
@@ -255,9 +255,9 @@ TEST_F(OutsideMethods, ASignalEndsTheProgramToo) {
     EXPECT_TRUE(has_ended("pid"));
 }
 
-TEST_F(OutsideMethods, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
-    const std::string methods = " --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") + "'";
-    run_well(kLaps + std::string("whole") + methods);
+TEST_F(OutsideDetectors, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
+    const std::string detectors = " --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") + "'";
+    run_well(kLaps + std::string("whole") + detectors);
     std::filesystem::copy(path("whole"), path("stopped"));
     const std::string all = text_of(path("whole/other.lanes.jsonl"));
     for (const char* file : {"other.lanes.jsonl", "scores.jsonl", "results.jsonl", "table.txt"})
@@ -266,7 +266,7 @@ TEST_F(OutsideMethods, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
     const auto asked = [&] { return lines("log").size(); };
     const std::size_t asked_for_all = asked();
     std::filesystem::remove(path("log"));
-    run_well(kLaps + std::string("stopped") + methods);
+    run_well(kLaps + std::string("stopped") + detectors);
     EXPECT_EQ(only_lanes(lanes("stopped/other")), only_lanes(lanes("whole/other")));
     EXPECT_LT(asked(), asked_for_all);
     EXPECT_TRUE(text_of(path("stopped/other.lanes.jsonl")).starts_with(all.substr(0, 200)))
@@ -275,32 +275,33 @@ TEST_F(OutsideMethods, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
                    {"differs in methods", "--overwrite"});
 }
 
-TEST_F(OutsideMethods, ShardsAndThreadsGiveTheAnswersOfOneRun) {
+TEST_F(OutsideDetectors, ShardsAndThreadsGiveTheAnswersOfOneRun) {
     const std::string card = R"({"name": "A stranger", "licence": "MIT", "colour_used": false})";
     run_well(kLaps + std::string("first --methods clc"));
     std::filesystem::copy(path("first/clc.lanes.jsonl"), path("theirs.lanes.jsonl"));
     file_with(card, "theirs.method.json");
-    const std::string methods = " --methods 'lanes:file=theirs.lanes.jsonl,exec:other=" + child("ids") + "'";
-    run_well(kLaps + std::string("whole") + methods);
+    const std::string detectors =
+        " --methods 'lanes:file=theirs.lanes.jsonl,exec:other=" + child("ids") + "'";
+    run_well(kLaps + std::string("whole") + detectors);
     for (const char* shard : {"0", "1"})
-        run_well(kLaps + std::string("part") + shard + methods + " --shard " + shard + "/2");
+        run_well(kLaps + std::string("part") + shard + detectors + " --shard " + shard + "/2");
     const std::string table = run_well("merge part1 part0 --out merged");
     EXPECT_THAT(table, HasSubstr("A stranger; licence MIT; no colour"));
     EXPECT_THAT(table, HasSubstr("that of an echo program is "));
-    run_well(kLaps + std::string("threads --threads 4") + methods);
+    run_well(kLaps + std::string("threads --threads 4") + detectors);
     for (const char* run : {"merged", "threads"}) {
-        for (const char* method : {"file", "other"}) {
-            EXPECT_EQ(only_lanes(lanes(std::string(run) + "/" + method)), only_lanes(lanes("first/clc")))
-                << run << " " << method;
+        for (const char* detector : {"file", "other"}) {
+            EXPECT_EQ(only_lanes(lanes(std::string(run) + "/" + detector)), only_lanes(lanes("first/clc")))
+                << run << " " << detector;
         }
     }
 }
 
 /// Answers that were made elsewhere, to some of the scenes and to others.
-class FinishedLanes : public OutsideMethods {
+class FinishedLanes : public OutsideDetectors {
   protected:
     void SetUp() override {
-        OutsideMethods::SetUp();
+        OutsideDetectors::SetUp();
         run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --seed 3 --out s.scenes.jsonl");
         run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
         clc_ = lines("clc.lanes.jsonl");
@@ -396,7 +397,7 @@ TEST_F(FinishedLanes, ThatChangeAreAnotherComparison) {
         {"r/mine.lanes.jsonl", "directory of the results"});
 }
 
-TEST_F(OutsideMethods, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
+TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
     file_with("cat >/dev/null\n", "silent.sh");
     file_with(
         R"({"name": "Silence", "address": "https://example.org", "licence": "MIT", "colour_used": true,)"
@@ -415,12 +416,12 @@ TEST_F(OutsideMethods, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
     for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["card"], card);
 }
 
-TEST_F(OutsideMethods, WhatIsNoMethodIsRefused) {
+TEST_F(OutsideDetectors, WhatIsNoDetectorIsRefused) {
     run_well("scenes --tracks generated:circle --every 30 --out s.scenes.jsonl");
     const std::string detect = "detect --scenes s.scenes.jsonl --out x.lanes.jsonl --method ";
-    for (const char* method : {"exec:", "exec:name", "exec:=true", "exec:name=", "exec:a/b=true",
-                               "exec:.a=true", "'exec:a b=true'", "lanes:name"})
-        expect_refused(detect + method, {"method"});
+    for (const char* detector : {"exec:", "exec:name", "exec:=true", "exec:name=", "exec:a/b=true",
+                                 "exec:.a=true", "'exec:a b=true'", "lanes:name"})
+        expect_refused(detect + detector, {"method"});
     expect_refused(detect + "exec:clc=true", {"'clc' is the name of a method of this program"});
     expect_refused(detect + "lanes:a=x.lanes.jsonl", {"--method", "lanes"});
     expect_refused("compare --out r --methods exec:a=true exec:a=false", {"'a' is named twice"});
@@ -428,13 +429,13 @@ TEST_F(OutsideMethods, WhatIsNoMethodIsRefused) {
     expect_refused("sweep --out r --methods lanes:a=s.scenes.jsonl", {"'a'", "cone-set size"});
 }
 
-TEST_F(OutsideMethods, DetectAndSweepTakeThemToo) {
+TEST_F(OutsideDetectors, DetectAndSweepTakeThemToo) {
     run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --out s.scenes.jsonl");
-    const std::string method = " --method 'exec:other=" + child("ids") + "' ";
+    const std::string detector = " --method 'exec:other=" + child("ids") + "' ";
     run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
-    run_well("detect" + method + "--scenes s.scenes.jsonl --out other.lanes.jsonl");
+    run_well("detect" + detector + "--scenes s.scenes.jsonl --out other.lanes.jsonl");
     EXPECT_EQ(only_lanes(lanes("other")), only_lanes(lanes("clc")));
-    file_with(run_well("detect" + method + "--scenes - --out - <s.scenes.jsonl"), "stream.lanes.jsonl");
+    file_with(run_well("detect" + detector + "--scenes - --out - <s.scenes.jsonl"), "stream.lanes.jsonl");
     EXPECT_EQ(only_lanes(lanes("stream")), only_lanes(lanes("clc")));
     run_well(
         "sweep --tracks generated:circle --sizes 8 --every 30 --out r --methods "
@@ -449,12 +450,12 @@ TEST_F(OutsideMethods, DetectAndSweepTakeThemToo) {
 }
 
 /// The two programs that stand in docs/methods-from-outside.md.
-TEST_F(OutsideMethods, TheExampleInCppAnswersAsClc) {
+TEST_F(OutsideDetectors, TheExampleInCppAnswersAsClc) {
     run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + clc_stream());
     EXPECT_EQ(only_lanes(lanes("r/clc-stream")), only_lanes(lanes("r/clc")));
 }
 
-TEST_F(OutsideMethods, TheExampleInPythonFindsStraightLanes) {
+TEST_F(OutsideDetectors, TheExampleInPythonFindsStraightLanes) {
     if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
     const std::string table = run_well(
         "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
@@ -499,7 +500,7 @@ sys.modules['fsd_path_planning.sorting_cones'] = types.ModuleType('fsd_path_plan
 sys.modules['fsd_path_planning.sorting_cones.core_cone_sorting'] = core
 )";
 
-TEST_F(OutsideMethods, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
+TEST_F(OutsideDetectors, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
     std::string python;
     for (const char* candidate : {"python3", "/usr/bin/python3"}) {
         if (std::system((std::string(candidate) + " -c 'import numpy' 2>/dev/null").c_str()) == 0)

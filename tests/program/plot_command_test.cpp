@@ -37,9 +37,9 @@ class PlotCommand : public ProgramFixture {
         file_with(lane("clc", "1", "4, 5, 6", ""), "clc.lanes.jsonl");
     }
 
-    static std::string lane(const std::string& method, const std::string& left, const std::string& right,
+    static std::string lane(const std::string& detector, const std::string& left, const std::string& right,
                             const std::string& more) {
-        return R"({"scene": "a", "method": ")" + method + R"(", "status": "found", "left": [)" + left +
+        return R"({"scene": "a", "method": ")" + detector + R"(", "status": "found", "left": [)" + left +
                R"(], "right": [)" + right + R"(], "latency_ms": 1)" + more + "}\n";
     }
 
@@ -91,7 +91,7 @@ TEST_F(PlotCommand, ShowsWhatIsBridgedTrustedAndInferred) {
     EXPECT_THAT(svg("--lanes right.lanes.jsonl"), HasSubstr(">boundary inferred<"));
 }
 
-TEST_F(PlotCommand, DrawsSeveralMethodsOrThoseThatAreNamed) {
+TEST_F(PlotCommand, DrawsSeveralDetectorsOrThoseThatAreNamed) {
     make_scene();
     const std::string both = svg("--lanes front.lanes.jsonl clc.lanes.jsonl --title 'two methods'");
     for (const char* words : {">front, ", ">clc<", ">two methods<"}) EXPECT_THAT(both, HasSubstr(words));

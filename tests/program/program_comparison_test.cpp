@@ -90,11 +90,11 @@ TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
 
 TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
     ASSERT_EQ(run("compare --tracks generated:circle --every 15 --fp 0.3 --out results").exit_code, 0);
-    for (const char* method : {"rld-cbc", "rld-pair", "rld-shape", "clc"}) {
+    for (const char* detector : {"rld-cbc", "rld-pair", "rld-shape", "clc"}) {
         for (const LaneRecord& record :
-             read_lanes(path("results") / (std::string(method) + ".lanes.jsonl"))) {
+             read_lanes(path("results") / (std::string(detector) + ".lanes.jsonl"))) {
             EXPECT_EQ(record.checked,
-                      std::string(method) != "clc" && record.answer.status == LaneStatus::found);
+                      std::string(detector) != "clc" && record.answer.status == LaneStatus::found);
         }
     }
     for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
@@ -113,7 +113,7 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(lanes_in(path("stopped") / "clc.lanes.jsonl"), lanes_in(path("whole") / "clc.lanes.jsonl"));
     EXPECT_FALSE(std::filesystem::exists(path("stopped") / "clc.lanes.jsonl.part"));
     EXPECT_EQ(results_in(path("stopped")), results_in(path("whole")));
-    EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // methods, conditions, rates
+    EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // detectors, conditions, rates
 }
 
 TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
@@ -156,8 +156,8 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     ASSERT_EQ(run("merge part2 part0 part1 --out merged").exit_code, 0);
     EXPECT_EQ(text_of(path("merged") / "scenes.scenes.jsonl"),
               text_of(path("whole") / "scenes.scenes.jsonl"));
-    for (const char* method : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
-        EXPECT_EQ(lanes_in(path("merged") / method), lanes_in(path("whole") / method));
+    for (const char* detector : {"clc.lanes.jsonl", "rld-cbc.lanes.jsonl"}) {
+        EXPECT_EQ(lanes_in(path("merged") / detector), lanes_in(path("whole") / detector));
     }
     EXPECT_EQ(results_in(path("merged")), results_in(path("whole")));
     expect_refused("merge part0 part1 --out again", {"2/3 is missing"});

@@ -36,8 +36,8 @@ TEST_F(Program, SameSeedSameBytesWithAnyNumberOfThreads) {
 
 TEST_F(Program, LanesDoNotDependOnThreads) {
     make_scenes("--fp 0,0.3");
-    const auto lanes = [&](const std::string& method, const std::string& threads) {
-        EXPECT_EQ(run("detect --method " + method + " --scenes s.scenes.jsonl --threads " + threads +
+    const auto lanes = [&](const std::string& detector, const std::string& threads) {
+        EXPECT_EQ(run("detect --method " + detector + " --scenes s.scenes.jsonl --threads " + threads +
                       " --out " + threads + ".lanes.jsonl")
                       .exit_code,
                   0);
@@ -50,12 +50,12 @@ TEST_F(Program, LanesDoNotDependOnThreads) {
     EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
 }
 
-/// What a method does not use is refused before the work, and nothing is written.
-TEST_F(Program, OptionsThatAMethodDoesNotUseAreRefused) {
+/// What a detector does not use is refused before the work, and nothing is written.
+TEST_F(Program, OptionsThatADetectorDoesNotUseAreRefused) {
     make_scenes("--fp 0");
-    const auto refuse = [&](const std::string& method, const std::string& options, const std::string& why) {
+    const auto refuse = [&](const std::string& detector, const std::string& options, const std::string& why) {
         const std::string out = " --scenes s.scenes.jsonl --out l.lanes.jsonl";
-        expect_refused("detect --method " + method + " " + options + out,
+        expect_refused("detect --method " + detector + " " + options + out,
                        {options.substr(0, options.find(' ')), why});
         EXPECT_FALSE(std::filesystem::exists(path("l.lanes.jsonl")));
     };
@@ -165,7 +165,7 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     expect_refused("detect --method clc --scenes - --out - --threads 2", {"--threads", "stream"});
 }
 
-/// The ground truth, handed in as a method's lanes, is the best there can be.
+/// The ground truth, handed in as a detector's lanes, is the best there can be.
 TEST_F(Program, GroundTruthAsLanesScoresFull) {
     make_scenes("--fp 0,0.3,0.5 --range 30,50");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
@@ -195,7 +195,7 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
     EXPECT_EQ(rows, 6U);
 }
 
-/// That there is no lane is as good an answer as a proven optimum, in time and of a method that optimises.
+/// That there is no lane is as good an answer as a proven optimum, in time and of a detector that optimises.
 TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
     make_scenes("--fp 0");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
@@ -211,7 +211,7 @@ TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
     records[1].answer.status = LaneStatus::stopped;
     records[2].latency_ms = 401.0;
     const std::size_t answers = records.size();
-    // A method that states no objective has solved nothing, whatever it finds.
+    // A detector that states no objective has solved nothing, whatever it finds.
     for (const AnnotatedScene& scene : scenes) {
         records.push_back({scene.scene.id, "search", {}, 1.0, {}});
         records.back().answer.status = LaneStatus::none;

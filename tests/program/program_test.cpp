@@ -33,7 +33,7 @@ TEST_F(Program, TheVersionNamesCommitCompilerAndSolvers) {
                 testing::MatchesRegex("conelane [0-9.]+\ncommit .+\ncompiler .+\nsolvers .*path-pair.*\n"));
 }
 
-TEST_F(Program, MethodsForUsersComeFirstAndAblationsOnRequest) {
+TEST_F(Program, DetectorsForUsersComeFirstAndAblationsOnRequest) {
     const std::string some = run("methods").output;
     const std::string all = run("methods --all").output;
     EXPECT_THAT(some, HasSubstr("rld-pair "));

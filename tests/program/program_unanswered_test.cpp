@@ -1,5 +1,5 @@
-// Methods and solvers all of whose answers are errors: every command says so on stderr and ends by 1. What it
-// writes is there all the same.
+// Detectors and solvers all of whose answers are errors: every command says so on stderr and ends by 1. What
+// it writes is there all the same.
 
 #include "tests/support/program_on_scenes.hpp"
 
@@ -65,7 +65,7 @@ TEST_F(Unanswered, ASolverThatTakesNoneOfTheScenesEndsBy1) {
     EXPECT_EQ(solved.errors, "");
 }
 
-TEST_F(Unanswered, AComparisonInWhichOneMethodAnswersNothingEndsBy1) {
+TEST_F(Unanswered, AComparisonInWhichOneDetectorAnswersNothingEndsBy1) {
     const Outcome outcome = run(
         "compare --tracks generated:circle --condition paper --fp 0 --every 30 --methods exec:mine=false clc "
         "--out r");

@@ -5,9 +5,9 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_solver.hpp"
 #include "solvers/exhaustive.hpp"
-#include "tests/support/contestants.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
+#include "tests/support/solver_cases.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -208,11 +208,11 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
                     starts.back().edges.erase(starts.back().edges.begin() + static_cast<std::ptrdiff_t>(k));
                 }
             }
-            for (const tests::Contestant& contestant : tests::contestants()) {
+            for (const tests::SolverCase& tried : tests::solver_cases()) {
                 // The printed program takes a hundred times as long, by the same code.
-                if (!contestant.entry->exact || contestant.formulation == Formulation::paper) continue;
-                SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << contestant.entry->name);
-                const auto solver = contestant.entry->make(contestant.formulation);
+                if (!tried.entry->exact || tried.formulation == Formulation::paper) continue;
+                SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << tried.entry->name);
+                const auto solver = tried.entry->make(tried.formulation);
                 const LaneGraphProblem problem = make_problem(scene, parameters, solver->extent());
                 for (const LaneGraph& start : starts) {
                     const RldReport report = solver->solve(problem, {}, &start);

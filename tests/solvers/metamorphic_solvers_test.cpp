@@ -3,9 +3,9 @@
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "tests/support/contestants.hpp"
 #include "tests/support/metamorphic.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/solver_cases.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace conelane {
 namespace {
 
 using tests::Change;
-using tests::Contestant;
+using tests::SolverCase;
 
 /// What an LP's tolerance leaves.
 constexpr double kObjectiveTolerance = 1e-6;
@@ -109,12 +109,12 @@ void expect_same(const Solved& original, const Solved& changed, const Change& ch
     }
 }
 
-class SolverMetamorphic : public testing::TestWithParam<std::tuple<Contestant, Change>> {};
+class SolverMetamorphic : public testing::TestWithParam<std::tuple<SolverCase, Change>> {};
 
 TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
-    const auto& [contestant, change] = GetParam();
-    const auto solver = contestant.entry->make(contestant.formulation);
-    const std::uint64_t seeds = contestant.formulation == Formulation::paper ? 12 : 24;
+    const auto& [tried, change] = GetParam();
+    const auto solver = tried.entry->make(tried.formulation);
+    const std::uint64_t seeds = tried.formulation == Formulation::paper ? 12 : 24;
     std::size_t lanes = 0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -122,16 +122,16 @@ TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
         const Scene scene = tests::on_grid(tests::random_scene(seed, 8));
         const Solved original = solve(*solver, scene, parameters_of(seed));
         const Solved changed = solve(*solver, change.apply(scene), parameters_of(seed));
-        expect_same(original, changed, change, contestant.entry->exact);
+        expect_same(original, changed, change, tried.entry->exact);
         if (original.report.lane_graph) ++lanes;
     }
     // How many a heuristic finds is its own affair.
-    if (contestant.entry->exact) {
+    if (tried.entry->exact) {
         EXPECT_GE(lanes, seeds / 4);
     }
 }
 
-class SolverScale : public testing::TestWithParam<Contestant> {};
+class SolverScale : public testing::TestWithParam<SolverCase> {};
 
 TEST_P(SolverScale, FindsTheSameOptimumWithTheLengthsOfTheParameters) {
     const auto solver = GetParam().entry->make(GetParam().formulation);
@@ -166,21 +166,20 @@ TEST_P(PathPairMetamorphic, FindsTheSameOptimumAmongManyCones) {
     EXPECT_GE(lanes, 30U);
 }
 
-std::string test_name(const Contestant& contestant) {
-    std::string name =
-        std::string(contestant.entry->name) + "_" + std::string(to_string(contestant.formulation));
+std::string test_name(const SolverCase& solver) {
+    std::string name = std::string(solver.entry->name) + "_" + std::string(to_string(solver.formulation));
     std::ranges::replace(name, '-', '_');
     return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverMetamorphic,
-                         testing::Combine(testing::ValuesIn(tests::contestants()),
+                         testing::Combine(testing::ValuesIn(tests::solver_cases()),
                                           testing::ValuesIn(tests::changes())),
                          [](const auto& test) {
                              return test_name(std::get<0>(test.param)) + "_" +
                                     std::string(std::get<1>(test.param).name);
                          });
-INSTANTIATE_TEST_SUITE_P(Registry, SolverScale, testing::ValuesIn(tests::contestants()),
+INSTANTIATE_TEST_SUITE_P(Registry, SolverScale, testing::ValuesIn(tests::solver_cases()),
                          [](const auto& test) { return test_name(test.param); });
 INSTANTIATE_TEST_SUITE_P(Changes, PathPairMetamorphic, testing::ValuesIn(tests::changes()),
                          [](const auto& test) { return std::string(test.param.name); });

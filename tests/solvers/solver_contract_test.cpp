@@ -4,8 +4,8 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
-#include "tests/support/contestants.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/solver_cases.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,12 +21,12 @@
 namespace conelane {
 namespace {
 
-using tests::Contestant;
+using tests::SolverCase;
 
 /// Those that prove their optimum; what is asked of all is in solver_robustness_test.
-std::vector<Contestant> exact_contestants() {
-    std::vector<Contestant> all = tests::contestants();
-    std::erase_if(all, [](const Contestant& contestant) { return !contestant.entry->exact; });
+std::vector<SolverCase> exact_solver_cases() {
+    std::vector<SolverCase> all = tests::solver_cases();
+    std::erase_if(all, [](const SolverCase& solver) { return !solver.entry->exact; });
     return all;
 }
 
@@ -39,7 +39,7 @@ Scene scene_of(const std::vector<Point>& positions) {
 }
 
 /// Edges as cone indices; the car stands at the origin and looks along +x.
-class SolverContract : public testing::TestWithParam<Contestant> {
+class SolverContract : public testing::TestWithParam<SolverCase> {
   protected:
     RldReport solve(const Scene& scene, const RldParameters& parameters = {}, const SolveLimits& limits = {},
                     const LaneGraph* start = nullptr) {
@@ -326,7 +326,7 @@ TEST_P(SolverContract, AStartChangesNoOptimum) {
     EXPECT_GT(started, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_contestants()),
+INSTANTIATE_TEST_SUITE_P(Registry, SolverContract, testing::ValuesIn(exact_solver_cases()),
                          [](const auto& test) {
                              std::string name = std::string(test.param.entry->name) + "_" +
                                                 std::string(to_string(test.param.formulation));

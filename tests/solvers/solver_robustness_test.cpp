@@ -8,8 +8,8 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/registry.hpp"
 #include "solvers/relaxation/relaxation_solver.hpp"
-#include "tests/support/contestants.hpp"
 #include "tests/support/random_scenes.hpp"
+#include "tests/support/solver_cases.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +28,8 @@
 namespace conelane {
 namespace {
 
-using tests::Contestant;
-using tests::contestants;
+using tests::solver_cases;
+using tests::SolverCase;
 
 Scene scene_of(const std::vector<Point>& positions) {
     Scene scene;
@@ -44,7 +44,7 @@ Scene four_cones() {
 }
 const LaneGraph kFourConesLane{{{0, 1}, {2, 3}}};
 
-class SolverRobustness : public testing::TestWithParam<Contestant> {
+class SolverRobustness : public testing::TestWithParam<SolverCase> {
   protected:
     std::unique_ptr<RldSolver> solver = GetParam().entry->make(GetParam().formulation);
 
@@ -212,7 +212,7 @@ TEST_P(SolverRobustness, SolvesTheSameInThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(contestants()), [](const auto& test) {
+INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(solver_cases()), [](const auto& test) {
     std::string name =
         std::string(test.param.entry->name) + "_" + std::string(to_string(test.param.formulation));
     std::ranges::replace(name, '-', '_');

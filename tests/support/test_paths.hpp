@@ -11,13 +11,13 @@ namespace conelane {
 /// The program `conelane`.
 [[nodiscard]] std::string conelane_program();
 
-/// A method from outside that misbehaves when told to: tests/evaluation/outside/outside_child.cpp.
+/// A detector from outside that misbehaves when told to: tests/evaluation/outside/outside_child.cpp.
 [[nodiscard]] std::string outside_child();
 
 /// A solver from outside that misbehaves when told to: tests/evaluation/outside/solver_child.cpp.
 [[nodiscard]] std::string solver_child();
 
-/// The example of a method from outside that answers a stream of scenes.
+/// The example of a detector from outside that answers a stream of scenes.
 [[nodiscard]] std::string clc_stream();
 
 }  // namespace conelane

@@ -23,10 +23,22 @@
 ///     }
 namespace conelane {
 
+/// Whether a detector may answer with a closed lane (Lane::closed), a whole lap in view.
+enum class ClosedLanes { never, possible };
+
+/// What a detector does with the colors of cones. Unknown ones never matter.
+enum class ColorUse {
+    ignored,    ///< the lane is the same whatever they are
+    by_weight,  ///< RldParameters::w_color says how much they count; by default it is 0
+    used,
+};
+
 /// A detector of the library, as `make_detector` knows it.
 struct DetectorInfo {
     std::string_view name;
     std::string_view description;  ///< one line
+    ClosedLanes closed_lanes;
+    ColorUse color_use;
 };
 
 /// All detectors; the first one is the one to drive by.

@@ -13,7 +13,7 @@ import numpy as np
 from ..clc_rows import moderate, of_paper
 from ..experiment import Missing
 from ..figures import drawn, variants
-from ..theme import INK, legend, method_colour, method_style, new_figure
+from ..theme import INK, legend, method_color, method_style, new_figure
 
 
 def html(results, published):
@@ -29,7 +29,7 @@ def html(results, published):
         kept = sample.where(np.isin(sample.category, ("ground_truth", "near_ground_truth", "too_short")))
         counts, _ = np.histogram(kept.lane_length, bins)
         axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4, gid=f"curve:{sample.method}",
-                    color=method_colour(results.methods, sample.method),
+                    color=method_color(results.methods, sample.method),
                     linestyle=method_style(results.methods, sample.method, variant)["linestyle"])
     axes.set_xlabel("length [m]")
     axes.set_ylabel("of all scenes [%]")

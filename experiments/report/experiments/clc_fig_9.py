@@ -13,7 +13,7 @@ import numpy as np
 from ..clc_rows import moderate, of_paper
 from ..experiment import Missing
 from ..figures import drawn, variants
-from ..theme import ACCENT, legend, method_colour, method_style, new_figure
+from ..theme import ACCENT, legend, method_color, method_style, new_figure
 
 
 def html(results, published):
@@ -28,7 +28,7 @@ def html(results, published):
     for sample, variant in variants(samples):
         counts, _ = np.histogram(sample.divergence, bins)
         axes.stairs(100 * counts / total[sample.label], bins, label=sample.label, linewidth=1.4, gid=f"curve:{sample.method}",
-                    color=method_colour(results.methods, sample.method),
+                    color=method_color(results.methods, sample.method),
                     linestyle=method_style(results.methods, sample.method, variant)["linestyle"])
     axes.axvline(20, color=ACCENT, linewidth=1)
     axes.set_xlabel("divergence distance [m]")

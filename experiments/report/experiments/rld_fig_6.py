@@ -15,7 +15,7 @@ from .. import measures
 from ..experiment import Missing
 from ..figures import drawn, group, variants
 from ..tables import Cell, Column, method_cell, milliseconds, percent, table, text
-from ..theme import ACCENT, legend, logarithmic, method_colour, method_style, new_figure
+from ..theme import ACCENT, legend, logarithmic, method_color, method_style, new_figure
 
 _LIMIT_MS = 400.0
 
@@ -28,7 +28,7 @@ def _distribution(results, samples, published):
     for sample, variant in variants(samples):
         counts, _ = np.histogram(np.clip(sample.latency, smallest, most), bins)
         axes.stairs(100 * counts / len(sample), bins, label=sample.label, linewidth=1.4, gid=f"curve:{sample.method}",
-                    color=method_colour(results.methods, sample.method),
+                    color=method_color(results.methods, sample.method),
                     linestyle=method_style(results.methods, sample.method, variant)["linestyle"])
     for value, label in ((published["rld_mean_ms"], "paper's mean"), (published["rld_p95_ms"], "its p95")):
         axes.axvline(value, color=ACCENT, linewidth=1)

@@ -111,6 +111,13 @@ class LaneDetector {
   protected:
     /// For a detector that merges cones up to `doubled_cone_m` [m] apart; 0.4 m at most.
     explicit LaneDetector(double doubled_cone_m);
+    /// What another detector finds in a scene that has passed `detect` already, so that nothing is checked
+    /// again: for detectors that stand before another. Precondition: that of `search`. Throws what its search
+    /// throws.
+    [[nodiscard]] static LaneAnswer search_by(LaneDetector& detector, const Scene& scene,
+                                              const DetectionLimits& limits) {
+        return detector.search(scene, limits);
+    }
 
   private:
     /// Precondition: the scene is valid and has no doubles, and the limit is a number.

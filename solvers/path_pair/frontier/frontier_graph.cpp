@@ -11,23 +11,19 @@ namespace {
 constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
-/// To extend a front takes as long as to look at so many.
-constexpr std::size_t kFrontsPerExtension = 4;
-/// So many values are written or copied at once.
-constexpr std::size_t kValuesAtOnce = 16384;
-// Steps of the clock.
-constexpr std::size_t kWorkPerFront = 200;
-constexpr std::size_t kWorkPerValue = 3;
+/// To extend a frontier takes as long as to look at so many.
+constexpr std::size_t kFrontiersPerExtension = 4;
+constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
 /// nothing.
-constexpr std::size_t kReservedFronts = std::size_t{1} << 18U;
-constexpr std::size_t kStepsPerFront = 4;
-constexpr std::size_t kMaxFirstFronts = 1'000'000;
+constexpr std::size_t kReservedFrontiers = std::size_t{1} << 18U;
+constexpr std::size_t kStepsPerFrontier = 4;
+constexpr std::size_t kMaxFirstFrontiers = 1'000'000;
 
 }  // namespace
 
 void FrontierGraph::Arrays::clear() {
-    fronts.clear();
+    frontiers.clear();
     last.clear();
     begin.clear();
     end.clear();
@@ -36,51 +32,24 @@ void FrontierGraph::Arrays::clear() {
     onward.clear();
 }
 
-std::uint64_t FrontierGraph::key(const Front& front) {
-    return (static_cast<std::uint64_t>(front.moving) << 32) +
-           (static_cast<std::uint64_t>(front.waiting) << 2) + (front.moving_kind == 1 ? 2U : 0U) +
-           (front.ended ? 1U : 0U);
+std::uint64_t FrontierGraph::key(const Frontier& frontier) {
+    return (static_cast<std::uint64_t>(frontier.moving) << 32) +
+           (static_cast<std::uint64_t>(frontier.waiting) << 2) + (frontier.moving_kind == 1 ? 2U : 0U) +
+           (frontier.ended ? 1U : 0U);
 }
 
 void FrontierGraph::Arrays::reserve(std::size_t count) {
-    fronts.reserve(count);
+    frontiers.reserve(count);
     last.reserve(count);
     begin.reserve(count);
     end.reserve(count);
-    steps.reserve(kStepsPerFront * count);
+    steps.reserve(kStepsPerFrontier * count);
     forward.reserve(count);
     onward.reserve(count);
 }
 
-bool FrontierGraph::out_of_time(std::size_t fronts) {
-    return clock_->tick(kWorkPerFront * fronts);
-}
-
-template <typename T>
-bool FrontierGraph::fill(std::vector<T>& values, std::size_t count, T value) {
-    values.clear();
-    values.reserve(count);
-    while (values.size() < count) {
-        const std::size_t more = std::min(count - values.size(), kValuesAtOnce);
-        if (clock_->tick(kWorkPerValue * more)) return false;
-        values.resize(values.size() + more, value);
-    }
-    return true;
-}
-
-template <typename T>
-bool FrontierGraph::make_room(std::vector<T>& values, std::size_t more) {
-    if (values.size() + more <= values.capacity()) return true;
-    std::vector<T> grown;
-    grown.reserve(std::max(values.size() + more, 2 * values.capacity()));
-    while (grown.size() < values.size()) {
-        const std::size_t count = std::min(values.size() - grown.size(), kValuesAtOnce);
-        if (clock_->tick(kWorkPerValue * count)) return false;
-        const auto begin = values.begin() + static_cast<std::ptrdiff_t>(grown.size());
-        grown.insert(grown.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
-    }
-    values = std::move(grown);
-    return true;
+bool FrontierGraph::out_of_time(std::size_t frontiers) {
+    return clock_->tick(kWorkPerFrontier * frontiers);
 }
 
 bool FrontierGraph::fill_dominated(std::size_t words) {
@@ -92,13 +61,13 @@ bool FrontierGraph::fill_dominated(std::size_t words) {
     return true;
 }
 
-void FrontierGraph::forget_fronts() {
+void FrontierGraph::forget_frontiers() {
     now_.clear();
     starts_.clear();
 }
 
 double FrontierGraph::start_cost(int f) const {
-    const Front& start = front(f);
+    const Frontier& start = frontier(f);
     const int kind = start.moving_kind;
     const int other = relaxation_->other(kind);
     return relaxation_->start(kind)[to_index(start.moving)] + relaxation_->reduced()[to_index(start.moving)] +
@@ -110,27 +79,27 @@ bool FrontierGraph::grow_table() {
     if (!fill(table_, std::max(kFewSlots, table_.size() * 2), -1)) return false;
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return false;
-        std::size_t slot = (key(front(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
+        std::size_t slot = (key(frontier(f)) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
         while (table_[slot] >= 0) slot = (slot + 1) & (table_.size() - 1);
         table_[slot] = f;
     }
     return true;
 }
 
-/// The front's number, a new one where it has none. Any number once the time is up: all are dropped then.
-int FrontierGraph::number(const Front& wanted) {
-    if (2 * (now_.fronts.size() + 1) > table_.size() && !grow_table()) return 0;
+/// The frontier's number, a new one where it has none. Any number once the time is up: all are dropped then.
+int FrontierGraph::number(const Frontier& wanted) {
+    if (2 * (now_.frontiers.size() + 1) > table_.size() && !grow_table()) return 0;
     // Fibonacci hashing: the upper half depends on all bits.
     std::size_t slot = (key(wanted) * 0x9E3779B97F4A7C15U >> 32) & (table_.size() - 1);
     for (; table_[slot] >= 0; slot = (slot + 1) & (table_.size() - 1)) {
-        if (front(table_[slot]) == wanted) return table_[slot];
+        if (frontier(table_[slot]) == wanted) return table_[slot];
     }
-    if (!make_room(now_.fronts, 1) || !make_room(now_.forward, 1) || !make_room(now_.begin, 1) ||
+    if (!make_room(now_.frontiers, 1) || !make_room(now_.forward, 1) || !make_room(now_.begin, 1) ||
         !make_room(now_.end, 1) || !make_room(next_open_, 1)) {
         return 0;
     }
     table_[slot] = size();
-    now_.fronts.push_back(wanted);
+    now_.frontiers.push_back(wanted);
     now_.forward.push_back(kUnreachable);
     now_.begin.push_back(0);
     now_.end.push_back(0);  // no steps yet: the first one is at 1 or later
@@ -139,7 +108,7 @@ int FrontierGraph::number(const Front& wanted) {
     return size() - 1;
 }
 
-/// The first fronts below the limit.
+/// The first frontiers below the limit.
 void FrontierGraph::begin(double limit) {
     const ResidualGraph& r = *residual_;
     const bool symmetric = relaxation_->symmetric();
@@ -153,7 +122,7 @@ void FrontierGraph::begin(double limit) {
     }
     for (int a = 0; a < r.size(); ++a) {
         if (cost(0, a) == kUnreachable) continue;
-        if (now_.fronts.size() > kMaxFirstFronts || out_of_time()) break;
+        if (now_.frontiers.size() > kMaxFirstFrontiers || out_of_time()) break;
         for (const int b : stack_) {
             const double start = cost(0, a) + cost(second, b);
             if (!(start + leg_onward_[0][to_index(a)] + leg_onward_[to_index(second)][to_index(b)] < limit))
@@ -162,8 +131,8 @@ void FrontierGraph::begin(double limit) {
                 !dominated_of_arcs_->may_pair(0, a, second, b, false)) {
                 continue;
             }
-            const int f =
-                number(a < b ? Front{a, b, 0, false} : Front{b, a, static_cast<std::uint8_t>(second), false});
+            const int f = number(a < b ? Frontier{a, b, 0, false}
+                                       : Frontier{b, a, static_cast<std::uint8_t>(second), false});
             now_.forward[to_index(f)] = start;
             starts_.push_back(f);
             if (edges_ != nullptr) {
@@ -176,16 +145,17 @@ void FrontierGraph::begin(double limit) {
     stack_.clear();
 }
 
-FrontierGraph::Front FrontierGraph::after(const Front& front, int arc, std::uint8_t other) {
-    if (arc < 0) return {front.waiting, front.moving, other, true};
-    if (front.ended || arc < front.waiting) return {arc, front.waiting, front.moving_kind, front.ended};
-    return {front.waiting, arc, other, false};
+FrontierGraph::Frontier FrontierGraph::after(const Frontier& frontier, int arc, std::uint8_t other) {
+    if (arc < 0) return {frontier.waiting, frontier.moving, other, true};
+    if (frontier.ended || arc < frontier.waiting)
+        return {arc, frontier.waiting, frontier.moving_kind, frontier.ended};
+    return {frontier.waiting, arc, other, false};
 }
 
-/// All steps of a front, their next fronts still open. None once the time is up.
+/// All steps of a frontier, their next frontiers still open. None once the time is up.
 void FrontierGraph::add_steps(int f, double limit) {
     const ResidualGraph& r = *residual_;
-    const Front here = front(f);
+    const Frontier here = frontier(f);
     const int kind = here.moving_kind;
     const int other = relaxation_->other(kind);
     const std::span<const double> reduced = relaxation_->reduced();
@@ -213,7 +183,7 @@ void FrontierGraph::add_steps(int f, double limit) {
 }
 
 bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
-                          std::size_t max_fronts, const EdgeSets* edges) {
+                          std::size_t max_frontiers, const EdgeSets* edges) {
     if (clock_->out_of_time()) return false;
     residual_ = &residual;
     edges_ = edges;
@@ -224,21 +194,21 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
         relaxation_->onward(residual, kind, leg_onward_[to_index(kind)]);
     }
     now_.clear();
-    now_.reserve(std::min(kReservedFronts, max_fronts));
+    now_.reserve(std::min(kReservedFrontiers, max_frontiers));
     next_open_.clear();
-    next_open_.reserve(std::min(kReservedFronts, max_fronts));
-    now_.steps.push_back({-1, -1, 0.0});  // so that no front's steps begin at 0
+    next_open_.reserve(std::min(kReservedFrontiers, max_frontiers));
+    now_.steps.push_back({-1, -1, 0.0});  // so that no frontier's steps begin at 0
     starts_.clear();
     open_at_.assign(residual.arc.size(), -1);
     open_arcs_.assign((residual.arc.size() + 63) / 64, 0);
     moving_ = 0;
     table_.assign(kFewSlots, -1);
     begin(limit);
-    if (clock_->struck() || now_.fronts.size() > kMaxFirstFronts) {
+    if (clock_->struck() || now_.frontiers.size() > kMaxFirstFrontiers) {
         stack_.clear();
         return false;
     }
-    // Arc by arc: steps lead to fronts whose moving arc mostly comes later.
+    // Arc by arc: steps lead to frontiers whose moving arc mostly comes later.
     for (again_ = true; again_;) {
         again_ = false;
         for (std::size_t word = 0; word < open_arcs_.size(); ++word) {
@@ -247,7 +217,7 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
                 open_arcs_[word] &= open_arcs_[word] - 1;
                 for (int f = std::exchange(open_at_[to_index(moving_)], -1); f >= 0;) {
                     const int next = std::exchange(next_open_[to_index(f)], kNotOpen);
-                    if (out_of_time(kFrontsPerExtension) || !extend(f, limit, max_fronts)) return false;
+                    if (out_of_time(kFrontiersPerExtension) || !extend(f, limit, max_frontiers)) return false;
                     f = next;
                 }
             }
@@ -259,13 +229,13 @@ bool FrontierGraph::build(const ResidualGraph& residual, const DominatedEdges& d
 
 void FrontierGraph::open(int f) {
     if (next_open_[to_index(f)] != kNotOpen) return;
-    const std::size_t arc = to_index(front(f).moving);
+    const std::size_t arc = to_index(frontier(f).moving);
     next_open_[to_index(f)] = std::exchange(open_at_[arc], f);
     open_arcs_[arc / 64] |= std::uint64_t{1} << (arc % 64);
     again_ |= arc / 64 < to_index(moving_) / 64;
 }
 
-/// Every walk up to a front loses these edges: one more walk comes to `to`. True where the set shrinks.
+/// Every walk up to a frontier loses these edges: one more walk comes to `to`. True where the set shrinks.
 bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
@@ -273,9 +243,9 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     return intersect_with_union(dominated_.row(to_index(to)), dominated_.row(to_index(from)), own, words);
 }
 
-/// Lowers the forward costs of the fronts after this one. False where there are too many.
-bool FrontierGraph::extend(int f, double limit, std::size_t max_fronts) {
-    const Front here = front(f);
+/// Lowers the forward costs of the frontiers after this one. False where there are too many.
+bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
+    const Frontier here = frontier(f);
     const int other = relaxation_->other(here.moving_kind);
     const std::span<const double> reduced = relaxation_->reduced();
     const std::span<const double> leg_onward = leg_onward_[to_index(here.moving_kind)];
@@ -295,7 +265,7 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_fronts) {
         int to = known;
         if (to < 0) {
             now_.steps[p].to = to = number(after(here, arc, static_cast<std::uint8_t>(other)));
-            if (now_.fronts.size() > max_fronts) return false;
+            if (now_.frontiers.size() > max_frontiers) return false;
         }
         const bool narrowed = narrow_dominated(f, to, arc);
         const bool cheaper = label < now_.forward[to_index(to)] - kGain;
@@ -305,28 +275,29 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_fronts) {
     return true;
 }
 
-/// Renumbers the fronts that have steps, or are last, in reversed finishing order of a depth-first search:
-/// nearly every step leads to a later front.
+/// Renumbers the frontiers that have steps, or are last, in reversed finishing order of a depth-first search:
+/// nearly every step leads to a later frontier.
 void FrontierGraph::order() {
-    if (!order_fronts()) return forget_fronts();
+    if (!order_frontiers()) return forget_frontiers();
     const ResidualGraph& r = *residual_;
-    for (const Front& f : now_.fronts) {
-        if (out_of_time()) return forget_fronts();
+    for (const Frontier& f : now_.frontiers) {
+        if (out_of_time()) return forget_frontiers();
         const bool last = f.ended && relaxation_->may_end(r, f.moving_kind, f.moving) &&
                           relaxation_->ends_fit(r.head[to_index(f.moving)], r.head[to_index(f.waiting)]);
         now_.last.push_back(last ? 1 : 0);
     }
-    if (!fill(now_.onward, now_.fronts.size(), kUnreachable) ||
+    if (!fill(now_.onward, now_.frontiers.size(), kUnreachable) ||
         !fill(keep_step_, now_.steps.size(), char{1})) {
-        return forget_fronts();
+        return forget_frontiers();
     }
     keep(order_);
 }
 
-bool FrontierGraph::order_fronts() {
+bool FrontierGraph::order_frontiers() {
     order_.clear();
-    order_.reserve(now_.fronts.size());
-    if (!fill(index_, now_.fronts.size(), -1) || !fill(next_step_, now_.fronts.size(), std::size_t{0})) {
+    order_.reserve(now_.frontiers.size());
+    if (!fill(index_, now_.frontiers.size(), -1) ||
+        !fill(next_step_, now_.frontiers.size(), std::size_t{0})) {
         return false;
     }
     const auto enter = [&](int f) {
@@ -361,11 +332,11 @@ void FrontierGraph::keep(std::span<const int> order) {
     now_.clear();
     now_.reserve(order.size());
     now_.steps.reserve(old_.steps.size());
-    if (!fill(index_, old_.fronts.size(), -1)) return forget_fronts();
+    if (!fill(index_, old_.frontiers.size(), -1)) return forget_frontiers();
     for (std::size_t k = 0; k < order.size(); ++k) index_[to_index(order[k])] = static_cast<int>(k);
     for (const int f : order) {
-        if (out_of_time()) return forget_fronts();
-        now_.fronts.push_back(old_.fronts[to_index(f)]);
+        if (out_of_time()) return forget_frontiers();
+        now_.frontiers.push_back(old_.frontiers[to_index(f)]);
         now_.last.push_back(old_.last[to_index(f)]);
         now_.forward.push_back(old_.forward[to_index(f)]);
         now_.onward.push_back(old_.onward[to_index(f)]);
@@ -385,11 +356,11 @@ void FrontierGraph::keep(std::span<const int> order) {
 }
 
 double FrontierGraph::find_onward(double limit) {
-    if (!fill(now_.onward, now_.fronts.size(), kUnreachable)) {
-        forget_fronts();
+    if (!fill(now_.onward, now_.frontiers.size(), kUnreachable)) {
+        forget_frontiers();
         return -kUnreachable;
     }
-    changed_.assign(now_.fronts.size(), 0);
+    changed_.assign(now_.frontiers.size(), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
@@ -412,8 +383,8 @@ double FrontierGraph::find_onward(double limit) {
 }
 
 void FrontierGraph::find_forward() {
-    if (!fill(now_.forward, now_.fronts.size(), kUnreachable)) return forget_fronts();
-    changed_.assign(now_.fronts.size(), 0);
+    if (!fill(now_.forward, now_.frontiers.size(), kUnreachable)) return forget_frontiers();
+    changed_.assign(now_.frontiers.size(), 0);
     for (const int f : starts_) now_.forward[to_index(f)] = start_cost(f);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
@@ -435,9 +406,9 @@ void FrontierGraph::find_forward() {
 
 void FrontierGraph::drop(double limit) {
     order_.clear();
-    if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_fronts();
+    if (!fill(keep_step_, now_.steps.size(), char{0})) return forget_frontiers();
     for (int f = 0; f < size(); ++f) {
-        if (out_of_time()) return forget_fronts();
+        if (out_of_time()) return forget_frontiers();
         const double forward = now_.forward[to_index(f)];
         if (!(forward + onward(f) < limit)) continue;
         order_.push_back(f);
@@ -450,77 +421,74 @@ void FrontierGraph::drop(double limit) {
 }
 
 void FrontierGraph::drop_dominated_edges(const EdgeSets& edges) {
-    const std::size_t words = edges.words();
-    const auto row = [&](int f) { return dominated_.row(to_index(f)); };
-    const auto is_dominated = [&](int f, int arc) {
-        return arc >= 0 && EdgeSets::contains(row(f), edges.number(arc));
-    };
-    nothing_.assign(words, 0);
-    const std::uint64_t* const nothing = nothing_.data();
     if (!fill(keep_step_, now_.steps.size(), char{1})) return;
-    changed_.assign(now_.fronts.size(), 0);
-
-    // Every walk from a first front up to this one has lost these edges.
-    if (!fill_dominated(words)) return;
-    for (const int f : starts_) {
-        intersect_with_union(row(f), edges.lost_after(front(f).moving), edges.lost_after(front(f).waiting),
-                             words);
-    }
-    bool again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = 0; f < size(); ++f) {
-            if (out_of_time()) return;
-            if (sweep > 1 && changed_[to_index(f)] < sweep - 1) continue;
-            for (const Step& step : steps(f)) {
-                if (is_dominated(f, step.arc)) continue;
-                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_after(step.arc);
-                if (!intersect_with_union(row(step.to), row(f), own, words)) continue;
-                changed_[to_index(step.to)] = sweep;
-                again |= step.to <= f;
-            }
-        }
-    }
-    for (int f = 0; f < size(); ++f) {
-        if (out_of_time()) return;
-        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-            if (is_dominated(f, now_.steps[p].arc)) keep_step_[p] = 0;
-        }
-    }
-
-    // Every walk from this front on to a last one excludes these edges.
-    if (!fill_dominated(words)) return;
-    changed_.assign(now_.fronts.size(), 0);
-    again = true;
-    for (int sweep = 1; again; ++sweep) {
-        again = false;
-        for (int f = size(); f-- > 0;) {
-            if (out_of_time()) return;
-            bool changed = false;
-            if (sweep == 1 && is_last(f)) changed = intersect_with_union(row(f), nothing, nothing, words);
-            for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-                const Step& step = now_.steps[p];
-                if (keep_step_[p] == 0 || changed_[to_index(step.to)] < sweep - 1 ||
-                    is_dominated(step.to, step.arc)) {
-                    continue;
-                }
-                const std::uint64_t* const own = step.arc < 0 ? nothing : edges.lost_before(step.arc);
-                changed |= intersect_with_union(row(f), row(step.to), own, words);
-            }
-            if (!changed) continue;
-            changed_[to_index(f)] = sweep;
-            again = true;
-        }
-    }
+    nothing_.assign(edges.words(), 0);
+    if (!drop_steps_by_dominated<Walks::up_to>(edges)) return;
+    if (!drop_steps_by_dominated<Walks::on_from>(edges)) return;
     order_.clear();
     for (int f = 0; f < size(); ++f) {
         if (out_of_time()) return;
         order_.push_back(f);
-        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
-            if (is_dominated(now_.steps[p].to, now_.steps[p].arc)) keep_step_[p] = 0;
-        }
     }
     keep(order_);
+}
+
+template <FrontierGraph::Walks kWalks>
+bool FrontierGraph::drop_steps_by_dominated(const EdgeSets& edges) {
+    constexpr bool kUpTo = kWalks == Walks::up_to;
+    const std::size_t words = edges.words();
+    const auto row = [&](int f) { return dominated_.row(to_index(f)); };
+    const auto source = [](int f, const Step& step) { return kUpTo ? f : step.to; };
+    const auto target = [](int f, const Step& step) { return kUpTo ? step.to : f; };
+    const auto is_dominated = [&](int f, const Step& step) {
+        return step.arc >= 0 && EdgeSets::contains(row(source(f, step)), edges.number(step.arc));
+    };
+    const std::uint64_t* const nothing = nothing_.data();
+    const auto own = [&](const Step& step) {
+        if (step.arc < 0) return nothing;
+        return kUpTo ? edges.lost_after(step.arc) : edges.lost_before(step.arc);
+    };
+
+    if (!fill_dominated(words)) return false;
+    if constexpr (kUpTo) {
+        for (const int f : starts_) {
+            const Frontier& start = frontier(f);
+            intersect_with_union(row(f), edges.lost_after(start.moving), edges.lost_after(start.waiting),
+                                 words);
+        }
+    } else {
+        for (int f = 0; f < size(); ++f) {
+            if (is_last(f)) std::fill_n(row(f), words, std::uint64_t{0});
+        }
+    }
+    changed_.assign(now_.frontiers.size(), 0);
+    // What is taken out of a set lets more steps count, so sweeps go on until nothing changes.
+    bool again = true;
+    for (int sweep = 1; again; ++sweep) {
+        again = false;
+        for (int i = 0; i < size(); ++i) {
+            if (out_of_time()) return false;
+            const int f = kUpTo ? i : size() - 1 - i;
+            if (kUpTo && changed_[to_index(f)] < sweep - 1) continue;
+            for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
+                const Step& step = now_.steps[p];
+                if (keep_step_[p] == 0 || changed_[to_index(source(f, step))] < sweep - 1 ||
+                    is_dominated(f, step) ||
+                    !intersect_with_union(row(target(f, step)), row(source(f, step)), own(step), words)) {
+                    continue;
+                }
+                changed_[to_index(target(f, step))] = sweep;
+                again |= !kUpTo || step.to <= f;
+            }
+        }
+    }
+    for (int f = 0; f < size(); ++f) {
+        if (out_of_time()) return false;
+        for (std::size_t p = now_.begin[to_index(f)]; p < now_.end[to_index(f)]; ++p) {
+            if (is_dominated(f, now_.steps[p])) keep_step_[p] = 0;
+        }
+    }
+    return true;
 }
 
 }  // namespace conelane::path_pair

@@ -33,44 +33,44 @@ bool FrontierSearch::out_of_time(std::size_t sets) {
 void FrontierSearch::take(int arc, Label& label, std::uint64_t* lost) const {
     const std::uint64_t* const more = edges_->lost_after(arc);
     for (std::size_t w = 0; w < words_; ++w) lost[w] |= more[w];
-    const int edge = fronts_->residual().edge(arc);
+    const int edge = frontiers_->residual().edge(arc);
     label.cost += graph_->cost(edge);
     if (graph_->along_heading(edge)) label.along_heading = std::min(2, label.along_heading + 1);
 }
 
 void FrontierSearch::wait(Label label) {
-    const std::size_t front = to_index(label.front);
-    label.next = std::exchange(waiting_[front], static_cast<int>(labels_.size()));
-    open_[front / 64] |= std::uint64_t{1} << (front % 64);
+    const std::size_t frontier = to_index(label.frontier);
+    label.next = std::exchange(waiting_[frontier], static_cast<int>(labels_.size()));
+    open_[frontier / 64] |= std::uint64_t{1} << (frontier % 64);
     *labels_.add() = label;
 }
 
 void FrontierSearch::begin() {
-    for (const int f : fronts_->starts()) {
+    for (const int f : frontiers_->starts()) {
         if (out_of_time(1)) return;
-        const double reduced = fronts_->start_cost(f);
-        if (!(reduced + fronts_->onward(f) < limit())) continue;
+        const double reduced = frontiers_->start_cost(f);
+        if (!(reduced + frontiers_->onward(f) < limit())) continue;
         Label label{-1, -1, f, 0, -1, 0.0, reduced};
         std::uint64_t* const lost = lost_.add();
         std::fill_n(lost, words_, std::uint64_t{0});
-        take(fronts_->front(f).moving, label, lost);
-        take(fronts_->front(f).waiting, label, lost);
+        take(frontiers_->frontier(f).moving, label, lost);
+        take(frontiers_->frontier(f).waiting, label, lost);
         wait(label);
     }
 }
 
-FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const EdgeSets& edges,
+FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& frontiers, const EdgeSets& edges,
                                             const OnwardTables& tables, const Limits& limits) {
     if (clock_->out_of_time()) return Outcome::stopped;
-    fronts_ = &fronts;
+    frontiers_ = &frontiers;
     edges_ = &edges;
     tables_ = &tables;
     limits_ = limits;
     words_ = edges.words();
     labels_.reset(1);
     lost_.reset(words_);
-    waiting_.assign(to_index(fronts.size()), -1);
-    open_.assign((to_index(fronts.size()) + 63) / 64, 0);
+    waiting_.assign(to_index(frontiers.size()), -1);
+    open_.assign((to_index(frontiers.size()) + 63) / 64, 0);
     wanted_.resize(words_);
     is_narrow_ = false;
     begin();
@@ -91,7 +91,7 @@ FrontierSearch::Outcome FrontierSearch::run(const FrontierGraph& fronts, const E
     return is_narrow_ ? Outcome::narrow : Outcome::exhausted;
 }
 
-/// Expands the labels that wait at a front.
+/// Expands the labels that wait at a frontier.
 void FrontierSearch::settle(int f) {
     here_.clear();
     for (int l = std::exchange(waiting_[to_index(f)], -1); l >= 0; l = label_at(l).next) here_.push_back(l);
@@ -101,9 +101,9 @@ void FrontierSearch::settle(int f) {
     any_lost_.assign(words_, 0);
     for (const int l : here_) {
         const Label& label = label_at(l);
-        if (!(label.reduced + fronts_->onward(f) < limit())) continue;
+        if (!(label.reduced + frontiers_->onward(f) < limit())) continue;
         if (out_of_time(kSetsPerLabel + kept_along_heading_.size())) return;
-        const int most = tables_->quanta_below(limit() - label.reduced - fronts_->onward(f));
+        const int most = tables_->quanta_below(limit() - label.reduced - frontiers_->onward(f));
         if (tables_->have_detours() && detour_reaches_limit(l, most)) continue;
         if (dominated(label, lost(l), most)) continue;
         if (kept_along_heading_.size() >= limits_.width) {
@@ -113,7 +113,7 @@ void FrontierSearch::settle(int f) {
         kept_along_heading_.push_back(label.along_heading);
         kept_lost_.insert(kept_lost_.end(), lost(l), lost(l) + words_);
         for (std::size_t w = 0; w < words_; ++w) any_lost_[w] |= lost(l)[w];
-        if (fronts_->is_last(f) && label.along_heading >= 2 &&
+        if (frontiers_->is_last(f) && label.along_heading >= 2 &&
             label.cost < incumbent_->cutoff() - limits_.tolerance) {
             offer(l);
         }
@@ -123,12 +123,12 @@ void FrontierSearch::settle(int f) {
 
 /// Whether every walk on that uses none of the edges lost by some arc of the label has a detour above `most`.
 bool FrontierSearch::detour_reaches_limit(int l, int most) const {
-    const int f = label_at(l).front;
+    const int f = label_at(l).frontier;
     for (;; l = label_at(l).before) {
         const Label& label = label_at(l);
         if (label.arc >= 0 && tables_->detour(f, label.arc) > most) return true;
         if (label.before >= 0) continue;
-        const FrontierGraph::Front& start = fronts_->front(label.front);
+        const FrontierGraph::Frontier& start = frontiers_->frontier(label.frontier);
         return tables_->detour(f, start.moving) > most || tables_->detour(f, start.waiting) > most;
     }
 }
@@ -136,7 +136,7 @@ bool FrontierSearch::detour_reaches_limit(int l, int most) const {
 /// By one that is kept, which costs no more. What completes this label below the limit uses no edge whose
 /// regret is above `most`.
 bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
-    const Quanta* regret = tables_->regrets(label.front);
+    const Quanta* regret = tables_->regrets(label.frontier);
     for (std::size_t w = 0; w < words_; ++w, regret += 64) {
         wanted_[w] = any_lost_[w] & ~lost[w];
         for (std::uint64_t bits = wanted_[w]; bits != 0; bits &= bits - 1) {
@@ -155,31 +155,32 @@ bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, in
 
 void FrontierSearch::expand(int l) {
     const Label label = label_at(l);
-    for (const FrontierGraph::Step& step : fronts_->steps(label.front)) {
-        const double reduced = label.reduced + fronts_->cost(step);
-        if (!(reduced + fronts_->onward(step.to) < limit())) continue;
+    for (const FrontierGraph::Step& step : frontiers_->steps(label.frontier)) {
+        const double reduced = label.reduced + frontiers_->cost(step);
+        if (!(reduced + frontiers_->onward(step.to) < limit())) continue;
         if (step.arc >= 0 && EdgeSets::contains(lost(l), edges_->number(step.arc))) continue;
         Label on{l, step.arc, step.to, label.along_heading, -1, label.cost + step.turn, reduced};
         std::uint64_t* const lost_on = lost_.add();
         std::copy_n(lost(l), words_, lost_on);
         if (step.arc >= 0) take(step.arc, on, lost_on);
         wait(on);
-        again_ |= step.to / 64 < label.front / 64;
+        again_ |= step.to / 64 < label.frontier / 64;
     }
 }
 
 void FrontierSearch::offer(int label) {
-    const ResidualGraph& residual = fronts_->residual();
+    const ResidualGraph& residual = frontiers_->residual();
     chain_.clear();
     for (int l = label; l >= 0; l = label_at(l).before) chain_.push_back(l);
     std::ranges::reverse(chain_);
-    const FrontierGraph::Front& start = fronts_->front(label_at(chain_.front()).front);
+    const FrontierGraph::Frontier& start = frontiers_->frontier(label_at(chain_.front()).frontier);
     std::array<int, 2> last{start.moving, start.waiting};
     for (std::size_t leg = 0; leg < 2; ++leg) legs_[leg].assign(1, residual.arc[to_index(last[leg])]);
     for (std::size_t k = 1; k < chain_.size(); ++k) {
         const int arc = label_at(chain_[k]).arc;
         if (arc < 0) continue;
-        const std::size_t leg = last[0] == fronts_->front(label_at(chain_[k - 1]).front).moving ? 0 : 1;
+        const std::size_t leg =
+            last[0] == frontiers_->frontier(label_at(chain_[k - 1]).frontier).moving ? 0 : 1;
         last[leg] = arc;
         legs_[leg].push_back(residual.arc[to_index(arc)]);
     }

@@ -15,11 +15,12 @@
 
 namespace conelane::path_pair {
 
-/// Pairs of legs by labels on the fronts. A label is the beginnings of both legs up to a front, with the
-/// edges that they have lost. Front by front, cheapest first; a label is dropped where
+/// Pairs of legs by labels on the frontiers. A label is the beginnings of both legs up to a frontier, with
+/// the edges that they have lost. Frontier by frontier, cheapest first; a label is dropped where
 ///   - its reduced cost and the cheapest walk on reach the cutoff, also where the walk must do without the
 ///     edges that one of its arcs has lost, or
-///   - another label of the front dominates it: that one costs no more (true costs, without multipliers), has
+///   - another label of the frontier dominates it: that one costs no more (true costs, without multipliers),
+///   has
 ///     as many edges along the heading, and has lost no edge that this one still has and that a walk on below
 ///     the cutoff uses.
 /// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
@@ -27,7 +28,7 @@ class FrontierSearch {
   public:
     enum class Outcome {
         exhausted,  ///< nothing below the cutoff is left
-        narrow,     ///< some fronts had more than `width` labels
+        narrow,     ///< some frontiers had more than `width` labels
         stopped     ///< by `max_labels` or the clock
     };
     static constexpr std::size_t kAnyWidth = std::numeric_limits<std::size_t>::max();
@@ -36,21 +37,21 @@ class FrontierSearch {
 
     struct Limits {
         double tolerance;   ///< what is not cheaper than the incumbent by more than this is left out
-        std::size_t width;  ///< of each front only so many of the cheapest labels are expanded
+        std::size_t width;  ///< of each frontier only so many of the cheapest labels are expanded
         std::size_t max_labels;
     };
-    /// Offers the incumbent what is below the limits. Precondition: the fronts' onward costs are found, and
-    /// the tables are theirs.
-    Outcome run(const FrontierGraph& fronts, const EdgeSets& edges, const OnwardTables& tables,
+    /// Offers the incumbent what is below the limits. Precondition: the frontiers' onward costs are found,
+    /// and the tables are theirs.
+    Outcome run(const FrontierGraph& frontiers, const EdgeSets& edges, const OnwardTables& tables,
                 const Limits& limits);
 
   private:
     struct Label {
         int before;  ///< the label that it continues, -1 for the first of a chain
         int arc;     ///< by which; -1 where a leg ended
-        int front;
+        int frontier;
         int along_heading;  ///< edges, at most 2
-        int next;           ///< of the labels that wait at the front
+        int next;           ///< of the labels that wait at the frontier
         double cost;        ///< without multipliers
         double reduced;
     };
@@ -77,7 +78,7 @@ class FrontierSearch {
     PairRelaxation* relaxation_ = nullptr;
     Incumbent* incumbent_ = nullptr;
     SearchClock* clock_ = nullptr;
-    const FrontierGraph* fronts_ = nullptr;
+    const FrontierGraph* frontiers_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     const OnwardTables* tables_ = nullptr;
     Limits limits_{};
@@ -86,11 +87,11 @@ class FrontierSearch {
     std::size_t words_ = 0;
     BlockRows<Label> labels_;
     BlockRows<std::uint64_t> lost_;    ///< by label
-    std::vector<int> waiting_;         ///< by front, the label that came last
-    std::vector<std::uint64_t> open_;  ///< fronts with labels that wait
-    bool again_ = false;               ///< there is one before the front that is settled
+    std::vector<int> waiting_;         ///< by frontier, the label that came last
+    std::vector<std::uint64_t> open_;  ///< frontiers with labels that wait
+    bool again_ = false;               ///< there is one before the frontier that is settled
 
-    // Of the front that is settled.
+    // Of the frontier that is settled.
     std::vector<int> here_;
     std::vector<int> kept_along_heading_;
     std::vector<std::uint64_t> kept_lost_;

@@ -49,8 +49,8 @@ Quanta OnwardTables::to_quanta(double cost) const {
     return count < kTooMany ? static_cast<Quanta>(std::max(0.0, count)) : kTooMany;
 }
 
-Quanta OnwardTables::more(int front, const FrontierGraph::Step& step) const {
-    return to_quanta(fronts_->cost(step) + fronts_->onward(step.to) - fronts_->onward(front));
+Quanta OnwardTables::more(int frontier, const FrontierGraph::Step& step) const {
+    return to_quanta(frontiers_->cost(step) + frontiers_->onward(step.to) - frontiers_->onward(frontier));
 }
 
 int OnwardTables::quanta_below(double slack) const {
@@ -61,13 +61,14 @@ std::size_t OnwardTables::row_bytes(const ResidualGraph& residual) {
     return 2 * residual.arc.size() + 64 + kBlock;
 }
 
-void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
-                        SearchClock& clock) {
-    fronts_ = &fronts;
+void OnwardTables::find(const FrontierGraph& frontiers, const EdgeSets& edges, double limit,
+                        bool with_detours, SearchClock& clock) {
+    frontiers_ = &frontiers;
     edges_ = &edges;
     clock_ = &clock;
     double bound = kUnreachable;
-    for (const int f : fronts.starts()) bound = std::min(bound, fronts.start_cost(f) + fronts.onward(f));
+    for (const int f : frontiers.starts())
+        bound = std::min(bound, frontiers.start_cost(f) + frontiers.onward(f));
     quantum_ = std::max((limit - bound) / (kTooMany - 1), kMinQuantum);
     edge_count_ = edges.words() * 64;
     find_regrets();
@@ -80,16 +81,16 @@ void OnwardTables::find(const FrontierGraph& fronts, const EdgeSets& edges, doub
 
 void OnwardTables::find_regrets() {
     const std::size_t count = edge_count_;
-    if (!fill(regret_, to_index(fronts_->size()) * count)) return;
+    if (!fill(regret_, to_index(frontiers_->size()) * count)) return;
     nothing_.assign(count, 0);
-    changed_.assign(to_index(fronts_->size()), 0);
+    changed_.assign(to_index(frontiers_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
-        for (int f = fronts_->size(); f-- > 0;) {
+        for (int f = frontiers_->size(); f-- > 0;) {
             Quanta* const mine = regret_.data() + to_index(f) * count;
             bool change = false;
-            for (const FrontierGraph::Step& step : fronts_->steps(f)) {
+            for (const FrontierGraph::Step& step : frontiers_->steps(f)) {
                 if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;
@@ -108,19 +109,19 @@ void OnwardTables::find_regrets() {
     }
 }
 
-/// Columns for the arcs that fronts have; what is left of the graph are mostly few.
+/// Columns for the arcs that frontiers have; what is left of the graph are mostly few.
 void OnwardTables::number_arcs() {
     constexpr std::size_t kNone = ~std::size_t{0};
-    column_.assign(fronts_->residual().arc.size(), kNone);
+    column_.assign(frontiers_->residual().arc.size(), kNone);
     arcs_.clear();
     const auto add = [&](int arc) {
         if (column_[to_index(arc)] != kNone) return;
         column_[to_index(arc)] = arcs_.size();
         arcs_.push_back(arc);
     };
-    for (int f = 0; f < fronts_->size(); ++f) {
-        add(fronts_->front(f).moving);
-        add(fronts_->front(f).waiting);
+    for (int f = 0; f < frontiers_->size(); ++f) {
+        add(frontiers_->frontier(f).moving);
+        add(frontiers_->frontier(f).waiting);
     }
     arc_count_ = (arcs_.size() + kBlock) / kBlock * kBlock;
     for (std::size_t& column : column_) column = std::min(column, arcs_.size());
@@ -147,19 +148,20 @@ void OnwardTables::find_excluded() {
 
 void OnwardTables::find_detours() {
     const std::size_t count = arc_count_;
-    if (!fill(detour_, to_index(fronts_->size()) * count)) return;
+    if (!fill(detour_, to_index(frontiers_->size()) * count)) return;
     nothing_.assign(count, 0);
-    changed_.assign(to_index(fronts_->size()), 0);
+    changed_.assign(to_index(frontiers_->size()), 0);
     bool again = true;
     for (int sweep = 1; again; ++sweep) {
         again = false;
-        for (int f = fronts_->size(); f-- > 0;) {
+        for (int f = frontiers_->size(); f-- > 0;) {
             Quanta* const mine = detour_.data() + to_index(f) * count;
             bool change = false;
-            if (sweep == 1 && fronts_->is_last(f)) {
-                change = lower(mine, nothing_.data(), nothing_.data(), to_quanta(-fronts_->onward(f)), count);
+            if (sweep == 1 && frontiers_->is_last(f)) {
+                change =
+                    lower(mine, nothing_.data(), nothing_.data(), to_quanta(-frontiers_->onward(f)), count);
             }
-            for (const FrontierGraph::Step& step : fronts_->steps(f)) {
+            for (const FrontierGraph::Step& step : frontiers_->steps(f)) {
                 if (sweep > 1 && changed_[to_index(step.to)] < sweep - 1) continue;
                 const Quanta delta = more(f, step);
                 if (delta == kTooMany) continue;

@@ -16,35 +16,36 @@ namespace conelane::path_pair {
 using Quanta = std::uint8_t;
 inline constexpr Quanta kTooMany = 127;  ///< more than the gap
 
-/// What the ways on from a front cost beyond the cheapest one, if they are to use an edge or must do without
-/// some. With delta(s) = cost(s) + onward(to) - onward(f), at least 0, of a step s from front f to front
-/// `to`,
+/// What the ways on from a frontier cost beyond the cheapest one, if they are to use an edge or must do
+/// without some. With delta(s) = cost(s) + onward(to) - onward(f), at least 0, of a step s from frontier f to
+/// frontier `to`,
 ///     regret(f, e) = min over s of delta(s) + (s takes e ? 0 : regret(to, e)),      of an edge e,
 ///     detour(f, a) = min over s that a does not exclude of delta(s) + detour(to, a), of an arc a,
-/// and a last front may also end there. Multipliers cannot tell a walk on from one that an arc far behind
+/// and a last frontier may also end there. Multipliers cannot tell a walk on from one that an arc far behind
 /// excludes; the detours of a beginning's arcs can.
 class OnwardTables {
   public:
-    /// Precondition: the onward costs of the fronts are found. `limit`: with offset. Of no use once the
+    /// Precondition: the onward costs of the frontiers are found. `limit`: with offset. Of no use once the
     /// clock has struck.
-    void find(const FrontierGraph& fronts, const EdgeSets& edges, double limit, bool with_detours,
+    void find(const FrontierGraph& frontiers, const EdgeSets& edges, double limit, bool with_detours,
               SearchClock& clock);
 
     [[nodiscard]] bool have_detours() const { return have_detours_; }
     /// By number of the edge, in EdgeSets.
-    [[nodiscard]] const Quanta* regrets(int front) const {
-        return regret_.data() + static_cast<std::size_t>(front) * edge_count_;
+    [[nodiscard]] const Quanta* regrets(int frontier) const {
+        return regret_.data() + static_cast<std::size_t>(frontier) * edge_count_;
     }
-    [[nodiscard]] Quanta detour(int front, int arc) const {
-        return detour_[static_cast<std::size_t>(front) * arc_count_ + column_[static_cast<std::size_t>(arc)]];
+    [[nodiscard]] Quanta detour(int frontier, int arc) const {
+        return detour_[static_cast<std::size_t>(frontier) * arc_count_ +
+                       column_[static_cast<std::size_t>(arc)]];
     }
     /// Regrets and detours above this reach a limit that is `slack` away.
     [[nodiscard]] int quanta_below(double slack) const;
-    /// Bytes of a front's rows, at most.
+    /// Bytes of a frontier's rows, at most.
     static std::size_t row_bytes(const ResidualGraph& residual);
 
   private:
-    [[nodiscard]] Quanta more(int front, const FrontierGraph::Step& step) const;
+    [[nodiscard]] Quanta more(int frontier, const FrontierGraph::Step& step) const;
     [[nodiscard]] Quanta to_quanta(double cost) const;
     /// To be asked before so many bytes of rows are written.
     bool out_of_time(std::size_t bytes);
@@ -54,21 +55,21 @@ class OnwardTables {
     void find_excluded();
     void find_detours();
 
-    const FrontierGraph* fronts_ = nullptr;
+    const FrontierGraph* frontiers_ = nullptr;
     const EdgeSets* edges_ = nullptr;
     SearchClock* clock_ = nullptr;
     bool have_detours_ = false;
     double quantum_ = 1.0;
     std::size_t edge_count_ = 0;       ///< in whole words
     std::size_t arc_count_ = 0;        ///< in whole blocks
-    std::vector<Quanta> regret_;       ///< by front and edge
-    std::vector<Quanta> detour_;       ///< by front and column of the arc
-    std::vector<std::size_t> column_;  ///< by arc; those of no front share one
+    std::vector<Quanta> regret_;       ///< by frontier and edge
+    std::vector<Quanta> detour_;       ///< by frontier and column of the arc
+    std::vector<std::size_t> column_;  ///< by arc; those of no frontier share one
     std::vector<int> arcs_;            ///< by column
     std::vector<std::array<int, 2>> columns_of_edge_;
     std::vector<Quanta> excluded_;  ///< by arc of a step and column: kTooMany where that arc excludes it
     std::vector<Quanta> nothing_;
-    std::vector<int> changed_;  ///< by front, the sweep that changed it last
+    std::vector<int> changed_;  ///< by frontier, the sweep that changed it last
 };
 
 }  // namespace conelane::path_pair

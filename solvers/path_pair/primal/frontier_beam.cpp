@@ -130,10 +130,10 @@ void FrontierBeam::settle(int arc, std::size_t width) {
     std::ptrdiff_t expanded = 0;
     for (std::size_t k = 0; k < here_.size() && expanded < static_cast<std::ptrdiff_t>(width); ++k) {
         const Label& label = label_at(here_[k]);
-        const bool same_front = std::any_of(here_.begin(), here_.begin() + expanded, [&](int l) {
+        const bool same_frontier = std::any_of(here_.begin(), here_.begin() + expanded, [&](int l) {
             return label_at(l).waiting == label.waiting && label_at(l).ended == label.ended;
         });
-        if (same_front) continue;
+        if (same_frontier) continue;
         if (clock_->struck()) return;
         here_[to_index(static_cast<int>(expanded++))] = here_[k];
         expand(here_[k]);

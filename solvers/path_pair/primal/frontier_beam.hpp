@@ -16,10 +16,10 @@
 
 namespace conelane::path_pair {
 
-/// Incumbents by a beam search over the fronts of FrontierGraph, which need not be built for it. Beginnings
-/// of both legs wait at the arc that moves next; the arcs are gone through in the residual graph's order, and
-/// of each only the beginnings are expanded that promise most: by reduced cost and both legs' cheapest ways
-/// on.
+/// Incumbents by a beam search over the frontiers of FrontierGraph, which need not be built for it.
+/// Beginnings of both legs wait at the arc that moves next; the arcs are gone through in the residual graph's
+/// order, and of each only the beginnings are expanded that promise most: by reduced cost and both legs'
+/// cheapest ways on.
 class FrontierBeam {
   public:
     void bind(const ArcGraph& graph, PairRelaxation& relaxation, Incumbent& incumbent, SearchClock& clock);

@@ -85,7 +85,7 @@ void PairBeam::add_steps(int l, const std::uint64_t* lost) {
 
 void PairBeam::take_cheapest_steps(SearchClock& clock) {
     constexpr std::size_t kStepsPerClock = 64;
-    // A heap, as few of many steps are taken: the cheapest one is in front.
+    // A heap, as few of many steps are taken: the cheapest one is in frontier.
     const auto dearer = [](const Step& a, const Step& b) {
         return std::tie(a.cost, a.last, a.label) > std::tie(b.cost, b.last, b.label);
     };

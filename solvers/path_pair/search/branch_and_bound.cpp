@@ -53,7 +53,7 @@ Verdict BranchAndBound::explore(Node& node) {
 
 Verdict BranchAndBound::ascend(Node& node) {
     const FrontierTuning& tuning = options_.tuning.frontiers;
-    return ascent_.run(node, {options_.tuning.ascent.node, {tuning.max_fronts, true}});
+    return ascent_.run(node, {options_.tuning.ascent.node, {tuning.max_frontiers, true}});
 }
 
 /// With windows for incumbents between the steps.
@@ -65,7 +65,7 @@ Verdict BranchAndBound::ascend_root() {
     const bool is_huge = graph_.arc_count() >= windows.huge_graph_arcs;
     root_.max_steps = options_.root_steps;
     ascent_.begin(root_, {.patience = options_.tuning.ascent.root,
-                          .last_search = {tuning.max_fronts, true},
+                          .last_search = {tuning.max_frontiers, true},
                           .first_try = has_first_beam ? 0 : 1,
                           .beam_steps = tuning.beam_steps.size()});
     Verdict verdict = Verdict::open;

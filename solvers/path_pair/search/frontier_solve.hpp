@@ -19,34 +19,34 @@
 
 namespace conelane::path_pair {
 
-/// All pairs of a node by a search on the fronts: edge sets, dominated edges, fronts, onward tables, labels.
-/// Precondition of all searches: the relaxation was evaluated on the node's graph.
+/// All pairs of a node by a search on the frontiers: edge sets, dominated edges, frontiers, onward tables,
+/// labels. Precondition of all searches: the relaxation was evaluated on the node's graph.
 class FrontierSolve {
   public:
     static constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
     /// How much a search may take.
     struct Limits {
-        std::size_t fronts = kAny;
+        std::size_t frontiers = kAny;
         std::size_t labels = kAny;
         std::size_t beam_width = 0;  ///< of a beam that looks for an incumbent first; 0: none
     };
     /// Of a search by targets.
     struct TargetLimits {
-        std::size_t fronts;   ///< below a target
-        bool lowers_targets;  ///< where a target has too many
+        std::size_t frontiers;  ///< below a target
+        bool lowers_targets;    ///< where a target has too many
     };
 
     FrontierSolve(const ArcGraph& graph, Incumbent& incumbent, const PathPairOptions& options)
         : graph_(graph), incumbent_(incumbent), options_(options) {}
     void bind(PairRelaxation& relaxation, double tolerance, SearchClock& clock);
 
-    /// Open where there are more fronts or labels than the limits.
+    /// Open where there are more frontiers or labels than the limits.
     Verdict search(const ResidualGraph& graph, const Limits& limits);
 
-    /// Searches for pairs below targets between the bound and the incumbent first. Fronts and labels are far
-    /// fewer below a lower target; a pair that is found there is the best one, and where there is none the
-    /// target is a bound, to which `bound` rises. Where they are too many, a still lower target raises the
-    /// bound that the node leaves open.
+    /// Searches for pairs below targets between the bound and the incumbent first. Frontiers and labels are
+    /// far fewer below a lower target; a pair that is found there is the best one, and where there is none
+    /// the target is a bound, to which `bound` rises. Where they are too many, a still lower target raises
+    /// the bound that the node leaves open.
     Verdict search_by_target(const ResidualGraph& graph, const TargetLimits& limits, double& bound);
 
     /// An incumbent by a beam. Precondition: the last search was that of this graph.
@@ -57,7 +57,7 @@ class FrontierSolve {
   private:
     std::optional<Verdict> build(const ResidualGraph& graph, const Limits& limits);
     Verdict search_built(std::size_t max_labels);
-    Verdict search_below(const ResidualGraph& graph, double target, std::size_t max_fronts, double& bound);
+    Verdict search_below(const ResidualGraph& graph, double target, std::size_t max_frontiers, double& bound);
     void find_tables();
     /// With offset.
     [[nodiscard]] double limit() const { return incumbent_.cutoff() - tolerance_ + relaxation_->offset(); }
@@ -71,7 +71,7 @@ class FrontierSolve {
     SearchClock* clock_ = nullptr;
     EdgeSets edge_sets_;
     DominatedEdges dominated_edges_;
-    FrontierGraph fronts_;
+    FrontierGraph frontiers_;
     OnwardTables onward_tables_;
     FrontierSearch search_;
     FrontierBeam beam_;

@@ -115,7 +115,7 @@ bool IncumbentImprover::search_window() {
     node_.max_steps = tuning().max_steps;
     ascent_.bind(window_.system(), {*cliques_, no_decisions_, *second_leg_, tolerance_, *clock_});
     const double before = pair_.cutoff();
-    const NodeAscent::Rules rules{options_.tuning.ascent.node, {tuning().max_fronts, false}, false};
+    const NodeAscent::Rules rules{options_.tuning.ascent.node, {tuning().max_frontiers, false}, false};
     if (ascent_.run(node_, rules) == Verdict::open) {
         ascent_.frontiers().run_beam(node_.graph, tuning().beam_width);
     }

@@ -120,10 +120,10 @@ Verdict NodeAscent::try_frontiers(const ResidualGraph& graph) {
         const bool is_due = state_.step == rules_.first_try || (state_.step + 1) % tuning.steps_per_try == 0;
         if (!is_due || !(gap < tuning.retry_gap * state_.failed_gap)) return Verdict::open;
         const bool is_small = state_.step == 0 && graph.size() < tuning.small_graph_arcs;
-        const std::int64_t max_fronts =
-            std::max(is_small ? tuning.first_fronts_of_small_graph : tuning.first_fronts,
-                     state_.updates / tuning.updates_per_front);
-        verdict = frontiers_.search(graph, {static_cast<std::size_t>(max_fronts), tuning.max_labels,
+        const std::int64_t max_frontiers =
+            std::max(is_small ? tuning.first_frontiers_of_small_graph : tuning.first_frontiers,
+                     state_.updates / tuning.updates_per_frontier);
+        verdict = frontiers_.search(graph, {static_cast<std::size_t>(max_frontiers), tuning.max_labels,
                                             state_.step == 0 ? tuning.first_beam_width : 0});
     }
     if (verdict != Verdict::open) return verdict;

@@ -22,7 +22,7 @@
 namespace conelane::path_pair {
 
 /// Raises the bound of a node step by step. On the way it completes the bound's walks to incumbents, drops
-/// what reaches the incumbent, adds cliques, and searches the fronts where they are few enough.
+/// what reaches the incumbent, adds cliques, and searches the frontiers where they are few enough.
 class NodeAscent {
   public:
     /// What all nodes of a search share.
@@ -37,9 +37,9 @@ class NodeAscent {
     /// In which kinds of nodes differ.
     struct Rules {
         AscentPatience patience;
-        FrontierSolve::TargetLimits last_search;  ///< of fronts, at the ascent's end
+        FrontierSolve::TargetLimits last_search;  ///< of frontiers, at the ascent's end
         bool separates_cliques = true;
-        int first_try = 1;           ///< the step that searches fronts first; 0: after a beam
+        int first_try = 1;           ///< the step that searches frontiers first; 0: after a beam
         std::size_t beam_steps = 0;  ///< of FrontierTuning::beam_steps, so many
     };
     /// What the steps aim at: the incumbent, but if that is as it was known, the cost of the one that was
@@ -74,8 +74,8 @@ class NodeAscent {
         int since_best = 0;                ///< steps without progress
         int next_completion = 0;           ///< the step that completes walks next
         std::size_t beams = 0;             ///< run so far
-        std::int64_t updates = 0;          ///< of labels since the fronts were last tried, about
-        double failed_gap = kUnreachable;  ///< the gap at which the fronts were too many
+        std::int64_t updates = 0;          ///< of labels since the frontiers were last tried, about
+        double failed_gap = kUnreachable;  ///< the gap at which the frontiers were too many
     };
 
     /// Minus infinity where the clock struck.
@@ -85,7 +85,8 @@ class NodeAscent {
     /// Keeps the multipliers where they are the best so far, and counts steps without progress.
     void note_value(Node& node);
     void complete_walks(const ResidualGraph& graph);
-    /// Searches the fronts at some steps, if they are not too many for the work done so far, and at the last.
+    /// Searches the frontiers at some steps, if they are not too many for the work done so far, and at the
+    /// last.
     Verdict try_frontiers(const ResidualGraph& graph);
     void move_multipliers(const Node& node, const Aim& aim);
     [[nodiscard]] double step_gap(const Aim& aim) const;

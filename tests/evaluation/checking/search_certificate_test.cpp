@@ -72,7 +72,7 @@ TEST(SearchCertificate, OfAStraightLaneCanBeFollowedByHand) {
 }
 
 /// With the weight 1/2 on each heading edge beyond the second the relaxation is 1 lower, which the
-/// enumeration has to make good: of the fronts, only those of the two boundaries are left.
+/// enumeration has to make good: of the frontiers, only those of the two boundaries are left.
 TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
     SearchCertificate certificate = straight_proof();
     certificate.parts[0].stages[0].heading = SearchCertificate::Units{1}

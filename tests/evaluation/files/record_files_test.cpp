@@ -33,7 +33,7 @@ class LaneFileTest : public FileTest {
     }
 };
 
-TEST_F(LaneFileTest, EverythingAMethodKnowsSurvivesARoundTrip) {
+TEST_F(LaneFileTest, EverythingADetectorKnowsSurvivesARoundTrip) {
     LaneRecord full{"a", "clc", {}, 1.73, 12, true};
     full.answer.status = LaneStatus::found;
     full.answer.lane = {{49, 17}, {5, 10}, true};
@@ -58,7 +58,7 @@ TEST_F(LaneFileTest, EverythingAMethodKnowsSurvivesARoundTrip) {
     const std::vector<LaneRecord> read = read_lanes(path("l"));
     ASSERT_EQ(read.size(), 2u);
     EXPECT_EQ(read[0].scene, "a");
-    EXPECT_EQ(read[0].method, "clc");
+    EXPECT_EQ(read[0].detector, "clc");
     EXPECT_EQ(read[0].latency_ms, 1.73);
     EXPECT_EQ(read[0].nearest, 12u);
     EXPECT_TRUE(read[0].checked);

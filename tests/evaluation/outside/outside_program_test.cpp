@@ -1,14 +1,14 @@
-// The parts behind methods from outside, without the program: how long they wait, what they give up, which
+// The parts behind detectors from outside, without the program: how long they wait, what they give up, which
 // cone a point stands for.
 
 #include "evaluation/outside/outside_program.hpp"
 
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/point_snapping.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/seeded_random.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/results.hpp"
-#include "experiments/comparison/training_courses.hpp"
 #include "tests/support/file_test.hpp"
 #include "tests/support/random_scenes.hpp"
 
@@ -147,7 +147,7 @@ TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
             };
             LaneRecord record = record_of(points(), points());
             record.scene = scene.id;
-            record.method = "stranger";
+            record.detector = "stranger";
             record.answer.lane.closed = below(2) == 0;
             const std::size_t shape = below(3);
             if (shape != 1) record.points.reset();
@@ -198,7 +198,7 @@ TEST_F(OutsideProgramTest, AnswersAndGoesWithItsInput) {
         const LaneRecord record = program.answer(three_pairs());
         EXPECT_EQ(record.answer.status, LaneStatus::none) << record.answer.message;
         EXPECT_EQ(record.scene, "three pairs");
-        EXPECT_EQ(record.method, "shell");
+        EXPECT_EQ(record.detector, "shell");
         EXPECT_GT(record.latency_ms, 0.0);
         EXPECT_LT(record.latency_ms, 400.0);
     }
@@ -264,21 +264,21 @@ TEST_F(OutsideProgramTest, OneThatReadsNoMoreDoesNoHarm) {
     EXPECT_THAT(program.answer(large).answer.message, HasSubstr("the program does not read its input"));
 }
 
-TEST(OutsideMethodText, CommasBelongToTheCommand) {
-    EXPECT_THAT(split_methods({"clc,rld-pair"}), ElementsAre("clc", "rld-pair"));
-    EXPECT_THAT(split_methods({"clc,exec:a=run --with b,c", "lanes:d=e.lanes.jsonl,clc"}),
+TEST(OutsideDetectorText, CommasBelongToTheCommand) {
+    EXPECT_THAT(split_detectors({"clc,rld-pair"}), ElementsAre("clc", "rld-pair"));
+    EXPECT_THAT(split_detectors({"clc,exec:a=run --with b,c", "lanes:d=e.lanes.jsonl,clc"}),
                 ElementsAre("clc", "exec:a=run --with b,c", "lanes:d=e.lanes.jsonl", "clc"));
-    EXPECT_THAT(split_methods({"clc,"}), ElementsAre("clc", ""));
+    EXPECT_THAT(split_detectors({"clc,"}), ElementsAre("clc", ""));
 }
 
-class OutsideMethodFiles : public FileTest {};
+class OutsideDetectorFiles : public FileTest {};
 
-TEST_F(OutsideMethodFiles, TheCardLiesBesideAFileThatTheCommandNames) {
+TEST_F(OutsideDetectorFiles, TheCardLiesBesideAFileThatTheCommandNames) {
     const std::string script = file_with("", "planner.py").string();
     const std::string settings = file_with("", "settings.yaml").string();
     const std::string lanes = file_with("", "x.y.lanes.jsonl").string();
     const auto place = [&](const std::string& command) {
-        return card_path({OutsideMethod::Kind::program, "a", command, {}});
+        return card_path({OutsideDetector::Kind::program, "a", command, {}});
     };
     EXPECT_EQ(place("python3 " + script), std::nullopt);
     file_with("{}", "planner.method.json");
@@ -288,9 +288,9 @@ TEST_F(OutsideMethodFiles, TheCardLiesBesideAFileThatTheCommandNames) {
     file_with("{}", "settings.method.json");
     EXPECT_EQ(place("planner-on-the-path " + settings), path("settings.method.json"));
     EXPECT_EQ(place(script + " " + settings), path("planner.method.json"));
-    EXPECT_EQ(card_path({OutsideMethod::Kind::lanes, "a", lanes, {}}), path("x.y.method.json"));
+    EXPECT_EQ(card_path({OutsideDetector::Kind::lanes, "a", lanes, {}}), path("x.y.method.json"));
     file_with(R"({"name": "P", "training_courses": "fsg"})", "planner.method.json");
-    EXPECT_THAT(error_of([&] { (void)parse_outside_method("exec:a=" + script); }),
+    EXPECT_THAT(error_of([&] { (void)parse_outside_detector("exec:a=" + script); }),
                 HasSubstr("planner.method.json: training_courses: must be an array"));
 }
 

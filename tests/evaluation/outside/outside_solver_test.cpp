@@ -35,8 +35,8 @@ std::string child(const std::string& arguments = "") {
     return solver_child() + " " + arguments;
 }
 
-OutsideMethod method(const std::string& command) {
-    return {OutsideMethod::Kind::program, "child", command, {}};
+OutsideDetector detector(const std::string& command) {
+    return {OutsideDetector::Kind::program, "child", command, {}};
 }
 
 constexpr SolverPatience kShort{
@@ -167,7 +167,7 @@ TEST_P(RightAnswers, AreOptima) {
     {
         int feasible = 0;
         for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
-            OutsideSolver solver(method(child(GetParam().arguments)), {formulation, GetParam().all_rows});
+            OutsideSolver solver(detector(child(GetParam().arguments)), {formulation, GetParam().all_rows});
             solver.set_seed(GetParam().seed);
             for (std::uint64_t seed = 0; seed < 16; ++seed) {
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << to_string(formulation));
@@ -214,7 +214,7 @@ class Faults : public FileTest, public testing::WithParamInterface<Fault> {
 
 TEST_P(Faults, AreErrorsAndTheNextAnswerIsRight) {
     const std::optional<double> optimum = exact(problem_);
-    OutsideSolver solver(method(child(std::string(GetParam().name) + " 2 " + path("done").string())),
+    OutsideSolver solver(detector(child(std::string(GetParam().name) + " 2 " + path("done").string())),
                          {.patience = kShort});
     expect_optimum(solver.solve(problem_, limits_), optimum);
     const Stopwatch watch;
@@ -231,7 +231,7 @@ TEST_P(Faults, OfAProgramThatIsRunOnceToo) {
     if (!GetParam().in_one_shot) GTEST_SKIP() << "is about a line of a conversation";
     const std::optional<double> optimum = exact(problem_);
     OutsideSolver solver(
-        method(child("once {mps} {sol} " + std::string(GetParam().name) + " " + path("done").string())),
+        detector(child("once {mps} {sol} " + std::string(GetParam().name) + " " + path("done").string())),
         {.patience = kShort});
     const RldReport report = solver.solve(problem_, limits_);
     EXPECT_EQ(report.status, SolveStatus::error);
@@ -266,14 +266,14 @@ class Claims : public FileTest {
 TEST_F(Claims, ThatThereIsNoneIsRefutedByAStart) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
     // A cutoff was told: that nothing is below it is true of an optimum.
-    OutsideSolver conversation(method(child("claims-none 1 always")), {});
+    OutsideSolver conversation(detector(child("claims-none 1 always")), {});
     EXPECT_EQ(conversation.solve(problem_, {}, &lane).status, SolveStatus::optimal);
-    OutsideSolver alone(method(child("claims-none 1 always")), {});
+    OutsideSolver alone(detector(child("claims-none 1 always")), {});
     EXPECT_EQ(alone.solve(problem_, {}).status, SolveStatus::infeasible);
 }
 
 TEST_F(Claims, AnOptimumWithAGapIsALaneGraphOnly) {
-    OutsideSolver solver(method(child("low-bound 1 always")), {});
+    OutsideSolver solver(detector(child("low-bound 1 always")), {});
     const RldReport report = solver.solve(problem_, {});
     EXPECT_EQ(report.status, SolveStatus::feasible);
     EXPECT_NEAR(*report.objective - *report.bound, 0.5, 1e-5);
@@ -281,7 +281,7 @@ TEST_F(Claims, AnOptimumWithAGapIsALaneGraphOnly) {
 }
 
 TEST_F(Claims, APointWithoutAStatusIsALaneGraphOnly) {
-    OutsideSolver solver(method(child("mere-point 1 always")), {});
+    OutsideSolver solver(detector(child("mere-point 1 always")), {});
     const RldReport report = solver.solve(problem_, {});
     EXPECT_EQ(report.status, SolveStatus::feasible);
     EXPECT_TRUE(report.lane_graph);
@@ -289,7 +289,7 @@ TEST_F(Claims, APointWithoutAStatusIsALaneGraphOnly) {
 }
 
 TEST_F(Claims, OneThatFailsAgainAndAgainIsLeftAlone) {
-    OutsideSolver solver(method("echo x >>" + path("starts").string() + "; exit 7"), {.patience = kShort});
+    OutsideSolver solver(detector("echo x >>" + path("starts").string() + "; exit 7"), {.patience = kShort});
     RldReport report;
     for (int i = 0; i < 8; ++i) report = solver.solve(problem_, {.time_limit_ms = 500.0});
     EXPECT_THAT(report.message, AllOf(HasSubstr("not asked"), HasSubstr("exit code 7")));
@@ -298,7 +298,7 @@ TEST_F(Claims, OneThatFailsAgainAndAgainIsLeftAlone) {
 
 TEST_F(Claims, AStartIsKeptWhateverHappens) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
-    OutsideSolver solver(method("exit 7"), {.patience = kShort});
+    OutsideSolver solver(detector("exit 7"), {.patience = kShort});
     const RldReport report = solver.solve(problem_, {.time_limit_ms = 500.0}, &lane);
     EXPECT_EQ(report.status, SolveStatus::error);
     EXPECT_TRUE(report.lane_graph);
@@ -307,15 +307,15 @@ TEST_F(Claims, AStartIsKeptWhateverHappens) {
 
 /// It is told what it may take, and what was asked for.
 TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
-    OutsideSolver solver(method("SOLVER_LOG=" + path("log").string() + " " + child()), {.threads = 3});
+    OutsideSolver solver(detector("SOLVER_LOG=" + path("log").string() + " " + child()), {.threads = 3});
     solver.set_seed(41);
     EXPECT_EQ(solver.solve(problem_, {.time_limit_ms = 5000.0, .absolute_gap = 1e-7}).status,
               SolveStatus::optimal);
     solver.end();
     EXPECT_THAT(text_of(path("log")), AllOf(HasSubstr(R"("time_limit_ms":49)"), HasSubstr(R"("threads":3)"),
                                             HasSubstr(R"("absolute_gap":1e-07)"), HasSubstr(R"("seed":41)")));
-    OutsideSolver once(method("echo {limit_s} {limit_whole_s} {gap} {threads} {seed} {cutoff} >" +
-                              path("told").string() + "; " + child("once {mps} {sol}")),
+    OutsideSolver once(detector("echo {limit_s} {limit_whole_s} {gap} {threads} {seed} {cutoff} >" +
+                                path("told").string() + "; " + child("once {mps} {sol}")),
                        {});
     EXPECT_EQ(once.solve(problem_, {.absolute_gap = 1e-7}).status, SolveStatus::optimal);
     EXPECT_EQ(text_of(path("told")), "1000000.000 1000000 1e-07 1 0 1e+300\n");
@@ -324,13 +324,13 @@ TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
 TEST(OutsideSolverText, HasANameACommandAndPerhapsAFormulation) {
     const auto plain = parse_outside_solver("exec:a=run --with b/c=d");
     ASSERT_TRUE(plain);
-    EXPECT_EQ(plain->method.name, "a");
-    EXPECT_EQ(plain->method.source, "run --with b/c=d");
+    EXPECT_EQ(plain->detector.name, "a");
+    EXPECT_EQ(plain->detector.source, "run --with b/c=d");
     EXPECT_FALSE(plain->formulation);
     const auto paper = parse_outside_solver("exec:a/paper=run {mps} {sol}");
     ASSERT_TRUE(paper);
-    EXPECT_EQ(paper->method.name, "a");
-    EXPECT_EQ(paper->method.source, "run {mps} {sol}");
+    EXPECT_EQ(paper->detector.name, "a");
+    EXPECT_EQ(paper->detector.source, "run {mps} {sol}");
     EXPECT_EQ(paper->formulation, Formulation::paper);
     EXPECT_FALSE(parse_outside_solver("path-pair"));
     for (const char* bad : {"exec:a", "exec:a=", "exec:=b", "exec:a/loose=b", "exec:a b=c"})

@@ -87,7 +87,7 @@ TEST(Accuracy, TheCarIsBetweenTheBoundaries) {
     EXPECT_FALSE(sides()) << "against the driving direction";
 }
 
-TEST(Accuracy, IsHeldAgainstTheGroundTruthOfTheMethodsConeSet) {
+TEST(Accuracy, IsHeldAgainstTheGroundTruthOfTheDetectorsConeSet) {
     const AnnotatedScene scene = straight_scene();
     const LaneAnswer four_pairs = found(truncated(scene, 4));
     const SceneScore of_eight = score(scene, four_pairs, kLatency_ms, 8, &kTrack);

@@ -1,4 +1,4 @@
-// What a method says of its own lanes, held against what they are.
+// What a detector says of its own lanes, held against what they are.
 
 #include "evaluation/scoring/calibration.hpp"
 

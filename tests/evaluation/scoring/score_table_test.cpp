@@ -16,14 +16,14 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-KeyedScore keyed(const std::string& method, std::optional<double> rate, std::optional<double> range_m,
+KeyedScore keyed(const std::string& detector, std::optional<double> rate, std::optional<double> range_m,
                  Category category, double iou) {
     SceneScore score;
     score.category = category;
     score.iou = iou;
     score.divergence_known = true;
     score.latency_ms = 12.5;
-    return {{method, rate, range_m}, score};
+    return {{detector, rate, range_m}, score};
 }
 
 std::vector<std::vector<std::string>> words_of_lines(const std::string& text) {
@@ -37,7 +37,7 @@ std::vector<std::vector<std::string>> words_of_lines(const std::string& text) {
     return lines;
 }
 
-TEST(SummariseByKey, GroupsMethodsInOrderOfAppearanceThenRateThenRange) {
+TEST(SummariseByKey, GroupsDetectorsInOrderOfAppearanceThenRateThenRange) {
     const std::vector<ScoreRow> rows = summarise_by_key(std::vector<KeyedScore>{
         keyed("rld", 0.3, 50, Category::none, 0),
         keyed("clc", 0.1, 30, Category::ground_truth, 1),
@@ -55,7 +55,7 @@ TEST(SummariseByKey, GroupsMethodsInOrderOfAppearanceThenRateThenRange) {
     EXPECT_DOUBLE_EQ(rows[3].summary.mean_iou.value(), 0.5);
 }
 
-TEST(SummaryJson, HoldsWhatMethodsSayOfTheirLanesWhereTheyDo) {
+TEST(SummaryJson, HoldsWhatDetectorsSayOfTheirLanesWhereTheyDo) {
     std::vector<KeyedScore> scores{keyed("silent", 0.3, 30, Category::ground_truth, 1),
                                    keyed("front", 0.3, 30, Category::ground_truth, 1),
                                    keyed("front", 0.3, 30, Category::diverging_below_20, 0.5)};

@@ -390,7 +390,7 @@ TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
     EXPECT_NEAR(summary.unsteady_share.value(), 4.0 / 19.0, 1e-12);
 }
 
-TEST(Summary, LeavesOutWhatNoMethodStates) {
+TEST(Summary, LeavesOutWhatNoDetectorStates) {
     const AnnotatedScene scene = straight_scene();
     const std::vector<SceneScore> scores{score(scene, found(*scene.ground_truth), 1.0, 3, &kTrack)};
     const ScoreSummary summary = summarise(scores);

@@ -1,9 +1,9 @@
-// What the independent checker makes of the answers of RLD methods.
+// What the independent checker makes of the answers of RLD detectors.
 
 #include "experiments/comparison/answer_check.hpp"
 
 #include "evaluation/scenes/scene_set.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
 #include "tests/support/no_time_limit.hpp"
 #include "tests/support/straight_scene.hpp"
@@ -24,7 +24,7 @@ using testing::StartsWith;
 /// What rld-pair answers on the straight lane, unchecked.
 LaneRecord answer_on(const AnnotatedScene& scene) {
     LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
-    record.answer = make_detector(find_method("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
+    record.answer = make_detector(find_detector("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
     return record;
 }
 
@@ -85,13 +85,13 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
 
 TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     const AnnotatedScene scene = straight_scene();
-    const Method& method = find_method("rld-context");
+    const KnownDetector& detector = find_detector("rld-context");
     LaneRecord right{scene.scene.id, "rld-context",
-                     make_detector(method)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
-                     cone_set(method, {}).nearest};
+                     make_detector(detector)->detect(scene.scene, tests::kNoTimeLimit), 1.0,
+                     cone_set(detector, {}).nearest};
     ASSERT_TRUE(right.answer.uncut);
     LaneRecord record = right;
-    check_answer(record, cone_set(method, {}).seen(scene.scene), {});
+    check_answer(record, cone_set(detector, {}).seen(scene.scene), {});
     EXPECT_TRUE(record.checked) << record.answer.message;
 
     LaneRecord longer = right;  // not what the cut leaves
@@ -124,12 +124,12 @@ TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
     options.ranges_m = {30.0};
     options.every_m = 15.0;
     const SceneSet set = make_scene_set({"generated:kidney"}, options);
-    for (const char* method :
+    for (const char* detector :
          {"rld-cbc", "rld-pair", "rld-context", "rld-shape", "rld-shape-context", "clc"}) {
-        SCOPED_TRACE(method);
-        const Method& entry = find_method(method);
+        SCOPED_TRACE(detector);
+        const KnownDetector& entry = find_detector(detector);
         std::size_t found = 0;
-        for (const LaneRecord& record : run(std::string(method), maker_of(entry, {}), set.scenes, {})) {
+        for (const LaneRecord& record : run(std::string(detector), maker_of(entry, {}), set.scenes, {})) {
             EXPECT_NE(record.answer.status, LaneStatus::error) << record.answer.message;
             EXPECT_EQ(record.checked, entry.is_rld() && record.answer.status == LaneStatus::found);
             if (record.answer.status == LaneStatus::found) ++found;

@@ -59,7 +59,7 @@ RldReport by_path_pair(const Scene& scene, const RldParameters& parameters) {
 using Falsify = std::function<void(RldReport&, const Scene&, double time_limit_ms)>;
 
 /// path-pair and a solver that says something else about what path-pair answers.
-std::vector<Contestant> with_a_wrong_one(const Falsify& falsify) {
+std::vector<CheckedSolver> with_a_wrong_one(const Falsify& falsify) {
     return {{"right", [](const Scene& scene, const RldParameters& parameters,
                          double) { return by_path_pair(scene, parameters); }},
             {"wrong", [falsify](const Scene& scene, const RldParameters& parameters, double limit_ms) {
@@ -87,7 +87,7 @@ TEST(CrossCheckJudge, RightAnswersAgree) {
 TEST(CrossCheckJudge, TheAnswerOfThePreviousFrameIsAStart) {
     const LaneGraph of_previous_frame{{{0, 2}, {3, 5}}};
     std::vector<LaneGraph> starts;
-    const Contestant contestant{
+    const CheckedSolver solver{
         "right",
         [&](const Scene& scene, const RldParameters& parameters, double) {
             RldReport report = by_path_pair(scene, parameters);
@@ -99,7 +99,7 @@ TEST(CrossCheckJudge, TheAnswerOfThePreviousFrameIsAStart) {
             starts.push_back(start);
             return by_path_pair(scene, parameters);
         }};
-    const CrossCheckVerdict verdict = judge(straight_case(), std::array{contestant}, 1000.0);
+    const CrossCheckVerdict verdict = judge(straight_case(), std::array{solver}, 1000.0);
     EXPECT_THAT(verdict.findings, testing::IsEmpty());
     EXPECT_TRUE(std::ranges::any_of(
         starts, [&](const LaneGraph& start) { return start.edges == of_previous_frame.edges; }));
@@ -110,7 +110,7 @@ TEST(CrossCheckJudge, NoLaneGraphIsAgreedOnAndCertified) {
     CrossCheckCase drawn = straight_case();
     drawn.scene.cones.resize(2);
     const CrossCheckVerdict verdict =
-        judge(drawn, make_contestants(exact_solver_names(), Formulation::tight), 1000.0);
+        judge(drawn, make_checked_solvers(exact_solver_names(), Formulation::tight), 1000.0);
     EXPECT_EQ(verdict.outcome, CrossCheckOutcome::infeasible);
     EXPECT_TRUE(verdict.certified);
 }
@@ -322,8 +322,8 @@ TEST_F(CrossCheckRun, AnotherRunInTheFolderIsRefusedAndStays) {
 }
 
 /// Blind to cone 3: it proves the optimum of what is left. Where that matters, the two differ.
-std::vector<Contestant> with_a_blind_one(Formulation /*formulation*/) {
-    std::vector<Contestant> both = with_a_wrong_one([](RldReport&, const Scene&, double) {});
+std::vector<CheckedSolver> with_a_blind_one(Formulation /*formulation*/) {
+    std::vector<CheckedSolver> both = with_a_wrong_one([](RldReport&, const Scene&, double) {});
     both[1].solve = [](const Scene& scene, const RldParameters& parameters, double) {
         Scene seen = scene;
         std::erase_if(seen.cones, [](const Cone& cone) { return cone.id == 3; });
@@ -336,7 +336,7 @@ std::vector<Contestant> with_a_blind_one(Formulation /*formulation*/) {
 
 TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
     CrossCheckOptions some = options(40);
-    some.contestants = with_a_blind_one;
+    some.make_solvers = with_a_blind_one;
     some.solvers = {"path-pair", "cbc"};  // who is asked again in a replay
     const CrossCheckSummary summary = cross_check(some, path("cases"));
     ASSERT_TRUE(summary.outcomes.contains(CrossCheckOutcome::differ));
@@ -371,8 +371,8 @@ TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
 /// A third solver fails on fewer than five cones: that is no reason to shrink the blind one's case to them.
 TEST_F(CrossCheckRun, AnotherDifferenceDoesNotReplaceTheOneThatWasFound) {
     CrossCheckOptions some = options(40);
-    some.contestants = [](Formulation formulation) {
-        std::vector<Contestant> all = with_a_blind_one(formulation);
+    some.make_solvers = [](Formulation formulation) {
+        std::vector<CheckedSolver> all = with_a_blind_one(formulation);
         all.push_back({"weak", [](const Scene& scene, const RldParameters& parameters, double) {
                            if (scene.cones.size() >= 5) return by_path_pair(scene, parameters);
                            RldReport report;

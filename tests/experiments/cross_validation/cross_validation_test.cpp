@@ -2,7 +2,7 @@
 
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
-#include "experiments/comparison/training_courses.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 #include "tests/support/program_fixture.hpp"
 
 #include <filesystem>
@@ -48,12 +48,12 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
     options.limits.time_limit_ms = 400.0;
-    for (const std::string method : {"clc", "front"}) {
-        const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + method + ".lanes.jsonl"));
+    for (const std::string detector : {"clc", "front"}) {
+        const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + detector + ".lanes.jsonl"));
         ASSERT_EQ(lanes.size(), scenes.size());
         for (std::size_t i = 0; i < scenes.size(); ++i) {
             const std::string fold = scenes[i].track == "circle" ? "a" : "b";
-            const MethodMaker maker = find_learner(method)->maker(path("cv/folds/" + fold), options);
+            const DetectorMaker maker = find_learner(detector)->maker(path("cv/folds/" + fold), options);
             EXPECT_EQ(maker(scenes[i].track)->answer(scenes[i].scene).answer.lane, lanes[i].answer.lane)
                 << scenes[i].scene.id;
         }
@@ -99,7 +99,7 @@ TEST_F(CrossValidation, RefusesFoldsThatAreNone) {
     EXPECT_THAT(errors("--family ../a=generated:circle --family b=generated:curvy"), HasSubstr("NAME=SPEC"));
 }
 
-TEST_F(CrossValidation, AComparisonMarksTheCoursesThatAMethodHasLearnedFrom) {
+TEST_F(CrossValidation, AComparisonMarksTheCoursesThatADetectorHasLearnedFrom) {
     ASSERT_TRUE(training_courses("clc").contains("curvy@1"));
     ASSERT_FALSE(training_courses("clc").contains("circle"));
     EXPECT_TRUE(training_courses("delaunay-beam").contains("fsd_1"));

@@ -4,9 +4,9 @@
 #include "experiments/instances/instance_library.hpp"
 #include "solvers/milp/clp_bb_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
-#include "tests/support/contestants.hpp"
 #include "tests/support/program_fixture.hpp"
 #include "tests/support/slowness.hpp"
+#include "tests/support/solver_cases.hpp"
 #include "tests/support/test_paths.hpp"
 
 #include <array>
@@ -140,16 +140,16 @@ TEST_F(Instances, EverySolverFindsTheStoredOptima) {
     InstanceOptions options = slice_of_stored();
     int compared = 0;
     for (const InstanceScene& set : instance_scenes(options)) {
-        for (const tests::Contestant& contestant : tests::contestants()) {
-            const RldSolverEntry& entry = *contestant.entry;
+        for (const tests::CheckedSolver& solver : tests::solvers()) {
+            const RldSolverEntry& entry = *solver.entry;
             if (!entry.exact || entry.max_cones.value_or(12) < 12) continue;
             SCOPED_TRACE(set.name + " " + std::string(entry.name));
             // The printed program takes seconds without CBC's full machinery.
-            if (contestant.formulation == Formulation::paper && entry.name != "cbc-main") continue;
-            const auto solver = entry.make(contestant.formulation);
+            if (solver.formulation == Formulation::paper && entry.name != "cbc-main") continue;
+            const auto solver = entry.make(solver.formulation);
             const RldReport report = solve_scene(*solver, set.scene, options.parameters, {}).report;
             ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
-            const std::string name = set.name + std::string(ending_of(contestant.formulation));
+            const std::string name = set.name + std::string(ending_of(solver.formulation));
             EXPECT_NEAR(*report.objective, stored[name].value, kSameObjective);
             ++compared;
         }

@@ -5,7 +5,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/condition.hpp"
 #include "evaluation/tracks/track_spec.hpp"
-#include "experiments/race/entrants.hpp"
+#include "experiments/race/drivers.hpp"
 #include "experiments/race/vehicle.hpp"
 #include "tests/support/recorded_tracks.hpp"
 
@@ -213,7 +213,7 @@ TEST(World, ShowsColorsOnlyWhereAskedFor) {
 TEST(Race, TheTrueLineDrivesAGeneratedCourseUnderEveryCondition) {
     for (const char* const condition : {"paper", "car", "harsh"}) {
         SCOPED_TRACE(condition);
-        const RaceResult result = race(kidney(), options_of(condition), truth_entrant(kidney(), 1));
+        const RaceResult result = race(kidney(), options_of(condition), truth_driver(kidney(), 1));
         EXPECT_EQ(to_string(result.end), "finished");
         EXPECT_EQ(result.finished_laps, 1);
         EXPECT_FALSE(result.departure_m);
@@ -228,7 +228,7 @@ TEST(Race, TheTrueLineDrivesAllRecordedCoursesUnderCar) {
         if (!track.closed || !track.driven.empty()) continue;
         SCOPED_TRACE(track.name);
         const RaceCourse course = circuit(track);
-        const RaceResult result = race(course, options_of("car"), truth_entrant(course, 1));
+        const RaceResult result = race(course, options_of("car"), truth_driver(course, 1));
         EXPECT_EQ(to_string(result.end), "finished");
     }
 }
@@ -262,7 +262,7 @@ TEST(Race, ThroughAGapTheCarDepartsToo) {
         add(x_m, y_m, track.right);
     }
     const RaceCourse course = circuit(track);
-    const Entrant left_in_gap = [](const Frame& frame) {
+    const Driver left_in_gap = [](const Frame& frame) {
         Drive drive;
         drive.path = frame.pose.position.x() < 12.0
                          ? std::vector<Point>{frame.pose.position, {30.0, 0.0}}
@@ -281,13 +281,13 @@ TEST(Race, TheControllerKnowsOnlyTheBelievedPose) {
     // The path is a straight line in the map; the map drifts aside, and the car with it.
     RaceOptions options = options_of("paper");
     options.drift_m = 40.0;
-    const RaceResult drifting = race(kidney(), options, truth_entrant(kidney(), 1));
+    const RaceResult drifting = race(kidney(), options, truth_driver(kidney(), 1));
     EXPECT_EQ(to_string(drifting.end), "departed");
 }
 
 TEST(Race, TheSameSeedGivesTheSameRaceAndAnotherOneAnother) {
     const auto run = [](std::uint64_t seed) {
-        return race(kidney(), options_of("car", seed), truth_entrant(kidney(), 1));
+        return race(kidney(), options_of("car", seed), truth_driver(kidney(), 1));
     };
     const RaceResult first = run(1);
     const RaceResult again = run(1);
@@ -300,7 +300,7 @@ TEST(Race, TheSameSeedGivesTheSameRaceAndAnotherOneAnother) {
 TEST(Race, LapsAreDrivenOneAfterTheOther) {
     RaceOptions options = options_of("paper");
     options.laps = 3;
-    const RaceResult result = race(kidney(), options, truth_entrant(kidney(), 3));
+    const RaceResult result = race(kidney(), options, truth_driver(kidney(), 3));
     EXPECT_EQ(result.finished_laps, 3);
     EXPECT_NEAR(result.driven_m, 3.0 * kidney().length_m, 2.0);
 }
@@ -308,14 +308,14 @@ TEST(Race, LapsAreDrivenOneAfterTheOther) {
 TEST(Race, LatePathsAreOldPaths) {
     RaceOptions options = options_of("paper");
     options.latency_s = 0.25;
-    EXPECT_GT(race(kidney(), options, truth_entrant(kidney(), 1)).old_path_s, 1.0);
+    EXPECT_GT(race(kidney(), options, truth_driver(kidney(), 1)).old_path_s, 1.0);
     options.latency_s = 0.05;
-    EXPECT_EQ(race(kidney(), options, truth_entrant(kidney(), 1)).old_path_s, 0.0);
+    EXPECT_EQ(race(kidney(), options, truth_driver(kidney(), 1)).old_path_s, 0.0);
 }
 
 TEST(Race, PathsThatAPlannerCallsOldAreOldPaths) {
     const RaceResult result =
-        race(kidney(), options_of("paper"), [truth = truth_entrant(kidney(), 1)](const Frame& frame) {
+        race(kidney(), options_of("paper"), [truth = truth_driver(kidney(), 1)](const Frame& frame) {
             Drive drive = truth(frame);
             if (frame.time_s > 3.0 && frame.time_s < 4.0) drive.age_s = frame.time_s - 3.0;
             return drive;
@@ -341,7 +341,7 @@ TEST(Race, ACarThatIsToldThatTheWayIsLostBrakes) {
     RaceOptions options = options_of("paper");
     options.with_stop = true;
     const RaceResult result =
-        race(kidney(), options, [truth = truth_entrant(kidney(), 1)](const Frame& frame) {
+        race(kidney(), options, [truth = truth_driver(kidney(), 1)](const Frame& frame) {
             Drive drive = truth(frame);
             drive.brake = frame.time_s > 3.0;
             return drive;
@@ -352,7 +352,7 @@ TEST(Race, ACarThatIsToldThatTheWayIsLostBrakes) {
 
 TEST(Race, ARefusedFrameChangesNothing) {
     const RaceResult result = race(kidney(), options_of("paper"),
-                                   [truth = truth_entrant(kidney(), 1), i = 0](const Frame& frame) mutable {
+                                   [truth = truth_driver(kidney(), 1), i = 0](const Frame& frame) mutable {
                                        Drive drive = truth(frame);
                                        drive.is_refused = ++i % 3 == 0;
                                        return drive;
@@ -374,7 +374,7 @@ Seen frames_of(RaceFault fault) {
     RaceOptions options = options_of("paper");
     options.fault = fault;
     Seen seen;
-    const Entrant truth = truth_entrant(kidney(), 1);
+    const Driver truth = truth_driver(kidney(), 1);
     const RaceResult result = race(kidney(), options, [&](const Frame& frame) {
         seen.times_s.push_back(frame.time_s);
         seen.cones.push_back(frame.cones.size());
@@ -450,7 +450,7 @@ TEST_P(Missions, TheTrueLineDrivesThemToAStop) {
     options.start_error_rad = 0.35;
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         options.sight.seed = seed;
-        const RaceResult result = race(course, options, truth_entrant(course, 1));
+        const RaceResult result = race(course, options, truth_driver(course, 1));
         EXPECT_EQ(to_string(result.end), "finished");
         ASSERT_TRUE(result.stop_said_m);
         EXPECT_GE(*result.stop_said_m, 0.0);
@@ -465,7 +465,7 @@ TEST_P(Missions, WhoStopsBeforeTheLineHasLost) {
     RaceOptions options = options_of("paper");
     options.with_stop = true;
     const RaceResult result = race(course, options, [&](const Frame& frame) {
-        Drive drive = truth_entrant(course, 1)(frame);
+        Drive drive = truth_driver(course, 1)(frame);
         drive.stop = frame.time_s > 2.0;
         return drive;
     });
@@ -477,7 +477,7 @@ TEST_P(Missions, WhoNeverStopsHasLost) {
     RaceOptions options = options_of("paper");
     options.with_stop = true;
     const RaceResult result =
-        race(course, options, [truth = truth_entrant(course, 1)](const Frame& frame) mutable {
+        race(course, options, [truth = truth_driver(course, 1)](const Frame& frame) mutable {
             Drive drive = truth(frame);
             drive.stop = false;
             return drive;
@@ -502,7 +502,7 @@ TEST_P(Missions, APlannerThatTellsOtherPhasesHasLost) {
     const auto told = [&](std::vector<std::string_view> phases) {
         std::size_t frames = 0;
         return race(course, options,
-                    [&, truth = truth_entrant(course, 1)](const Frame& frame) mutable {
+                    [&, truth = truth_driver(course, 1)](const Frame& frame) mutable {
                         Drive drive = truth(frame);
                         drive.state = "following";
                         drive.phase = phases[std::min(frames++, phases.size() - 1)];
@@ -546,24 +546,24 @@ TEST(Courses, AnOpenTrackIsNoCircuit) {
     EXPECT_THROW(static_cast<void>(circuit(track)), InvalidInput);
 }
 
-TEST(Entrants, ADetectorDrivesAGeneratedCourseWithAndWithoutIds) {
+TEST(Drivers, ADetectorDrivesAGeneratedCourseWithAndWithoutIds) {
     for (const bool with_ids : {true, false}) {
         RaceOptions options = options_of("car");
         options.sight.with_ids = with_ids;
-        const RaceMethod method = race_methods({"front"}, WithPlanner::no).front();
-        const RaceResult result = race(kidney(), options, make_entrant(method, kidney(), options));
+        const RaceDetector detector = race_detectors({"front"}, WithPlanner::no).front();
+        const RaceResult result = race(kidney(), options, make_driver(detector, kidney(), options));
         EXPECT_EQ(to_string(result.end), "finished");
         EXPECT_EQ(result.wrong_unflagged, 0);
     }
 }
 
-TEST(Entrants, NamesThatAreNoneAreRefused) {
-    EXPECT_THROW(static_cast<void>(race_methods({"nobody"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_methods({"front,front"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_methods({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_methods({"exec:a=b"}, WithPlanner::only)), InvalidInput);
-    EXPECT_THROW(static_cast<void>(race_methods({"clc-longest"}, WithPlanner::only)), InvalidInput);
-    const std::vector<RaceMethod> both = race_methods({"truth,front"}, WithPlanner::both);
+TEST(Drivers, NamesThatAreNoneAreRefused) {
+    EXPECT_THROW(static_cast<void>(race_detectors({"nobody"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(race_detectors({"front,front"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(race_detectors({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(race_detectors({"exec:a=b"}, WithPlanner::only)), InvalidInput);
+    EXPECT_THROW(static_cast<void>(race_detectors({"clc-longest"}, WithPlanner::only)), InvalidInput);
+    const std::vector<RaceDetector> both = race_detectors({"truth,front"}, WithPlanner::both);
     ASSERT_EQ(both.size(), 3U);
     EXPECT_EQ(both[2].name, "front+planner");
 }

@@ -4,7 +4,7 @@
 #include "evaluation/scenes/condition.hpp"
 #include "evaluation/tracks/track.hpp"
 #include "experiments/race/course.hpp"
-#include "experiments/race/entrants.hpp"
+#include "experiments/race/drivers.hpp"
 #include "experiments/race/race.hpp"
 
 #include <algorithm>
@@ -57,13 +57,13 @@ TEST_P(VariedMissions, LeaveTheLaneFreeToTheFinish) {
 TEST_P(VariedMissions, TheTrueLineDrivesThem) {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const RaceCourse course = varied_mission_course(GetParam(), seed);
-        const RaceResult result = race(course, options_of("car", seed), truth_entrant(course, 1));
+        const RaceResult result = race(course, options_of("car", seed), truth_driver(course, 1));
         EXPECT_EQ(to_string(result.end), "finished") << seed;
     }
 }
 
 TEST_P(VariedMissions, ThePlannerDrivesThemAndStopsBehindTheLine) {
-    const std::vector<RaceMethod> methods = race_methods({"front-warm"}, WithPlanner::only);
+    const std::vector<RaceDetector> detectors = race_detectors({"front-warm"}, WithPlanner::only);
     // 1004: five inner cones in a row are missing. 18: the turn about the right circle is told by false
     // positives alone. 47: at the start two registrations are as likely.
     for (const std::uint64_t seed : {18U, 47U, 1004U, 3U, 4U}) {
@@ -72,7 +72,7 @@ TEST_P(VariedMissions, ThePlannerDrivesThemAndStopsBehindTheLine) {
             RaceOptions options = options_of("car", seed);
             options.with_any_map = true;
             options.sight.false_positive_rate = rate;
-            const RaceResult result = race(course, options, make_entrant(methods.front(), course, options));
+            const RaceResult result = race(course, options, make_driver(detectors.front(), course, options));
             EXPECT_EQ(to_string(result.end), "finished") << seed << " " << rate;
             ASSERT_TRUE(result.stop_said_m) << seed;
             EXPECT_GE(*result.stop_said_m, 0.0) << seed;

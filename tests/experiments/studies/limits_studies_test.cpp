@@ -1,4 +1,4 @@
-// The studies of overruns and of memory: what they count, and that the methods keep what they promise.
+// The studies of overruns and of memory: what they count, and that the detectors keep what they promise.
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/scene_set.hpp"
@@ -95,7 +95,7 @@ TEST(Memory, ThatGrowsIsSeen) {
 }
 
 /// 100 000 calls: `conelane study memory`.
-TEST(Memory, DoesNotGrowWithTheCallsOfAMethod) {
+TEST(Memory, DoesNotGrowWithTheCallsOfADetector) {
     SceneOptions scene_options;
     scene_options.false_positive_rates = {0.2};
     scene_options.ranges_m = {20.0};
@@ -105,7 +105,7 @@ TEST(Memory, DoesNotGrowWithTheCallsOfAMethod) {
     options.calls = 2000;
     const auto calls = timed_calls(std::vector<std::string>{"front", "clc", "path-pair"});
     for (const MemoryRow& row : memory_rows(set.scenes, calls, options)) {
-        SCOPED_TRACE(row.method);
+        SCOPED_TRACE(row.detector);
         // The smallest block kept by every fourth call would be more than the blocks that the allocator holds
         // back, which come and go.
         EXPECT_LT(row.end.heap_bytes, row.middle.heap_bytes + 8 * (row.end.calls - row.middle.calls));

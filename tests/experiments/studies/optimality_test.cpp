@@ -90,12 +90,12 @@ TEST(Optimality, DoesNotDependOnThreads) {
     EXPECT_EQ(gaps(1), gaps(3));
 }
 
-TEST(Optimality, WantsAMethodThatEnumerates) {
+TEST(Optimality, WantsADetectorThatEnumerates) {
     const std::vector<AnnotatedScene> scenes{straight_scene()};
     OptimalityOptions options;
-    for (const char* method : {"rld-pair", "magic"}) {
-        options.method = method;
-        EXPECT_THROW((void)optimality_rows(scenes, {}, options), InvalidInput) << method;
+    for (const char* detector : {"rld-pair", "magic"}) {
+        options.detector = detector;
+        EXPECT_THROW((void)optimality_rows(scenes, {}, options), InvalidInput) << detector;
     }
 }
 

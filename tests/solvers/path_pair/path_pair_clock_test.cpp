@@ -5,12 +5,14 @@
 #include "conelane/scene.hpp"
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
+#include "solvers/path_pair/graph/timed_growth.hpp"
 #include "solvers/path_pair/search_clock.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 
 #include <cstddef>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace conelane::path_pair {
@@ -71,6 +73,42 @@ TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
         EXPECT_EQ(part.size(), 0);
         EXPECT_EQ(part.out_start, std::vector<int>{0});
     }
+}
+
+TEST(PathPairClock, IsLookedAtWhileAVectorIsFilled) {
+    constexpr std::size_t kCount = 300'000;
+    tests::FakeSearchClock clock;
+    std::vector<int> values{1, 2};
+    EXPECT_TRUE(fill(values, kCount, 7, clock));
+    EXPECT_EQ(values.size(), kCount);
+    EXPECT_THAT(values, testing::Each(7));
+    EXPECT_GT(clock.looks(), 10);
+
+    tests::FakeSearchClock striking(3);
+    EXPECT_FALSE(fill(values, kCount, 8, striking));
+    EXPECT_LT(values.size(), kCount);
+    EXPECT_EQ(striking.looks(), 3);
+}
+
+TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
+    std::vector<int> values;
+    for (int i = 0; i < 300'000; ++i) values.push_back(i);
+    values.shrink_to_fit();
+    const std::vector<int> before = values;
+
+    tests::FakeSearchClock striking(3);
+    EXPECT_FALSE(make_room(values, 1, striking));
+    EXPECT_EQ(values, before) << "nothing is lost";
+    EXPECT_EQ(values.capacity(), before.size());
+
+    tests::FakeSearchClock clock;
+    EXPECT_TRUE(make_room(values, 1, clock));
+    EXPECT_EQ(values, before);
+    EXPECT_GE(values.capacity(), 2 * before.size());
+    const int looks = clock.looks();
+    EXPECT_GT(looks, 10);
+    EXPECT_TRUE(make_room(values, 100, clock));
+    EXPECT_EQ(clock.looks(), looks) << "there is room";
 }
 
 }  // namespace

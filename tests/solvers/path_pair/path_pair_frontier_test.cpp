@@ -1,4 +1,5 @@
-// What path-pair drops from the fronts of two legs is in no lane graph, and what it finds there is the best.
+// What path-pair drops from the frontiers of two legs is in no lane graph, and what it finds there is the
+// best.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
@@ -15,7 +16,7 @@
 #include "solvers/path_pair/primal/incumbent.hpp"
 #include "solvers/path_pair/primal/pair_completion.hpp"
 #include "solvers/path_pair/primal/second_leg_bound.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 
@@ -38,9 +39,9 @@ namespace {
 
 constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
 
-/// The fronts of a problem, with random multipliers.
-struct Fronts {
-    Fronts(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
+/// The frontiers of a problem, with random multipliers.
+struct Frontiers {
+    Frontiers(const LaneGraphProblem& lane_graph_problem, std::uint64_t seed) : problem(lane_graph_problem) {
         graph.build(problem, clock);
         LegSystem::Kind& kind = system.kinds[0];
         for (int cone = 0; cone < graph.cone_count(); ++cone) {
@@ -57,22 +58,22 @@ struct Fronts {
         leg_bound = relaxation.evaluate(residual, multipliers);
         edges.assign(graph, residual, clock);
         dominated.find(residual, relaxation, edges, true, clock);
-        fronts.bind(relaxation, clock);
+        frontiers.bind(relaxation, clock);
         search.bind(graph, relaxation, incumbent, clock);
         incumbent.reset(graph, 1e6);
     }
 
-    bool build(double limit = kUnreachable, std::size_t max_fronts = kAny) {
-        return fronts.build(residual, dominated, limit, max_fronts);
+    bool build(double limit = kUnreachable, std::size_t max_frontiers = kAny) {
+        return frontiers.build(residual, dominated, limit, max_frontiers);
     }
 
-    /// Every walk on from a front to a last one that costs less than `limit`, by plain recursion.
+    /// Every walk on from a frontier to a last one that costs less than `limit`, by plain recursion.
     void for_each_walk_on(int f, double cost, double limit, std::vector<int>& arcs,
                           const std::function<void(double)>& visit) const {
-        if (fronts.is_last(f)) visit(cost);
-        for (const FrontierGraph::Step& step : fronts.steps(f)) {
-            const double next = cost + fronts.cost(step);
-            if (!(next + fronts.onward(step.to) < limit)) continue;
+        if (frontiers.is_last(f)) visit(cost);
+        for (const FrontierGraph::Step& step : frontiers.steps(f)) {
+            const double next = cost + frontiers.cost(step);
+            if (!(next + frontiers.onward(step.to) < limit)) continue;
             if (step.arc >= 0) arcs.push_back(step.arc);
             for_each_walk_on(step.to, next, limit, arcs, visit);
             if (step.arc >= 0) arcs.pop_back();
@@ -80,8 +81,8 @@ struct Fronts {
     }
 
     FrontierSearch::Outcome run(std::size_t width, std::size_t max_labels, bool with_detours = true) {
-        tables.find(fronts, edges, incumbent.cutoff() + relaxation.offset(), with_detours, clock);
-        return search.run(fronts, edges, tables, {1e-9, width, max_labels});
+        tables.find(frontiers, edges, incumbent.cutoff() + relaxation.offset(), with_detours, clock);
+        return search.run(frontiers, edges, tables, {1e-9, width, max_labels});
     }
 
     /// Every leg from a near to a far cone, by plain recursion.
@@ -139,7 +140,7 @@ struct Fronts {
     double leg_bound = 0.0;
     EdgeSets edges;
     DominatedEdges dominated;
-    FrontierGraph fronts;
+    FrontierGraph frontiers;
     Incumbent incumbent;
     OnwardTables tables;
     FrontierSearch search;
@@ -164,7 +165,7 @@ TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
 
 /// Across and then along is a forbidden turn: no lane graph has both of its edges, so a clique may hold them.
 TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
-    const Fronts s(tests::straight_lane_problem(), 1);
+    const Frontiers s(tests::straight_lane_problem(), 1);
     const int across = s.graph.arc(0, 1) / 2;
     const int along = s.graph.arc(1, 3) / 2;
     EXPECT_TRUE(s.graph.incompatible(across, along));
@@ -219,7 +220,7 @@ TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
 
 /// A leg might end on 4 -> 6 alone, which is left out: none ends at all.
 TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
-    const Fronts s(tests::straight_lane_problem(), 1);
+    const Frontiers s(tests::straight_lane_problem(), 1);
     const auto count = static_cast<std::size_t>(s.residual.size());
     const auto last = static_cast<std::size_t>(s.arc(4, 6));
     std::vector<double> end(count, kUnreachable);
@@ -249,7 +250,7 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
     }
     RldParameters parameters;
     parameters.d_max = 16.0;
-    Fronts s(make_problem(scene, parameters), 1);
+    Frontiers s(make_problem(scene, parameters), 1);
     s.relaxation.evaluate_backward(s.residual);
     SecondLegBound second;
     second.reset(s.graph, s.clock);
@@ -263,7 +264,7 @@ TEST(PathPairCompletion, TheSecondLegBeginsElsewhere) {
 // A leg on 4 -> 6 has come over 0, 2 and 4. So {0, 2} is dominated: the other leg cannot use it, though it
 // has no cone in common with {4, 6} and is not too close to it.
 TEST(PathPairDominatedEdges, FollowedByHandOnAStraightLane) {
-    Fronts s(tests::straight_lane_problem(), 1);
+    Frontiers s(tests::straight_lane_problem(), 1);
     const int late = s.arc(4, 6);
     const int early = s.arc(0, 2);
     const int opposite = s.arc(1, 3);
@@ -278,7 +279,7 @@ TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
     int dropped = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        const Fronts s(random_problem(seed), seed);
+        const Frontiers s(random_problem(seed), seed);
         const std::vector<std::vector<int>> legs = s.legs();
         for (const std::vector<int>& first : legs) {
             for (const std::vector<int>& second : legs) {
@@ -306,24 +307,24 @@ TEST(PathPairDominatedEdges, LetEveryPairOfLegsPass) {
     EXPECT_GT(dropped, 1000);
 }
 
-/// The fronts' bound lies between that of single legs and the optimum, with dominated edges and without.
+/// The frontiers' bound lies between that of single legs and the optimum, with dominated edges and without.
 TEST(PathPairFrontierGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
     const std::unique_ptr<RldSolver> exhaustive = make_exhaustive_solver();
     int with_lane = 0;
     int higher = 0;
     for (std::uint64_t seed = 0; seed < 80; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed), seed);
+        Frontiers s(random_problem(seed), seed);
         const RldReport best = exhaustive->solve(s.problem, {});
         const double optimum = best.objective.value_or(kUnreachable);
         with_lane += best.objective ? 1 : 0;
         ASSERT_TRUE(s.build());
-        const double bound = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        const double bound = s.frontiers.find_onward(kUnreachable) - s.relaxation.offset();
         EXPECT_GE(bound, s.leg_bound - 1e-9);
         EXPECT_LE(bound, optimum + 1e-9);
-        s.fronts.drop_dominated_edges(s.edges);
-        s.fronts.find_forward();
-        const double thinned = s.fronts.find_onward(kUnreachable) - s.relaxation.offset();
+        s.frontiers.drop_dominated_edges(s.edges);
+        s.frontiers.find_forward();
+        const double thinned = s.frontiers.find_onward(kUnreachable) - s.relaxation.offset();
         EXPECT_GE(thinned, bound - 1e-9);
         EXPECT_LE(thinned, optimum + 1e-9);
         higher += thinned > s.leg_bound + 1e-6 ? 1 : 0;
@@ -336,11 +337,11 @@ TEST(PathPairFrontierGraph, BoundsTheOptimumNoWorseThanSingleLegs) {
 TEST(PathPairFrontierGraph, TheEarlierLegMoves) {
     int both_go_on = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        Fronts s(random_problem(seed), seed);
+        Frontiers s(random_problem(seed), seed);
         ASSERT_TRUE(s.build());
-        for (int f = 0; f < s.fronts.size(); ++f) {
-            if (s.fronts.front(f).ended) continue;
-            EXPECT_LT(s.fronts.front(f).moving, s.fronts.front(f).waiting);
+        for (int f = 0; f < s.frontiers.size(); ++f) {
+            if (s.frontiers.frontier(f).ended) continue;
+            EXPECT_LT(s.frontiers.frontier(f).moving, s.frontiers.frontier(f).waiting);
             ++both_go_on;
         }
     }
@@ -350,47 +351,47 @@ TEST(PathPairFrontierGraph, TheEarlierLegMoves) {
 TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed, 14), seed);
+        Frontiers s(random_problem(seed, 14), seed);
         ASSERT_TRUE(s.build());
-        const double bound = s.fronts.find_onward(kUnreachable);
+        const double bound = s.frontiers.find_onward(kUnreachable);
         if (bound == kUnreachable) continue;
-        const int all = s.fronts.size();
-        s.fronts.drop(bound + 0.5);
-        EXPECT_LT(s.fronts.size(), all);
-        EXPECT_NEAR(s.fronts.find_onward(kUnreachable), bound, 1e-9);
-        EXPECT_EQ(s.fronts.find_onward(bound), kUnreachable);
+        const int all = s.frontiers.size();
+        s.frontiers.drop(bound + 0.5);
+        EXPECT_LT(s.frontiers.size(), all);
+        EXPECT_NEAR(s.frontiers.find_onward(kUnreachable), bound, 1e-9);
+        EXPECT_EQ(s.frontiers.find_onward(bound), kUnreachable);
     }
 }
 
 TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
-    Fronts s(random_problem(3, 20), 3);
+    Frontiers s(random_problem(3, 20), 3);
     EXPECT_FALSE(s.build(kUnreachable, 2));
     EXPECT_TRUE(s.build());
     s.clock.strike();
     EXPECT_FALSE(s.build());
 }
 
-/// Dominated edges that are looked for while the fronts are built leave fewer of them, no lower bound and the
-/// best pair.
+/// Dominated edges that are looked for while the frontiers are built leave fewer of them, no lower bound and
+/// the best pair.
 TEST(PathPairFrontierGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_frontiers = false});
     int fewer = 0;
     int with_lane = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed, 24), seed);
+        Frontiers s(random_problem(seed, 24), seed);
         const std::optional<double> best = solver->solve(s.problem, {}).objective;
         if (!best) continue;
         ++with_lane;
         const double cutoff = *best + 4.0;
         const double limit = cutoff + s.relaxation.offset();
         ASSERT_TRUE(s.build(limit));
-        const int all = s.fronts.size();
-        const double bound = s.fronts.find_onward(limit);
-        ASSERT_TRUE(s.fronts.build(s.residual, s.dominated, limit, kAny, &s.edges));
-        EXPECT_LE(s.fronts.size(), all);
-        fewer += s.fronts.size() < all ? 1 : 0;
-        EXPECT_GE(s.fronts.find_onward(limit), bound - 1e-9);
+        const int all = s.frontiers.size();
+        const double bound = s.frontiers.find_onward(limit);
+        ASSERT_TRUE(s.frontiers.build(s.residual, s.dominated, limit, kAny, &s.edges));
+        EXPECT_LE(s.frontiers.size(), all);
+        fewer += s.frontiers.size() < all ? 1 : 0;
+        EXPECT_GE(s.frontiers.find_onward(limit), bound - 1e-9);
         s.incumbent.reset(s.graph, cutoff);
         s.run(FrontierSearch::kAnyWidth, kAny);
         EXPECT_NEAR(s.incumbent.cutoff(), *best, 1e-9);
@@ -407,15 +408,15 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
     int detours = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed, 10), seed);
+        Frontiers s(random_problem(seed, 10), seed);
         ASSERT_TRUE(s.build());
-        const double bound = s.fronts.find_onward(kUnreachable);
+        const double bound = s.frontiers.find_onward(kUnreachable);
         if (bound == kUnreachable) continue;
         const double gap = 1.5;
-        s.fronts.drop(bound + gap);
-        s.tables.find(s.fronts, s.edges, bound + gap, true, s.clock);
-        for (int f = 0; f < s.fronts.size(); ++f) {
-            const double onward = s.fronts.onward(f);
+        s.frontiers.drop(bound + gap);
+        s.tables.find(s.frontiers, s.edges, bound + gap, true, s.clock);
+        for (int f = 0; f < s.frontiers.size(); ++f) {
+            const double onward = s.frontiers.onward(f);
             std::vector<int> arcs;
             s.for_each_walk_on(f, 0.0, onward + gap, arcs, [&](double cost) {
                 if (!(cost < onward + gap)) return;
@@ -445,7 +446,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
 
 /// A beam of one beginning at each arc runs along both boundaries of a straight lane.
 TEST(PathPairFrontierBeam, FindsTheStraightLane) {
-    Fronts s(tests::straight_lane_problem(), 1);
+    Frontiers s(tests::straight_lane_problem(), 1);
     FrontierBeam beam;
     beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
     beam.run(s.residual, s.edges, 1e-9, 1);
@@ -459,7 +460,7 @@ TEST(PathPairFrontierBeam, FindsLaneGraphsAndOftenTheBest) {
     int best_found = 0;
     for (std::uint64_t seed = 0; seed < 80; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed), seed);
+        Frontiers s(random_problem(seed), seed);
         const RldReport best = exhaustive->solve(s.problem, {});
         FrontierBeam beam;
         beam.bind(s.graph, s.relaxation, s.incumbent, s.clock);
@@ -482,14 +483,14 @@ TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
     int narrow_ones = 0;
     for (std::uint64_t seed = 0; seed < 120; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        Fronts s(random_problem(seed), seed);
+        Frontiers s(random_problem(seed), seed);
         const RldReport best = exhaustive->solve(s.problem, {});
         ASSERT_TRUE(s.build());
-        if (s.fronts.find_onward(kUnreachable) == kUnreachable) {
+        if (s.frontiers.find_onward(kUnreachable) == kUnreachable) {
             EXPECT_FALSE(best.objective);
             continue;
         }
-        // Of each front the cheapest beginning alone: a lane graph, but not always the best.
+        // Of each frontier the cheapest beginning alone: a lane graph, but not always the best.
         const FrontierSearch::Outcome narrow = s.run(1, kAny);
         EXPECT_NE(narrow, FrontierSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
@@ -511,10 +512,10 @@ TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
 TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
     int stopped_on_the_way = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
-        Fronts s(random_problem(seed, 24), seed);
+        Frontiers s(random_problem(seed, 24), seed);
         ASSERT_TRUE(s.build());
-        if (s.fronts.find_onward(kUnreachable) == kUnreachable) continue;
-        s.tables.find(s.fronts, s.edges, 1e6, true, s.clock);
+        if (s.frontiers.find_onward(kUnreachable) == kUnreachable) continue;
+        s.tables.find(s.frontiers, s.edges, 1e6, true, s.clock);
         bool struck = true;
         for (int strike = 1; struck && strike < 5; ++strike) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << ", look " << strike);
@@ -522,7 +523,7 @@ TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
             s.incumbent.reset(s.graph, 1e6);
             s.search.bind(s.graph, s.relaxation, s.incumbent, clock);
             const FrontierSearch::Outcome outcome =
-                s.search.run(s.fronts, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny});
+                s.search.run(s.frontiers, s.edges, s.tables, {1e-9, FrontierSearch::kAnyWidth, kAny});
             struck = clock.struck();
             ASSERT_EQ(outcome,
                       struck ? FrontierSearch::Outcome::stopped : FrontierSearch::Outcome::exhausted);
@@ -533,9 +534,9 @@ TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
 }
 
 TEST(PathPairFrontierSearch, StopsWhereToldTo) {
-    Fronts s(random_problem(3, 20), 3);
+    Frontiers s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
-    s.fronts.find_onward(kUnreachable);
+    s.frontiers.find_onward(kUnreachable);
     EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, 5), FrontierSearch::Outcome::stopped);
     s.clock.strike();
     EXPECT_EQ(s.run(FrontierSearch::kAnyWidth, kAny), FrontierSearch::Outcome::stopped);

@@ -6,7 +6,7 @@
 #include "solvers/path_pair/search/node.hpp"
 #include "solvers/path_pair/search/node_queue.hpp"
 #include "solvers/path_pair/search_clock.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 
 #include <memory>
 #include <utility>

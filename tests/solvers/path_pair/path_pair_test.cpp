@@ -8,7 +8,7 @@
 #include "solvers/milp/milp_rld_solver.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 

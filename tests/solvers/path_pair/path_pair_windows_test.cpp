@@ -11,7 +11,7 @@
 #include "solvers/path_pair/primal/pair_beam.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "solvers/path_pair/search_clock.hpp"
-#include "tests/support/fake_search_clock.hpp"
+#include "tests/support/clocks/fake_search_clock.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/straight_lane_problem.hpp"
 

@@ -1,4 +1,4 @@
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/input_error.hpp"
@@ -58,8 +58,8 @@ std::optional<bool> find_boolean(const JsonNode& json, std::string_view key) {
     return found->boolean();
 }
 
-MethodCard read_card(const JsonNode& json) {
-    MethodCard card;
+DetectorCard read_card(const JsonNode& json) {
+    DetectorCard card;
     card.name = find_string(json, "name");
     card.address = find_string(json, "address");
     card.licence = find_string(json, "licence");
@@ -73,7 +73,7 @@ MethodCard read_card(const JsonNode& json) {
     return card;
 }
 
-ordered_json to_json(const MethodCard& card) {
+ordered_json to_json(const DetectorCard& card) {
     ordered_json json = ordered_json::object();
     const auto put_if_said = [&](const char* key, const auto& value) {
         if (value) json[key] = *value;
@@ -89,7 +89,7 @@ ordered_json to_json(const MethodCard& card) {
 
 }  // namespace
 
-std::string MethodCard::summary() const {
+std::string DetectorCard::summary() const {
     std::vector<std::string> parts;
     if (name) parts.push_back(*name);
     if (licence) parts.push_back("licence " + *licence);
@@ -104,32 +104,32 @@ std::string MethodCard::summary() const {
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::optional<OutsideMethod> parse_outside_method(std::string_view text) {
-    OutsideMethod method;
+std::optional<OutsideDetector> parse_outside_detector(std::string_view text) {
+    OutsideDetector detector;
     if (text.starts_with(kProgram)) {
         text.remove_prefix(kProgram.size());
     } else if (text.starts_with(kLanes)) {
         text.remove_prefix(kLanes.size());
-        method.kind = OutsideMethod::Kind::lanes;
+        detector.kind = OutsideDetector::Kind::lanes;
     } else {
         return std::nullopt;
     }
     const std::size_t equals = text.find('=');
-    const std::string form = method.is_program() ? "exec:NAME=COMMAND" : "lanes:NAME=FILE";
+    const std::string form = detector.is_program() ? "exec:NAME=COMMAND" : "lanes:NAME=FILE";
     if (equals == std::string_view::npos || equals + 1 == text.size())
         throw InvalidInput("method", fmt::format("'{}' is not of the form {}", text, form));
-    method.name = text.substr(0, equals);
-    method.source = text.substr(equals + 1);
-    if (!is_name(method.name)) {
+    detector.name = text.substr(0, equals);
+    detector.source = text.substr(equals + 1);
+    if (!is_name(detector.name)) {
         throw InvalidInput("method",
                            fmt::format("'{}' is not a name for {}: letters, digits and ._+- only, at most {}",
-                                       method.name, form, kMaxName));
+                                       detector.name, form, kMaxName));
     }
-    if (const auto card = card_path(method)) method.card = read_method_card(*card);
-    return method;
+    if (const auto card = card_path(detector)) detector.card = read_detector_card(*card);
+    return detector;
 }
 
-std::vector<std::string> split_methods(const std::vector<std::string>& texts) {
+std::vector<std::string> split_detectors(const std::vector<std::string>& texts) {
     std::vector<std::string> split;
     for (const std::string& text : texts) {
         for (std::size_t begin = 0; begin <= text.size();) {
@@ -143,49 +143,49 @@ std::vector<std::string> split_methods(const std::vector<std::string>& texts) {
     return split;
 }
 
-std::optional<fs::path> card_path(const OutsideMethod& method) {
+std::optional<fs::path> card_path(const OutsideDetector& detector) {
     // A lanes file may lie in a path with blanks; a word of a command is taken without its quotes.
-    std::vector<std::string> files{method.source};
-    if (method.is_program()) {
-        std::istringstream words(method.source);
+    std::vector<std::string> files{detector.source};
+    if (detector.is_program()) {
+        std::istringstream words(detector.source);
         files.assign(std::istream_iterator<std::string>(words), {});
     }
     for (std::string& file : files) {
-        if (method.is_program()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
+        if (detector.is_program()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
         if (is_file(file) && is_file(card_beside(file))) return card_beside(file);
     }
     return std::nullopt;
 }
 
-MethodCard read_method_card(const fs::path& file) {
-    MethodCard card;
+DetectorCard read_detector_card(const fs::path& file) {
+    DetectorCard card;
     with_json_file(file, [&](const JsonNode& json) { card = read_card(json); });
     return card;
 }
 
-std::string outside_method_json(const OutsideMethod& method) {
-    ordered_json json{{"name", method.name}, {method.is_program() ? "exec" : "lanes", method.source}};
-    if (method.card) json["card"] = to_json(*method.card);
+std::string outside_detector_json(const OutsideDetector& detector) {
+    ordered_json json{{"name", detector.name}, {detector.is_program() ? "exec" : "lanes", detector.source}};
+    if (detector.card) json["card"] = to_json(*detector.card);
     return to_line(json);
 }
 
-std::vector<OutsideMethod> outside_methods_of_record(const std::string& run_record) {
-    std::vector<OutsideMethod> found;
+std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_record) {
+    std::vector<OutsideDetector> found;
     with_json_text(run_record, "run.json", [&](const JsonNode& json) {
         const auto all = json.find("methods");
         const std::size_t size = all ? all->array_size() : 0;
         for (std::size_t i = 0; i < size; ++i) {
-            const JsonNode method = all->element(i);
-            const auto command = method.find("exec");
-            const auto file = method.find("lanes");
+            const JsonNode detector = all->element(i);
+            const auto command = detector.find("exec");
+            const auto file = detector.find("lanes");
             if (!command && !file) continue;
-            OutsideMethod outside{command ? OutsideMethod::Kind::program : OutsideMethod::Kind::lanes,
-                                  method.member("name").string(),
-                                  (command ? command : file)->string(),
-                                  {}};
-            if (const auto card = method.find("card")) outside.card = read_card(*card);
-            // A sweep has the same method once for each size.
-            if (std::ranges::find(found, outside.name, &OutsideMethod::name) == found.end())
+            OutsideDetector outside{command ? OutsideDetector::Kind::program : OutsideDetector::Kind::lanes,
+                                    detector.member("name").string(),
+                                    (command ? command : file)->string(),
+                                    {}};
+            if (const auto card = detector.find("card")) outside.card = read_card(*card);
+            // A sweep has the same detector once for each size.
+            if (std::ranges::find(found, outside.name, &OutsideDetector::name) == found.end())
                 found.push_back(std::move(outside));
         }
     });

@@ -1,4 +1,4 @@
-#include "evaluation/files/method_parameter_file.hpp"
+#include "evaluation/files/detector_parameter_file.hpp"
 
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/files/known_keys.hpp"

@@ -10,17 +10,17 @@
 namespace conelane::tests {
 
 /// A solver of the registry on one formulation.
-struct Contestant {
+struct SolverCase {
     const RldSolverEntry* entry;
     Formulation formulation;
-    friend void PrintTo(const Contestant& c, std::ostream* out) {
+    friend void PrintTo(const SolverCase& c, std::ostream* out) {
         *out << c.entry->name << ' ' << to_string(c.formulation);
     }
 };
 
 /// All of them, on every formulation that they use.
-inline std::vector<Contestant> contestants() {
-    std::vector<Contestant> all;
+inline std::vector<SolverCase> solver_cases() {
+    std::vector<SolverCase> all;
     for (const RldSolverEntry& entry : rld_solvers()) {
         all.push_back({&entry, Formulation::tight});
         if (entry.uses_formulation) all.push_back({&entry, Formulation::paper});

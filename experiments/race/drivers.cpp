@@ -1,10 +1,10 @@
-#include "experiments/race/entrants.hpp"
+#include "experiments/race/drivers.hpp"
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
-#include "evaluation/outside/outside_method.hpp"
+#include "evaluation/outside/outside_detector.hpp"
 #include "evaluation/outside/point_snapping.hpp"
-#include "experiments/comparison/methods.hpp"
+#include "experiments/comparison/known_detectors.hpp"
 
 #include <algorithm>
 #include <string>
@@ -41,11 +41,12 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     return drive;
 }
 
-Entrant detector_entrant(const std::string& name) {
-    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_method(name)))](const Frame& frame) {
-        const Scene scene = scene_of(frame);
-        return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
-    };
+Driver detector_driver(const std::string& name) {
+    return
+        [detector = std::shared_ptr<LaneDetector>(make_detector(find_detector(name)))](const Frame& frame) {
+            const Scene scene = scene_of(frame);
+            return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
+        };
 }
 
 /// Boundaries that are positions become cones of a scene of their own.
@@ -65,7 +66,7 @@ Drive drive_by_points(const BoundaryPoints& points, bool closed, const Frame& fr
     return drive_by(answer, scene);
 }
 
-Entrant outside_entrant(const std::shared_ptr<OutsideProgramPool>& programs) {
+Driver outside_driver(const std::shared_ptr<OutsideProgramPool>& programs) {
     std::shared_ptr<OutsideProgram> program(programs->take().release(), [programs](OutsideProgram* used) {
         programs->give_back(std::unique_ptr<OutsideProgram>(used));
     });
@@ -83,7 +84,7 @@ Entrant outside_entrant(const std::shared_ptr<OutsideProgramPool>& programs) {
     };
 }
 
-Entrant planner_entrant(const std::string& detector, const RaceCourse& course, const RaceOptions& options) {
+Driver planner_driver(const std::string& detector, const RaceCourse& course, const RaceOptions& options) {
     PlannerOptions wanted{.mission = course.mission, .detector = detector};
     if (course.mission == Mission::trackdrive) wanted.laps = options.laps;
     return [planner = std::shared_ptr<Planner>(make_planner(wanted))](const Frame& frame) {
@@ -113,14 +114,14 @@ bool is_of_library(const std::string& name) {
 
 }  // namespace
 
-std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, WithPlanner with_planner) {
-    std::vector<RaceMethod> all;
-    for (const std::string& text : split_methods(texts)) {
+std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, WithPlanner with_planner) {
+    std::vector<RaceDetector> all;
+    for (const std::string& text : split_detectors(texts)) {
         if (text == "truth" || text == "none") {
             all.push_back({text, text});
             continue;
         }
-        if (const std::optional<OutsideMethod> outside = find_outside_method(text)) {
+        if (const std::optional<OutsideDetector> outside = find_outside_detector(text)) {
             if (!outside->is_program()) {
                 throw InvalidInput("--methods", "'" + text + "' answers no frames of a race");
             }
@@ -131,7 +132,7 @@ std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, With
                            std::make_shared<OutsideProgramPool>(outside->name, outside->source)});
             continue;
         }
-        static_cast<void>(find_method(text));
+        static_cast<void>(find_detector(text));
         if (with_planner != WithPlanner::only) all.push_back({text, text});
         if (with_planner != WithPlanner::no) {
             if (!is_of_library(text)) {
@@ -150,12 +151,12 @@ std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, With
     return all;
 }
 
-Entrant make_entrant(const RaceMethod& method, const RaceCourse& course, const RaceOptions& options) {
-    if (method.programs) return outside_entrant(method.programs);
-    if (method.method == "truth") return truth_entrant(course, options.laps);
-    if (method.method == "none") return [](const Frame& /*frame*/) { return Drive{}; };
-    if (method.has_planner) return planner_entrant(method.method, course, options);
-    return detector_entrant(method.method);
+Driver make_driver(const RaceDetector& detector, const RaceCourse& course, const RaceOptions& options) {
+    if (detector.programs) return outside_driver(detector.programs);
+    if (detector.detector == "truth") return truth_driver(course, options.laps);
+    if (detector.detector == "none") return [](const Frame& /*frame*/) { return Drive{}; };
+    if (detector.has_planner) return planner_driver(detector.detector, course, options);
+    return detector_driver(detector.detector);
 }
 
 }  // namespace conelane::experiments

@@ -1,10 +1,10 @@
 // `conelane tune-method`: parameters of the detectors that are no RLD, found by random search.
 
-#include "experiments/tuning/method_tuning.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 
 #include "detectors/baseline_parameters.hpp"
+#include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/input_error.hpp"
-#include "evaluation/files/method_parameter_file.hpp"
 #include "tests/support/program_fixture.hpp"
 
 #include <cstddef>
@@ -28,43 +28,43 @@ SceneSet few_scenes() {
     return make_scene_set({"generated:curvy"}, options);
 }
 
-TEST(MethodTuning, FindsBetterParametersAndTheSameOnesAgain) {
+TEST(DetectorTuning, FindsBetterParametersAndTheSameOnesAgain) {
     const SceneSet set = few_scenes();
-    for (const TunableMethod& known : tunable_methods()) {
+    for (const TunableDetector& known : tunable_detectors()) {
         SCOPED_TRACE(known.name);
         // A start that finds little: the highest end of each range.
-        TunableMethod method = known;
-        for (TunableParameter& parameter : method.parameters) parameter.start = parameter.highest;
-        const TunedMethod tuned = tune_method(method, set, {.evaluations = 8, .seed = 2, .threads = 2});
+        TunableDetector detector = known;
+        for (TunableParameter& parameter : detector.parameters) parameter.start = parameter.highest;
+        const TunedDetector tuned = tune_detector(detector, set, {.evaluations = 8, .seed = 2, .threads = 2});
         EXPECT_GE(tuned.figure.value(), tuned.figure_of_start.value());
         EXPECT_GT(tuned.figure.usable, 0.0);
         EXPECT_EQ(tuned.figure.scenes, set.scenes.size());
-        const TunedMethod again = tune_method(method, set, {.evaluations = 8, .seed = 2, .threads = 1});
+        const TunedDetector again = tune_detector(detector, set, {.evaluations = 8, .seed = 2, .threads = 1});
         EXPECT_EQ(again.values, tuned.values);
         EXPECT_EQ(again.figure.iou, tuned.figure.iou);
         for (std::size_t i = 0; i < tuned.values.size(); ++i) {
-            EXPECT_GE(tuned.values[i], method.parameters[i].lowest) << method.parameters[i].key;
-            EXPECT_LE(tuned.values[i], method.parameters[i].highest) << method.parameters[i].key;
+            EXPECT_GE(tuned.values[i], detector.parameters[i].lowest) << detector.parameters[i].key;
+            EXPECT_LE(tuned.values[i], detector.parameters[i].highest) << detector.parameters[i].key;
         }
     }
 }
 
-TEST(MethodTuning, ShippedParametersAreInTheirRanges) {
+TEST(DetectorTuning, ShippedParametersAreInTheirRanges) {
     EXPECT_NO_THROW(validate(tuned_delaunay_beam_parameters()));
     EXPECT_NO_THROW(validate(tuned_astar_lane_parameters()));
 }
 
-TEST(MethodTuning, FilesHoldWhatWasFound) {
-    const TunableMethod& method = find_tunable_method("astar-lane");
+TEST(DetectorTuning, FilesHoldWhatWasFound) {
+    const TunableDetector& detector = find_tunable_detector("astar-lane");
     std::vector<double> values;
-    for (const TunableParameter& parameter : method.parameters) values.push_back(parameter.lowest);
-    const AstarLaneParameters read = parse_astar_lane_parameters(to_json_text(method, values), "p.json");
+    for (const TunableParameter& parameter : detector.parameters) values.push_back(parameter.lowest);
+    const AstarLaneParameters read = parse_astar_lane_parameters(to_json_text(detector, values), "p.json");
     EXPECT_EQ(read.least_radius_m, values[0]);
     EXPECT_EQ(read.heuristic, values.back());
     EXPECT_EQ(read.max_steps, AstarLaneParameters{}.max_steps);
 }
 
-TEST(MethodTuning, FilesThatAreWrongAreNamed) {
+TEST(DetectorTuning, FilesThatAreWrongAreNamed) {
     const auto fault = [](const std::string& text) -> std::string {
         try {
             (void)parse_delaunay_beam_parameters(text, "p.json");
@@ -73,21 +73,21 @@ TEST(MethodTuning, FilesThatAreWrongAreNamed) {
         }
         return "";
     };
-    const TunableMethod& method = find_tunable_method("delaunay-beam");
+    const TunableDetector& detector = find_tunable_detector("delaunay-beam");
     std::vector<double> values;
-    for (const TunableParameter& parameter : method.parameters) values.push_back(parameter.start);
-    EXPECT_EQ(fault(to_json_text(method, values)), "");
-    EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(method, values).substr(1)),
+    for (const TunableParameter& parameter : detector.parameters) values.push_back(parameter.start);
+    EXPECT_EQ(fault(to_json_text(detector, values)), "");
+    EXPECT_EQ(fault("{\"w_turns\": 1," + to_json_text(detector, values).substr(1)),
               "p.json: w_turns: is not a key here; w_turn is");
     EXPECT_THAT(fault("{}"), HasSubstr("p.json: w_turn"));
     values[0] = -1.0;
-    EXPECT_THAT(fault(to_json_text(method, values)), HasSubstr("p.json: w_turn"));
+    EXPECT_THAT(fault(to_json_text(detector, values)), HasSubstr("p.json: w_turn"));
     EXPECT_THAT(fault("nonsense"), HasSubstr("p.json"));
 }
 
-class TuneMethod : public ProgramFixture {};
+class TuneDetector : public ProgramFixture {};
 
-TEST_F(TuneMethod, WritesParametersAndTheirRecord) {
+TEST_F(TuneDetector, WritesParametersAndTheirRecord) {
     const Outcome outcome = run(
         "tune-method --method delaunay-beam --tracks generated:circle --fp 0.3 --every 60 --evaluations 3 "
         "--seed 4 --out p.json");
@@ -100,7 +100,7 @@ TEST_F(TuneMethod, WritesParametersAndTheirRecord) {
     }
 }
 
-TEST_F(TuneMethod, BadOptionsAreRefused) {
+TEST_F(TuneDetector, BadOptionsAreRefused) {
     expect_refused("tune-method --method clc --tracks generated:circle --out p.json", {"clc", "astar-lane"});
     expect_refused("tune-method --method astar-lane --tracks generated:nowhere --out p.json", {"nowhere"});
 }

@@ -9,7 +9,7 @@
 namespace conelane {
 
 /// The description of a method by its author, in a file `*.method.json`. Missing keys are absent.
-struct MethodCard {
+struct DetectorCard {
     std::optional<std::string> name;
     std::optional<std::string> address;
     std::optional<std::string> licence;
@@ -21,8 +21,8 @@ struct MethodCard {
     [[nodiscard]] std::string summary() const;
 };
 
-/// A method that is not part of this program.
-struct OutsideMethod {
+/// A detector that is not part of this program.
+struct OutsideDetector {
     enum class Kind {
         program,  ///< exec:NAME=COMMAND, asked scene by scene
         lanes,    ///< lanes:NAME=FILE, answers of a run elsewhere
@@ -30,7 +30,7 @@ struct OutsideMethod {
     Kind kind = Kind::program;
     std::string name;    ///< as tables show it
     std::string source;  ///< the command, or the file
-    std::optional<MethodCard> card;
+    std::optional<DetectorCard> card;
 
     [[nodiscard]] bool is_program() const { return kind == Kind::program; }
 };
@@ -38,22 +38,22 @@ struct OutsideMethod {
 /// The method that `exec:NAME=COMMAND` or `lanes:NAME=FILE` names, with its card; nothing for other texts.
 /// Throws InvalidInput if the name is missing or has characters that a file name may not have; InputError if
 /// the card is wrong.
-[[nodiscard]] std::optional<OutsideMethod> parse_outside_method(std::string_view text);
+[[nodiscard]] std::optional<OutsideDetector> parse_outside_detector(std::string_view text);
 
 /// Methods as a user lists them: separated by commas, but `exec:` takes the rest of its text, so a command
 /// may contain commas.
-[[nodiscard]] std::vector<std::string> split_methods(const std::vector<std::string>& texts);
+[[nodiscard]] std::vector<std::string> split_detectors(const std::vector<std::string>& texts);
 
 /// The card of a method: X.method.json beside the lanes file X.lanes.jsonl, or beside the first file
 /// X.ANYTHING in the command that has one. Nothing if there is none.
-[[nodiscard]] std::optional<std::filesystem::path> card_path(const OutsideMethod& method);
+[[nodiscard]] std::optional<std::filesystem::path> card_path(const OutsideDetector& detector);
 
 /// Throws InputError naming file and key.
-[[nodiscard]] MethodCard read_method_card(const std::filesystem::path& file);
+[[nodiscard]] DetectorCard read_detector_card(const std::filesystem::path& file);
 
 /// For the record of a run: a method as JSON, and the methods from outside in the array "methods" of a
 /// record.
-[[nodiscard]] std::string outside_method_json(const OutsideMethod& method);
-[[nodiscard]] std::vector<OutsideMethod> outside_methods_of_record(const std::string& run_record);
+[[nodiscard]] std::string outside_detector_json(const OutsideDetector& detector);
+[[nodiscard]] std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_record);
 
 }  // namespace conelane

@@ -1,4 +1,4 @@
-#include "experiments/tuning/method_tuning.hpp"
+#include "experiments/tuning/detector_tuning.hpp"
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/json_node.hpp"
@@ -31,19 +31,19 @@ constexpr double kLastStep = 0.025;
 constexpr double kMovedShare = 0.4;
 
 template <typename Parameters>
-TunableMethod tunable(std::string_view name, std::span<const ParameterField<Parameters>> fields,
-                      std::unique_ptr<LaneDetector> (*make)(const Parameters&)) {
-    TunableMethod method{name, {}, [fields, make](std::span<const double> values) {
-                             Parameters parameters;
-                             for (std::size_t i = 0; i < fields.size(); ++i)
-                                 parameters.*fields[i].value = values[i];
-                             return make(parameters);
-                         }};
+TunableDetector tunable(std::string_view name, std::span<const ParameterField<Parameters>> fields,
+                        std::unique_ptr<LaneDetector> (*make)(const Parameters&)) {
+    TunableDetector detector{name, {}, [fields, make](std::span<const double> values) {
+                                 Parameters parameters;
+                                 for (std::size_t i = 0; i < fields.size(); ++i)
+                                     parameters.*fields[i].value = values[i];
+                                 return make(parameters);
+                             }};
     for (const ParameterField<Parameters>& field : fields) {
-        method.parameters.push_back(
+        detector.parameters.push_back(
             {field.key, field.lowest, field.highest, field.logarithmic, Parameters{}.*field.value});
     }
-    return method;
+    return detector;
 }
 
 /// Four significant digits: short numbers in files, and the same ones on every machine, whose logarithms
@@ -67,16 +67,16 @@ double share_of(const TunableParameter& parameter, double value) {
                : (value - parameter.lowest) / (parameter.highest - parameter.lowest);
 }
 
-std::vector<double> anywhere(const TunableMethod& method, boost::random::mt19937_64& random) {
+std::vector<double> anywhere(const TunableDetector& detector, boost::random::mt19937_64& random) {
     boost::random::uniform_01<double> uniform;
     std::vector<double> values;
-    for (const TunableParameter& parameter : method.parameters)
+    for (const TunableParameter& parameter : detector.parameters)
         values.push_back(at(parameter, uniform(random)));
     return values;
 }
 
 /// Some of the values, one at least, moved by about `step` of their ranges.
-std::vector<double> nearby(const TunableMethod& method, std::vector<double> values, double step,
+std::vector<double> nearby(const TunableDetector& detector, std::vector<double> values, double step,
                            boost::random::mt19937_64& random) {
     boost::random::uniform_01<double> uniform;
     boost::random::normal_distribution<double> normal(0.0, step);
@@ -85,7 +85,7 @@ std::vector<double> nearby(const TunableMethod& method, std::vector<double> valu
     for (std::size_t i = 0; i < values.size(); ++i) {
         const bool moved = uniform(random) < kMovedShare || i == always;
         const double change = normal(random);
-        const TunableParameter& parameter = method.parameters[i];
+        const TunableParameter& parameter = detector.parameters[i];
         if (moved) values[i] = at(parameter, share_of(parameter, values[i]) + change);
     }
     return values;
@@ -93,29 +93,29 @@ std::vector<double> nearby(const TunableMethod& method, std::vector<double> valu
 
 }  // namespace
 
-const std::vector<TunableMethod>& tunable_methods() {
-    static const std::vector<TunableMethod> kMethods{
+const std::vector<TunableDetector>& tunable_detectors() {
+    static const std::vector<TunableDetector> kDetectors{
         tunable("delaunay-beam", delaunay_beam_fields(), make_delaunay_beam_detector),
         tunable("astar-lane", astar_lane_fields(), make_astar_lane_detector)};
-    return kMethods;
+    return kDetectors;
 }
 
-const TunableMethod& find_tunable_method(std::string_view name) {
-    const auto method = std::ranges::find(tunable_methods(), name, &TunableMethod::name);
-    if (method != tunable_methods().end()) return *method;
+const TunableDetector& find_tunable_detector(std::string_view name) {
+    const auto detector = std::ranges::find(tunable_detectors(), name, &TunableDetector::name);
+    if (detector != tunable_detectors().end()) return *detector;
     std::string names;
-    for (const TunableMethod& known : tunable_methods()) {
+    for (const TunableDetector& known : tunable_detectors()) {
         names += (names.empty() ? "" : ", ") + std::string(known.name);
     }
     throw InvalidInput("method",
                        fmt::format("'{}' has no parameters that are tuned so, only {} have", name, names));
 }
 
-MethodFigure evaluate(const TunableMethod& method, std::span<const double> values, const SceneSet& set,
-                      unsigned threads) {
+DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values, const SceneSet& set,
+                        unsigned threads) {
     std::vector<SceneScore> scores(set.scenes.size());
     oneapi::tbb::enumerable_thread_specific<std::unique_ptr<LaneDetector>> detectors(
-        [&] { return method.make(values); });
+        [&] { return detector.make(values); });
     oneapi::tbb::task_arena arena(
         std::min(static_cast<int>(threads), oneapi::tbb::info::default_concurrency()));
     arena.execute([&] {
@@ -129,7 +129,7 @@ MethodFigure evaluate(const TunableMethod& method, std::span<const double> value
             scores[i] = score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
         });
     });
-    MethodFigure figure;
+    DetectorFigure figure;
     for (std::size_t i = 0; i < scores.size(); ++i) {
         if (!counts(set.scenes[i])) continue;
         ++figure.scenes;
@@ -142,12 +142,12 @@ MethodFigure evaluate(const TunableMethod& method, std::span<const double> value
     return figure;
 }
 
-TunedMethod tune_method(const TunableMethod& method, const SceneSet& set, const MethodTuningOptions& options,
-                        const std::function<void()>& advance) {
-    boost::random::mt19937_64 random = generator_of(std::string(method.name), options.seed);
-    TunedMethod best;
-    for (const TunableParameter& parameter : method.parameters) best.values.push_back(parameter.start);
-    best.figure = best.figure_of_start = evaluate(method, best.values, set, options.threads);
+TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set,
+                            const DetectorTuningOptions& options, const std::function<void()>& advance) {
+    boost::random::mt19937_64 random = generator_of(std::string(detector.name), options.seed);
+    TunedDetector best;
+    for (const TunableParameter& parameter : detector.parameters) best.values.push_back(parameter.start);
+    best.figure = best.figure_of_start = evaluate(detector, best.values, set, options.threads);
     if (advance) advance();
     const auto everywhere = static_cast<std::size_t>(kEverywhere * static_cast<double>(options.evaluations));
     for (std::size_t i = 1; i < options.evaluations; ++i) {
@@ -156,8 +156,8 @@ TunedMethod tune_method(const TunableMethod& method, const SceneSet& set, const 
                                                      static_cast<double>(options.evaluations - everywhere);
         const double step = kFirstStep * std::pow(kLastStep / kFirstStep, progress);
         std::vector<double> values =
-            i < everywhere ? anywhere(method, random) : nearby(method, best.values, step, random);
-        const MethodFigure figure = evaluate(method, values, set, options.threads);
+            i < everywhere ? anywhere(detector, random) : nearby(detector, best.values, step, random);
+        const DetectorFigure figure = evaluate(detector, values, set, options.threads);
         if (figure.value() > best.figure.value()) {
             best.values = std::move(values);
             best.figure = figure;
@@ -167,10 +167,10 @@ TunedMethod tune_method(const TunableMethod& method, const SceneSet& set, const 
     return best;
 }
 
-std::string to_json_text(const TunableMethod& method, std::span<const double> values) {
+std::string to_json_text(const TunableDetector& detector, std::span<const double> values) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < method.parameters.size(); ++i) {
-        json[std::string(method.parameters[i].key)] = values[i];
+    for (std::size_t i = 0; i < detector.parameters.size(); ++i) {
+        json[std::string(detector.parameters[i].key)] = values[i];
     }
     return json.dump(2) + "\n";
 }

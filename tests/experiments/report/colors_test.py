@@ -1,4 +1,4 @@
-"""colours_test.py STYLE: the colours of the methods in style.css can be told apart, by readers with any colour vision too,
+"""colors_test.py STYLE: the colours of the methods in style.css can be told apart, by readers with any colour vision too,
 and stand out from the page, light and dark."""
 
 import itertools
@@ -19,8 +19,8 @@ LEAST_DISTANCE = 20.0  # CIELAB; 2.3 is just noticeable
 LEAST_CONTRAST = 3.0  # WCAG, of graphical objects
 
 
-def linear(colour):
-    parts = np.array([int(colour[i:i + 2], 16) for i in (1, 3, 5)]) / 255
+def linear(color):
+    parts = np.array([int(color[i:i + 2], 16) for i in (1, 3, 5)]) / 255
     return np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
 
 
@@ -32,7 +32,7 @@ def lab(rgb):
 
 
 def contrast(one, other):
-    darker, lighter = sorted(float(np.array([0.2126, 0.7152, 0.0722]) @ linear(colour)) for colour in (one, other))
+    darker, lighter = sorted(float(np.array([0.2126, 0.7152, 0.0722]) @ linear(color)) for color in (one, other))
     return (lighter + 0.05) / (darker + 0.05)
 
 
@@ -45,10 +45,10 @@ class Colours(unittest.TestCase):
         self.assertEqual(blocks[1], blocks[2])
         for block in blocks[:2]:
             methods = [block[f"m{i}"] for i in range(8)]
-            for colour in methods:
-                self.assertGreaterEqual(contrast(colour, block["surface"]), LEAST_CONTRAST, colour)
+            for color in methods:
+                self.assertGreaterEqual(contrast(color, block["surface"]), LEAST_CONTRAST, color)
             for vision, matrix in VISION.items():
-                seen = {colour: lab(matrix @ linear(colour)) for colour in methods}
+                seen = {color: lab(matrix @ linear(color)) for color in methods}
                 for one, other in itertools.combinations(methods, 2):
                     self.assertGreater(np.linalg.norm(seen[one] - seen[other]), LEAST_DISTANCE, (vision, one, other))
 

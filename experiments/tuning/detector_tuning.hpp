@@ -24,7 +24,7 @@ struct TunableParameter {
 };
 
 /// A detector whose parameters can be tuned without knowing what they mean.
-struct TunableMethod {
+struct TunableDetector {
     std::string_view name;
     std::vector<TunableParameter> parameters;
     /// A detector of these values, in the order of `parameters`.
@@ -32,13 +32,13 @@ struct TunableMethod {
 };
 
 /// All of them: delaunay-beam and astar-lane.
-[[nodiscard]] const std::vector<TunableMethod>& tunable_methods();
+[[nodiscard]] const std::vector<TunableDetector>& tunable_detectors();
 
 /// Throws InvalidInput that lists the names where there is none of that name.
-[[nodiscard]] const TunableMethod& find_tunable_method(std::string_view name);
+[[nodiscard]] const TunableDetector& find_tunable_detector(std::string_view name);
 
 /// What values reach on scenes. Better is usable more often; what is usable equally often is better by IoU.
-struct MethodFigure {
+struct DetectorFigure {
     std::size_t scenes = 0;
     double usable = 0.0;  ///< share of the scenes
     double iou = 0.0;     ///< mean
@@ -49,30 +49,30 @@ struct MethodFigure {
 };
 
 /// Answers every scene that counts, without a limit of time. The same for any number of threads.
-[[nodiscard]] MethodFigure evaluate(const TunableMethod& method, std::span<const double> values,
-                                    const SceneSet& set, unsigned threads);
+[[nodiscard]] DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values,
+                                      const SceneSet& set, unsigned threads);
 
-struct MethodTuningOptions {
+struct DetectorTuningOptions {
     std::size_t evaluations = 100;  ///< at least one, the start
     std::uint64_t seed = 0;
     unsigned threads = 1;
 };
 
-struct TunedMethod {
+struct TunedDetector {
     std::vector<double> values;  ///< four significant digits
-    MethodFigure figure;
-    MethodFigure figure_of_start;
+    DetectorFigure figure;
+    DetectorFigure figure_of_start;
 };
 
 /// Random search: the start, then points drawn uniformly from the ranges for two fifths of the evaluations,
 /// then around the best so far in steps that shrink from a quarter of each range to a fortieth. The best
 /// point evaluated is the answer. The same scenes, seed and options give the same answer. `advance` is called
 /// after each evaluation.
-[[nodiscard]] TunedMethod tune_method(const TunableMethod& method, const SceneSet& set,
-                                      const MethodTuningOptions& options,
-                                      const std::function<void()>& advance = {});
+[[nodiscard]] TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set,
+                                          const DetectorTuningOptions& options,
+                                          const std::function<void()>& advance = {});
 
-/// One flat JSON object, as the parameter files of methods are.
-[[nodiscard]] std::string to_json_text(const TunableMethod& method, std::span<const double> values);
+/// One flat JSON object, as the parameter files of detectors are.
+[[nodiscard]] std::string to_json_text(const TunableDetector& detector, std::span<const double> values);
 
 }  // namespace conelane::experiments

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "conelane/solve_scene.hpp"
+
+namespace conelane {
+
+/// `solve_scene` for a scene that `validate` has accepted, which is not checked again.
+[[nodiscard]] SolvedScene solve_valid_scene(RldSolver& solver, const Scene& scene,
+                                            const RldParameters& parameters, const SolveLimits& limits,
+                                            const LaneGraph* start = nullptr);
+
+}  // namespace conelane

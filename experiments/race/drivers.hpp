@@ -1,0 +1,32 @@
+#pragma once
+
+#include "evaluation/outside/outside_program.hpp"
+#include "experiments/race/race.hpp"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// Who races, as a table names it.
+struct RaceDetector {
+    std::string name;      ///< `front`, or `front+planner`
+    std::string detector;  ///< truth, none, a detector, or a command of a program from outside
+    bool has_planner = false;
+    std::shared_ptr<OutsideProgramPool> programs = {};  ///< of a program from outside
+};
+
+/// The detectors as a user lists them, each also or only with a planner. truth is the true centre line; none
+/// answers no frame; neither gets a planner. Throws InvalidInput where a detector is unknown, answers no
+/// frames (`lanes:`), or cannot have a planner (one from outside, one that is not of the library).
+enum class WithPlanner { no, only, both };
+[[nodiscard]] std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts,
+                                                       WithPlanner with_planner);
+
+/// A new driver for one race. `course` must outlive it.
+[[nodiscard]] Driver make_driver(const RaceDetector& detector, const RaceCourse& course,
+                                 const RaceOptions& options);
+
+}  // namespace conelane::experiments

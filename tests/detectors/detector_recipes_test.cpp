@@ -1,0 +1,132 @@
+// What the table of detectors says of each: the courses that it has learned from, whether it closes lanes,
+// what it does with the colors of cones. Held against what the detectors answer.
+
+#include "conelane/detectors.hpp"
+#include "experiments/comparison/known_detectors.hpp"
+#include "tests/support/no_time_limit.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+using experiments::KnownDetector;
+using testing::Contains;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Two rings of 12 cones; the car stands between them.
+Scene circuit_seen_whole() {
+    Scene scene;
+    for (int i = 0; i < 12; ++i) {
+        const double angle_rad = 2.0 * std::numbers::pi * (i + 0.3) / 12.0;
+        for (const double radius_m : {6.0, 9.5}) {
+            scene.cones.push_back({static_cast<ConeId>(scene.cones.size()),
+                                   {radius_m * std::sin(angle_rad), 7.75 - radius_m * std::cos(angle_rad)}});
+        }
+    }
+    return scene;
+}
+
+enum class Painted { not_at_all, as_drawn, the_other_way };
+
+/// Cones drawn at random, of which those of even place are left where they bound the lane. Fewer are enough
+/// for the printed formulation, which takes seconds for twelve.
+Scene painted_scene(std::uint64_t seed, Painted how) {
+    Scene scene = tests::random_scene(seed, 9);
+    if (how == Painted::not_at_all) return scene;
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        const bool is_blue = (i % 2 == 0) == (how == Painted::as_drawn);
+        scene.cones[i].color = is_blue ? ConeColor::blue : ConeColor::yellow;
+    }
+    return scene;
+}
+
+/// In how many of some scenes the lane differs from that of cones without colors.
+int lanes_changed_by_color(const KnownDetector& known, const DetectorOptions& options = {}) {
+    int changed = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        std::vector<Lane> lanes;
+        for (const Painted how : {Painted::not_at_all, Painted::as_drawn, Painted::the_other_way}) {
+            lanes.push_back(
+                make_detector(known, options)->detect(painted_scene(seed, how), tests::kNoTimeLimit).lane);
+        }
+        if (lanes[0] != lanes[1] || lanes[0] != lanes[2]) ++changed;
+    }
+    return changed;
+}
+
+class DetectorRecipes : public testing::TestWithParam<const KnownDetector*> {};
+
+TEST_P(DetectorRecipes, SayWhetherLanesAreClosed) {
+    const LaneAnswer answer =
+        make_detector(*GetParam())->detect(circuit_seen_whole(), {.time_limit_ms = 2000.0});
+    EXPECT_EQ(answer.lane.closed, GetParam()->closed_lanes == ClosedLanes::possible);
+}
+
+TEST_P(DetectorRecipes, SayWhatColorsDo) {
+    const int changed = lanes_changed_by_color(*GetParam());
+    switch (GetParam()->color_use) {
+        case ColorUse::ignored:
+            EXPECT_EQ(changed, 0);
+            break;
+        case ColorUse::by_weight: {
+            EXPECT_EQ(changed, 0) << "by default they have no weight";
+            DetectorOptions options;
+            options.rld_parameters.emplace().w_color = 1000.0;
+            EXPECT_GT(lanes_changed_by_color(*GetParam(), options), 0);
+            break;
+        }
+        case ColorUse::used:
+            EXPECT_GT(changed, 0);
+            break;
+    }
+}
+
+std::vector<const KnownDetector*> all() {
+    std::vector<const KnownDetector*> all;
+    for (const KnownDetector& known : experiments::known_detectors()) all.push_back(&known);
+    return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Detectors, DetectorRecipes, testing::ValuesIn(all()), [](const auto& test) {
+    std::string name(test.param->name);
+    std::ranges::replace(name, '-', '_');
+    return name;
+});
+
+TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParametersWereSet) {
+    using experiments::training_courses;
+    EXPECT_THAT(training_courses("front"), Contains("wide@1"));
+    EXPECT_EQ(training_courses("front"), training_courses("front-warm"));
+    EXPECT_THAT(training_courses("clc"), Contains("curvy@1")) << "of the network";
+    EXPECT_THAT(training_courses("clc"), Contains("slalom@23")) << "of the step scores alone";
+    EXPECT_THAT(training_courses("clc-paper"), Not(Contains("slalom@23")));
+    EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
+    EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
+    EXPECT_THAT(training_courses("rld-shape-context"), Contains("fsd_6"));
+    for (const char* const none : {"rld-pair", "rld-context", "clc-longest", "no detector"})
+        EXPECT_THAT(training_courses(none), IsEmpty()) << none;
+}
+
+TEST(DetectorInfos, SayWhatTheRecipesSay) {
+    for (const DetectorInfo& info : detectors()) {
+        const KnownDetector& known = experiments::find_detector(info.name);
+        EXPECT_EQ(info.closed_lanes, known.closed_lanes);
+        EXPECT_EQ(info.color_use, known.color_use);
+    }
+}
+
+}  // namespace
+}  // namespace conelane
