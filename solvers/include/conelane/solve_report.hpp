@@ -13,9 +13,9 @@
 namespace conelane {
 
 enum class SolveStatus {
-    optimal,   ///< the objective is within the absolute gap of the bound
-    feasible,  ///< an incumbent that is not proven optimal; `stopped_by` names the limit that ended the
-               ///< search; absent from a heuristic that ended by itself
+    optimal,     ///< the objective is within the absolute gap of the bound
+    feasible,    ///< an incumbent that is not proven optimal; `stopped_by` names the limit that ended the
+                 ///< search; absent from a heuristic that ended by itself
     infeasible,  ///< the problem is proven to have no solution
     stopped,     ///< no incumbent, no proof; `stopped_by` names the limit, absent from a heuristic
     error,       ///< see the message; a feasible start is kept
