@@ -4,8 +4,8 @@
 
 namespace conelane::experiments {
 
-/// Keeps the calling thread on the processor that it is on, until destroyed. Where the system does not allow
-/// that, the thread stays free.
+/// Keeps the calling thread on its current processor until destroyed. If the system does not allow this, the
+/// thread is not pinned.
 class PinnedThread {
   public:
     PinnedThread();
@@ -15,7 +15,7 @@ class PinnedThread {
 
   private:
     struct Mask;
-    std::unique_ptr<Mask> before_;  ///< absent where the thread stayed free
+    std::unique_ptr<Mask> before_;  ///< absent if the thread is not pinned
 };
 
 }  // namespace conelane::experiments

@@ -9,16 +9,16 @@
 
 namespace conelane::experiments {
 
-/// A case on file, to be judged again.
+/// A stored case, to be judged again.
 struct StoredCase {
     CrossCheckCase drawn;
     std::vector<std::string> solvers;
-    double time_limit_ms = 0.0;  ///< the generous one
+    double time_limit_ms = 0.0;  ///< the generous limit
 };
 
-/// Writes NAME.scenes.jsonl, NAME.params.json and, where the scene has an edge, NAME.mps, the program in the
-/// case's formulation; at last NAME.case.json, which names them and holds the rest and the findings. NAME is
-/// the scene's id. Returns its path. Each appears whole or not at all. Throws InputError.
+/// Writes NAME.scenes.jsonl, NAME.params.json and, if the scene has an edge, NAME.mps, the program in the
+/// case's formulation; finally NAME.case.json, which names them and holds the rest and the findings. NAME is
+/// the scene's id. Returns its path. Each file appears complete or not at all. Throws InputError.
 std::filesystem::path write_case(const std::filesystem::path& directory, const StoredCase& stored,
                                  std::span<const std::string> findings);
 

@@ -18,10 +18,10 @@ namespace conelane::experiments {
 struct CrossCheckCase {
     std::size_t number = 0;
     std::string kind;  ///< one of cross_check_kinds(), or "given"
-    Scene scene;       ///< a cone at least
+    Scene scene;       ///< at least one cone
     RldParameters parameters;
     Formulation formulation = Formulation::tight;  ///< of the solvers that use one
-    double tight_limit_ms = 1.0;                   ///< under which each solver is asked a second time
+    double tight_limit_ms = 1.0;                   ///< time limit of a second solve by each solver
 };
 
 /// Kinds of scenes that are made up:
@@ -37,10 +37,10 @@ struct CrossCheckCase {
 ///   parameters
 [[nodiscard]] std::vector<std::string_view> cross_check_kinds();
 
-/// Case `number` of a seed: it depends on these two and on the given scenes alone, so a run may be cut into
-/// parts. Three in ten are the nearest cones of a given scene, where there is one. 1 to 24 cones, mostly
-/// 4 to 9. Parameters: both pairings, both sets of costs, and in half of the cases any of them drawn
-/// from its range.
+/// Case `number` of a seed: it depends only on these two and on the given scenes, so a run may be cut into
+/// parts. Three of ten cases are the nearest cones of a given scene, if there is one. 1 to 24 cones, mostly 4
+/// to 9. Parameters: both pairings, both sets of costs, and in half of the cases any of them drawn from its
+/// range.
 [[nodiscard]] CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std::uint64_t seed,
                                                    std::size_t number);
 

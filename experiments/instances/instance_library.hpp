@@ -20,21 +20,21 @@ namespace conelane::experiments {
 struct InstanceOptions {
     std::vector<std::string> tracks;
     SceneOptions scenes;
-    std::vector<std::optional<std::size_t>> nearest;  ///< cone-set sizes; absent: all that is visible
+    std::vector<std::optional<std::size_t>> nearest;  ///< cone-set sizes; absent: all visible cones
     RldParameters parameters;
     double time_limit_ms = 10'000.0;  ///< of each engine, for each program
 };
 
-/// What is known of a program's optimum.
+/// State of a program's optimum.
 struct KnownOptimum {
     enum class Status {
         optimal,     ///< both engines proved `best`
         infeasible,  ///< both engines proved that there is no point
-        open,        ///< one of them did not come to its end
+        open,        ///< one of the engines did not finish
     };
     Status status = Status::open;
-    std::optional<double> best;   ///< objective of a point; there where optimal
-    std::optional<double> bound;  ///< proven lower bound of the program as it stands in its file
+    std::optional<double> best;   ///< objective of a point; present if optimal
+    std::optional<double> bound;  ///< proven lower bound of the program in its file
 };
 
 /// A cone set that programs are made of, and its name, without blanks and slashes.
@@ -49,37 +49,36 @@ struct InstanceScene {
 /// How a formulation's files end, before `.mps.gz`: ".printed" or ".tight".
 [[nodiscard]] std::string_view ending_of(Formulation formulation);
 
-/// A program that stands for itself.
+/// A program that can be solved by itself.
 struct Instance {
     std::string name;
     BinaryProgram program;
     KnownOptimum optimum;
 };
 
-/// The program of a scene together with the rows of no cycles (5) and of the pairing that keep its optimum a
-/// lane graph: CBC solves it, the rows that its point violates are added, until there are none. So the
-/// optimum of the file is that of the scene, which path-pair finds on its own, without a program. Where CBC
-/// does not come to its end, no rows are added, and the scene's optimum is `best` of a program that may have
-/// a lower one. Nothing where there is no program: it would have no columns, or more entries than
-/// kMaxProgramEntries. Throws std::logic_error where the engines contradict each other.
+/// The program of a scene with rows of no cycles (5) and of the pairing such that its optimum is a lane
+/// graph: CBC solves it, and the rows that its point violates are added, until none is violated. So the
+/// optimum of the file is that of the scene, which path-pair finds independently, without a program. If CBC
+/// does not finish, no rows are added, and `best` is the scene's optimum, while the program may have a lower
+/// one. Nothing if there is no program: without columns, or with more entries than kMaxProgramEntries. Throws
+/// std::logic_error if the engines contradict each other.
 [[nodiscard]] std::optional<Instance> make_instance(const Scene& scene, const std::string& name,
                                                     Formulation formulation, const InstanceOptions& options);
 
-/// What was written.
+/// The result of writing.
 struct InstanceCounts {
     std::size_t written = 0;
     std::size_t optimal = 0;
     std::size_t infeasible = 0;
-    std::size_t too_large = 0;  ///< programs left out
+    std::size_t too_large = 0;  ///< number of programs left out
 };
 
 /// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each of the scenes into the folder, then
-/// conelane.test, the list of these files, and conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or where the
-/// optimum is open `=best= NAME VALUE` and `=bestdual= NAME VALUE`, each where it is known. The same scenes
-/// give the same files, but for open ones, which depend on the clock. `advance` is called after each program.
-/// The library that the folder held is replaced by its list when all files of the new one are whole; until
-/// then it stays. Throws InputError, so where the folder holds a program that no list names, or another
-/// process writes there.
+/// conelane.test, the list of these files, and conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for an
+/// open optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known. The same scenes
+/// give the same files, except open ones, which depend on the clock. `advance` is called after each program.
+/// A library in the folder is replaced when all files of the new one are complete; until then it stays.
+/// Throws InputError, also if the folder holds a program that no list names, or another process writes there.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,
                                              std::span<const InstanceScene> scenes,
                                              const InstanceOptions& options,

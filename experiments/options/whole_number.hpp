@@ -9,7 +9,7 @@ namespace conelane::experiments {
 /// Of a cone set.
 inline constexpr std::size_t kMaxCones = 100'000;
 
-/// Takes the texts of whole numbers in a range. CLI::Range says of any other text that it is not in range.
+/// Accepts the texts of whole numbers in a range. CLI::Range would report any other text as out of range.
 [[nodiscard]] CLI::Validator whole_number(std::size_t least, std::size_t most);
 
 }  // namespace conelane::experiments

@@ -8,7 +8,8 @@
 
 namespace conelane::experiments {
 
-/// A bar on stderr with rate and time left, redrawn a few times a second; silent where stderr is no terminal.
+/// A bar on stderr with rate and remaining time, redrawn a few times a second; silent if stderr is not a
+/// terminal.
 class Progress {
   public:
     Progress(std::string what, std::size_t total);
@@ -16,7 +17,7 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// One step done. May be called from any thread.
+    /// Counts a step. May be called from any thread.
     void advance();
 
   private:

@@ -10,7 +10,7 @@
 
 namespace conelane::experiments {
 
-/// A folder of its own below the system's temporary one, gone with the object or with the program.
+/// A temporary folder, removed with the object or when the program ends.
 class TemporaryFolder {
   public:
     TemporaryFolder();
@@ -27,22 +27,22 @@ class TemporaryFolder {
     std::optional<ClearOnInterruption> clearing_;
 };
 
-/// There is no Python with what the package takes.
+/// No Python with the modules that the package needs was found.
 class NoPython : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// The Python package that the program carries refused its input and has said why on stderr.
+/// The Python package in the program refused its input and gave the reason on stderr.
 class PackageRefused : public std::runtime_error {
   public:
     PackageRefused() : std::runtime_error("what was to be drawn was refused") {}
 };
 
-/// Runs a module of the Python package `report` (this folder, carried by the program) with arguments.
-/// `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws PackageRefused where
-/// the module ends with exit code 2, NoPython where Python or matplotlib is missing, std::runtime_error where
-/// it fails otherwise.
+/// Runs a module of the Python package `report` (this folder, embedded in the program) with arguments.
+/// `wished_python`: an interpreter that has matplotlib; empty: the first found. Throws PackageRefused if the
+/// module ends with exit code 2, NoPython if Python or matplotlib is missing, std::runtime_error for other
+/// failures.
 void run_package(const std::string& module, const std::vector<std::string>& arguments,
                  const std::string& wished_python);
 
@@ -50,7 +50,7 @@ struct MadeFile {
     std::filesystem::path file;
     std::filesystem::path place;
 };
-/// Puts all files in their places whole or none of them. Throws InputError naming the place that fails.
+/// Puts all files into their places: all of them or none. Throws InputError naming the place that fails.
 void put_in_place(const std::vector<MadeFile>& files);
 
 }  // namespace conelane::experiments

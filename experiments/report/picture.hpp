@@ -11,7 +11,7 @@
 
 namespace conelane::experiments {
 
-/// A lane of a picture. The drivable lane says where it is trusted and which boundary is inferred.
+/// A lane of a picture. The drivable lane gives the trusted length and the inferred boundary.
 struct PicturedLane {
     LaneRecord record;
     DrivableLane drivable;
@@ -21,16 +21,16 @@ struct PicturedLane {
 struct Picture {
     AnnotatedScene scene;
     TrackBoundariesByName
-        tracks;  ///< that of the scene, or nothing; tells false cones from those of the course
+        tracks;  ///< the track of the scene, or nothing; needed to tell false cones from those of the course
     std::vector<PicturedLane> lanes;
-    bool with_given = false;  ///< a second panel: what a detector gets, before anything is known of it
+    bool with_given = false;  ///< a second panel with the input of a detector
     bool with_truth = true;   ///< the band of the ground truth
     std::string title;        ///< above the lanes; empty: the scene's id
 };
 
-/// Writes a picture as .svg or .png, by the ending of its name, through the Python package that the program
-/// carries. The same picture gives the same bytes. `wished_python`: see run_package, whose errors this
-/// throws, and InputError where the file cannot be written.
+/// Writes a picture as .svg or .png, by the ending of its name, through the Python package in the program.
+/// The same picture gives the same bytes. `wished_python` and errors: see run_package; also InputError if the
+/// file cannot be written.
 void write_picture(const Picture& picture, const std::filesystem::path& file,
                    const std::string& wished_python = "");
 

@@ -21,7 +21,7 @@ class Study;
 struct AnytimeOptions {
     RldParameters parameters;
     std::vector<double> limits_ms{5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0};
-    std::optional<std::size_t> limit;  ///< scenes at most, evenly spread; all where absent
+    std::optional<std::size_t> limit;  ///< largest number of scenes, evenly spread; all if absent
 };
 
 /// One scene under one limit.
@@ -34,12 +34,12 @@ struct AnytimeRow {
     std::optional<double> best_known;  ///< the lowest objective under any limit
 };
 
-/// Scene by scene, limits ascending. What is proven under a limit is so under those after it. Throws
-/// InvalidInput where limits do not ascend or a solve ends in an error.
+/// Scene by scene, limits ascending. A scene proven under a limit counts as proven under longer limits.
+/// Throws InvalidInput if limits do not ascend or a solve ends in an error.
 [[nodiscard]] std::vector<AnytimeRow> anytime_rows(std::span<const AnnotatedScene> scenes,
                                                    const AnytimeOptions& options);
 
-/// (best known - bound) / max(1, |best known|) of an unproven scene, 0 of a proven one; nothing where no lane
+/// (best known - bound) / max(1, |best known|) of an unproven scene, 0 of a proven one; nothing if no lane
 /// graph or no bound is known.
 [[nodiscard]] std::optional<double> proven_gap(const AnytimeRow& row);
 

@@ -12,9 +12,9 @@
 
 namespace conelane::experiments {
 
-/// What the runs of one backend at one size and condition add up to. A run is a scene in one order of its
-/// cones, rows and columns; it is solved where its optimum, or that there is none, was proven within the
-/// limit, the checker passes it and no other backend refutes it. Definitions: docs/benchmark-measures.md.
+/// Summary of the runs of one backend at one size and condition. A run is a scene in one order of its cones,
+/// rows and columns. It is solved if its optimum, or that there is none, was proven within the limit, the
+/// checker passes it and no other backend refutes it. Definitions: docs/benchmark-measures.md.
 struct BackendSummary {
     std::size_t size = 0;
     std::string condition;  ///< empty: all scenes
@@ -22,7 +22,7 @@ struct BackendSummary {
     std::size_t scenes = 0;
     std::size_t runs = 0;
     std::size_t solved = 0;
-    std::size_t errors = 0;  ///< refuted claims among them
+    std::size_t errors = 0;  ///< with refuted claims
     std::size_t refuted = 0;
     double geometric_ms = 0.0;  ///< shifted by 1 ms, failures at the limit
     double par2_ms = 0.0;
@@ -30,7 +30,7 @@ struct BackendSummary {
     std::size_t common = 0;                     ///< runs that every backend solved
     std::optional<double> common_geometric_ms;  ///< over these
     double median_ms = 0.0;                     ///< failures at the limit
-    std::optional<double> median_engine_ms;     ///< by the solver itself, of the runs that say so
+    std::optional<double> median_engine_ms;     ///< the solver's own time, in runs that report it
     std::optional<double> variability;          ///< median over scenes of the coefficient of variation
     std::optional<double> spread;               ///< median over scenes of largest / smallest time
     std::size_t integrals = 0;                  ///< scenes with steps and a known lane graph
@@ -40,7 +40,7 @@ struct BackendSummary {
     std::size_t won = 0;          ///< runs that it solves first
 };
 
-/// Multiples of the fastest time at which profiles are told: 1 to 1000, 25 a decade.
+/// Multiples of the fastest time at which profiles are evaluated: 1 to 1000, 25 a decade.
 [[nodiscard]] std::span<const double> profile_ratios();
 
 /// Wilcoxon's test on two backends: geometric means of a scene's times, failures at the limit.
@@ -64,7 +64,7 @@ struct BackendSelection {
     double virtual_par10_ms = 0.0;
 };
 
-/// What is known after some time, of all scenes with steps and a known lane graph.
+/// Gaps after some time, over all scenes with steps and a known lane graph.
 struct BackendGap {
     std::size_t size = 0;
     std::string backend;
@@ -80,9 +80,9 @@ struct BackendMeasures {
     std::vector<BackendGap> gaps;
 };
 
-/// All scenes of each size first, then, where scenes have several conditions, each of these. Backends that
-/// did not solve the same runs as the first one (a warm start has no permutations) are compared on the scenes
-/// as they stand.
+/// First all scenes of each size; then, if scenes have several conditions, each condition. Backends that did
+/// not solve the same runs as the first one (a warm start has no permutations) are compared on the scenes in
+/// their original order.
 [[nodiscard]] BackendMeasures measures_of(std::span<const BackendRow> rows, double time_limit_ms);
 
 /// Rows for a file, each with "row": summary, pair, selection or gap.

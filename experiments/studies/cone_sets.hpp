@@ -11,12 +11,13 @@
 
 namespace conelane::experiments {
 
-/// Cone sets of certain sizes, which studies solve that measure by size.
+/// Cone sets of given sizes, for studies that measure by size.
 struct ConeSetOptions {
     RldParameters parameters;
     std::vector<std::size_t> sizes;
-    std::optional<std::size_t> limit;  ///< scenes of each size at most, evenly spread; all where absent
-    double time_limit_ms = 0.0;        ///< a solve
+    std::optional<std::size_t>
+        limit;                   ///< largest number of scenes of each size, evenly spread; all if absent
+    double time_limit_ms = 0.0;  ///< of a solve
 };
 
 /// The scenes that have `size` cones ahead and pass `wanted`; at most `limit` of them, evenly spread.
@@ -24,7 +25,7 @@ struct ConeSetOptions {
     std::span<const AnnotatedScene> scenes, std::size_t size, std::optional<std::size_t> limit,
     const std::function<bool(const AnnotatedScene&)>& wanted);
 
-/// Objectives that differ by no more than this are the same: what a solver's answer may be off, see
+/// Objectives that differ by at most this are equal: the possible error of a solver's answer, see
 /// SolveLimits.
 inline constexpr double kObjectiveTolerance = 1e-6;
 

@@ -16,7 +16,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// RLD with simulated confidences and colors of cones against geometry alone.
+/// RLD with simulated confidences and colors of cones, compared with geometry only.
 [[nodiscard]] std::unique_ptr<Study> make_confidence_and_color_study();
 
 /// Tracks that a fit has not seen, and what it found on the others.
@@ -25,25 +25,25 @@ struct HeldOut {
     RldParameters parameters;
 };
 
-/// The scenes and folds of a tuning whose parameters were fitted to geometry alone, and what is simulated on
-/// them. With confidences the weight w_b, which they lower, and with colors the weight w_color are, in each
-/// fold, those that are most accurate on the tracks that are not held out; of equal ones the smallest.
+/// The scenes and folds of a tuning whose parameters were fitted to geometry only, and the simulated data on
+/// them. In each fold, the weight w_b (with confidences, which lower it) and the weight w_color (with colors)
+/// are those that are most accurate on the tracks that are not held out; of equal ones the smallest.
 struct ConfidenceColorOptions {
     std::vector<std::string> tracks;  ///< as in make_scene_set
     SceneOptions scenes;
     EvaluationOptions evaluation;  ///< its objective is without effect
     std::vector<HeldOut> folds;
-    std::vector<std::string> only;  ///< tracks that rows are of; all held-out ones where empty
+    std::vector<std::string> only;  ///< tracks to report; all held-out ones if empty
     std::vector<double> color_errors{0.0, 0.05, 0.2};
     std::vector<double> color_weights{0.0, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2};  ///< w_color, ascending
     std::vector<double> benefits{1.0, 1.5, 2.0, 2.5, 3.0};                       ///< w_b, ascending
 };
 
-/// Scenes, cone set and folds of a record that `conelane tune` has written. Throws InputError where the file
-/// is none or its tuning held no track out.
+/// Scenes, cone set and folds of a record that `conelane tune` has written. Throws InputError if the file is
+/// invalid or its tuning held no track out.
 [[nodiscard]] ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file);
 
-/// What is simulated beside the geometry: one of both or nothing.
+/// The simulated data beside the geometry: confidences, colors or neither.
 struct SimulatedKnowledge {
     bool confidence = false;
     std::optional<double> color_error;  ///< share of wrong colors; absent without colors
@@ -62,8 +62,8 @@ struct ConfidenceColorRow {
     std::vector<double> weights;  ///< w_b with confidences, w_color with colors, by fold; empty with neither
 };
 
-/// Rows by knowledge: geometry alone, confidences, colors in the order of their errors; then by rate. Throws
-/// InvalidInput where a fold holds out a track that has no scene, or none holds out one of `only`.
+/// Rows by knowledge: geometry only, confidences, colors in the order of their errors; then by rate. Throws
+/// InvalidInput if a fold holds out a track that has no scene, or none holds out one of `only`.
 [[nodiscard]] std::vector<ConfidenceColorRow> confidence_color_rows(const ConfidenceColorOptions& options);
 
 /// Of these rows, for a terminal.

@@ -28,21 +28,22 @@ struct DifferentialCase {
     bool shape_costs = false;
 };
 
-/// Case `number` of a seed: the scene, 12 to 40 cones, pairing and costs, each drawn uniformly. It depends on
-/// these two and the scenes alone, so a run may be cut into parts. A scene with fewer cones gives all it has.
+/// Case `number` of a seed: the scene, 12 to 40 cones, pairing and costs, each drawn uniformly. It depends
+/// only on these two and the scenes, so a run may be cut into parts. A scene with fewer cones gives all of
+/// them.
 [[nodiscard]] DifferentialCase draw_case(std::span<const AnnotatedScene> scenes, std::uint64_t seed,
                                          std::size_t number);
 
 enum class Agreement {
     same_optimum,  ///< both proven, and equal
     both_infeasible,
-    undecided,  ///< one of them hit its limit, and nothing contradicts
+    undecided,  ///< one of them reached its limit, without a contradiction
     refused,    ///< the independent checker refuses an answer, or a solver answers with an error
-    differ,     ///< a proven bound of one is above what the other found
+    differ,     ///< a proven bound of one is above the objective found by the other
 };
 [[nodiscard]] std::string_view to_string(Agreement agreement);
 
-/// Of two reports on the same case; 1e-6 apart is the same.
+/// For two reports on the same case; differences up to 1e-6 are ignored.
 [[nodiscard]] Agreement compare_reports(const RldReport& first, const RldReport& second);
 
 struct DifferentialOptions {

@@ -15,7 +15,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// What makes an instance hard: features, what they cost, and the gap of the relaxation.
+/// Features of instances, the cost of computing them, and the gap of the relaxation.
 [[nodiscard]] std::unique_ptr<Study> make_features_study();
 
 struct FeatureRow {
@@ -23,7 +23,7 @@ struct FeatureRow {
     std::size_t cones = 0;
     InstanceFeatures features;
     double solve_ms = 0.0;  ///< of path-pair
-    /// (optimum - relaxation) / max(1, |optimum|); absent where there is no proven optimum or no relaxation.
+    /// (optimum - relaxation) / max(1, |optimum|); absent without a proven optimum or a relaxation.
     std::optional<double> lp_gap;
 };
 /// Rows by size and scene.

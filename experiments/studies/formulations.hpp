@@ -26,8 +26,8 @@ struct FormulationOptions : ConeSetOptions {
     }
 };
 
-/// One formulation at one cone-set size. Rows and columns are means over the scenes, times and nodes over all
-/// of them, a solve that ran into the time limit with the time it took.
+/// One formulation at one cone-set size. Rows and columns are means over the scenes. Times and nodes are over
+/// all scenes; a solve that reached the time limit counts with its time.
 struct FormulationRow {
     std::size_t cones = 0;
     Formulation formulation = Formulation::tight;
@@ -48,7 +48,7 @@ struct FormulationRow {
 };
 
 /// Rows by size, tight before paper; sizes that no scene has are left out. Throws InvalidInput naming the
-/// scene where the optima of the two formulations differ by more than 1e-6, or a solver fails.
+/// scene if the optima of the two formulations differ by more than 1e-6, or a solver fails.
 [[nodiscard]] std::vector<FormulationRow> formulation_rows(std::span<const AnnotatedScene> scenes,
                                                            const FormulationOptions& options);
 

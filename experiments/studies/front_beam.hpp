@@ -13,16 +13,17 @@ namespace conelane::experiments {
 
 class Study;
 
-/// What a wider beam finds that the detector's does not, and what the judge makes of either.
+/// The effect of a wider beam, and of the judge.
 [[nodiscard]] std::unique_ptr<Study> make_front_beam_study();
 
 struct FrontBeamOptions {
     FrontWeights weights;
     std::vector<std::size_t> beams{5, 10, 15, 30, 100};  ///< states a level, with the detector's other limits
-    /// The last row but those of `exhaustive_ms`: the widest search, which the others are held against.
+    /// The last row except for those of `exhaustive_ms`: the widest search, with which the others are
+    /// compared.
     std::size_t reference_beam = 400;
     double reference_drop = 12.0;
-    /// A row for each: the search that leaves out nothing, neither drops nor merges, stopped after so long.
+    /// A row for each: the search that leaves out nothing (no drop, no merge), stopped after this time.
     std::vector<double> exhaustive_ms;
 };
 
@@ -36,7 +37,7 @@ struct FrontBeamRow {
     double first_usable = 0.0;  ///< by score alone
     double usable = 0.0;        ///< as the judge orders the best lanes
     double any_usable = 0.0;    ///< share with a usable lane among those judged
-    double iou = 0.0;           ///< mean, of the judge's first
+    double iou = 0.0;           ///< mean, of the judge's first lane
     double median_ms = 0.0;     ///< of search and judge together
     double p95_ms = 0.0;
     double worst_ms = 0.0;

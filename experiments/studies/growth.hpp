@@ -17,7 +17,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// How path-pair's cost grows with the cones and with their density.
+/// Cost of path-pair against the number of cones and their density.
 [[nodiscard]] std::unique_ptr<Study> make_growth_study();
 
 struct GrowthOptions {
@@ -30,7 +30,7 @@ struct GrowthOptions {
 struct GrowthRow {
     const AnnotatedScene* scene = nullptr;
     std::size_t cones = 0;
-    bool all_visible = false;  ///< else the nearest ones, of a scene that has more
+    bool all_visible = false;  ///< false: the nearest cones of a scene that has more
     double density = 0.0;      ///< see neighbours_per_cone
     std::size_t edges = 0;     ///< that (27) allows
     bool proven = false;
@@ -38,11 +38,11 @@ struct GrowthRow {
     double cpu_ms = 0.0;  ///< processor time of the thread, from the scene to the answer
 };
 
-/// How many others a cone has within 5.5 m, on average.
+/// Mean number of other cones within 5.5 m of a cone.
 [[nodiscard]] double neighbours_per_cone(const Scene& scene);
 
-/// Each scene at each size that it exceeds, and with all its cones. Throws InvalidInput where a solve ends in
-/// an error.
+/// Each scene at each size below its number of cones, and with all its cones. Throws InvalidInput if a solve
+/// ends in an error.
 [[nodiscard]] std::vector<GrowthRow> growth_rows(std::span<const AnnotatedScene> scenes,
                                                  const GrowthOptions& options);
 

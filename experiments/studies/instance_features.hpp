@@ -10,8 +10,8 @@
 
 namespace conelane::experiments {
 
-/// What is known of an instance, a cone set with parameters, before it is solved. Groups are computed one
-/// after the other; the cost of each is its own.
+/// Features of an instance, a cone set with parameters, before it is solved. Groups are computed one after
+/// the other, each with its own cost.
 struct InstanceFeatures {
     struct Problem {  ///< from cones to numbers
         std::size_t cones = 0;
@@ -39,11 +39,11 @@ struct InstanceFeatures {
     };
     Problem problem;
     double problem_ms = 0.0;
-    std::optional<Relaxation> relaxation;  ///< absent where it is infeasible, or there is no candidate
+    std::optional<Relaxation> relaxation;  ///< absent if it is infeasible, or without candidates
     double relaxation_ms = 0.0;            ///< building the program included
 };
 
-/// Throws InvalidInput where scene or parameters are not valid.
+/// Throws InvalidInput if scene or parameters are invalid.
 [[nodiscard]] InstanceFeatures features_of(const Scene& cones, const RldParameters& parameters);
 
 /// The features by name, those of the problem first; absent ones are NaN.
@@ -52,7 +52,7 @@ struct NamedFeature {
     double value;
 };
 [[nodiscard]] std::vector<NamedFeature> named(const InstanceFeatures& features);
-/// How many of these belong to the problem.
+/// Number of these features that belong to the problem.
 inline constexpr std::size_t kProblemFeatures = 13;
 
 }  // namespace conelane::experiments

@@ -5,13 +5,13 @@
 
 namespace conelane::experiments {
 
-/// How far the resident memory of this process rises above what it is at the making, by the operating system
-/// (VmHWM, after clear_refs). What was freed before and not given back does not show, so it is given back
-/// first where the C library can.
+/// Growth of this process's resident memory since construction, by the operating system (VmHWM, after
+/// clear_refs). Freed memory that was not returned would hide growth, so it is returned first if the C
+/// library can do so.
 class PeakMemory {
   public:
     PeakMemory();
-    /// In bytes; absent where the system does not tell.
+    /// In bytes; absent if the system does not report it.
     [[nodiscard]] std::optional<std::size_t> rise_bytes() const;
 
   private:

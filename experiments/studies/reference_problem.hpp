@@ -8,13 +8,12 @@
 
 namespace conelane::experiments {
 
-/// One scene of a generated course, solved by path-pair again and again: the same work whatever a study
-/// measures. Run between its blocks, it shows how steady the machine was.
+/// One scene of a generated course, solved by path-pair repeatedly: the same work for any study. Run between
+/// the blocks of a study, it shows how steady the machine was.
 class ReferenceProblem {
   public:
     ReferenceProblem();
-    /// Mean wall clock of a solve, of 1000 in a row: work for longer than a processor is taken away at a
-    /// time, so that other load shows.
+    /// Mean wall clock of 1000 solves in a row: longer than a time slice, so that other load shows.
     [[nodiscard]] double mean_ms();
 
   private:

@@ -15,7 +15,7 @@ namespace conelane::experiments {
 
 class Study;
 
-/// Every solver of the registry that proves nothing, and path-pair, which gives the optimum.
+/// Every solver of the registry that proves nothing, compared with the optimum of path-pair.
 [[nodiscard]] std::unique_ptr<Study> make_relaxations_study();
 
 struct RelaxationOptions : ConeSetOptions {
@@ -25,8 +25,8 @@ struct RelaxationOptions : ConeSetOptions {
     }
 };
 
-/// One solver at one cone-set size. Times and `accurate` are over all scenes, a solve without an answer being
-/// inaccurate and taking the time it took.
+/// One solver at one cone-set size. Times and `accurate` are over all scenes; a solve without an answer is
+/// inaccurate and counts with its time.
 struct RelaxationRow {
     std::size_t cones = 0;
     std::string solver;
@@ -44,7 +44,7 @@ struct RelaxationRow {
 };
 
 /// Rows by size, path-pair first; sizes that no scene has are left out. Throws InvalidInput naming the scene
-/// where a solver answers below the least cost. Answers, and errors among them, are counted in `errors`.
+/// if a solver answers below the least cost. `errors` counts answers, and errors among them.
 [[nodiscard]] std::vector<RelaxationRow> relaxation_rows(std::span<const AnnotatedScene> scenes,
                                                          const RelaxationOptions& options,
                                                          AnswerErrors& errors);

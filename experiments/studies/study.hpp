@@ -16,17 +16,17 @@ class App;
 
 namespace conelane::experiments {
 
-/// What a study is about, for who reads its help or the list of studies.
+/// Description of a study, for its help and the list of studies.
 struct StudyDescription {
     std::string_view name;      ///< as in `conelane study NAME`; its rows are shown from DIR/NAME.jsonl
     std::string_view question;  ///< one line
-    std::string_view protocol;  ///< on what, and how it is measured
+    std::string_view protocol;  ///< data and method of the measurement
 };
 
 struct StudyResult {
     std::string table;                         ///< for a terminal; ends with a line feed
     std::vector<nlohmann::ordered_json> rows;  ///< for a file, an object each
-    AnswerErrors errors = {};                  ///< where answers of status error are counted and do not throw
+    AnswerErrors errors = {};                  ///< if answers of status error are counted instead of thrown
 };
 
 template <typename Rows, typename ToJson>
@@ -46,10 +46,10 @@ class Study {
 
     [[nodiscard]] const StudyDescription& description() const { return description_; }
 
-    /// Declares all options but --out. They are written into this object, which must outlive the parsing.
+    /// Declares all options but --out. They are stored in this object, which must outlive the parsing.
     virtual void add_options(CLI::App& command) = 0;
 
-    /// Measures under the options parsed. Throws InputError or InvalidInput.
+    /// Measures with the parsed options. Throws InputError or InvalidInput.
     [[nodiscard]] virtual StudyResult run() = 0;
 
   private:

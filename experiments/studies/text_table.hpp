@@ -7,7 +7,7 @@
 
 namespace conelane::experiments {
 
-/// A table for a terminal: a line of titles, then a line for each row, every column as wide as its widest
+/// A table for a terminal: a line of titles, then a line for each row; a column is as wide as its widest
 /// cell.
 class TextTable {
   public:
@@ -28,13 +28,13 @@ class TextTable {
     std::vector<std::vector<std::string>> rows_;
 };
 
-/// With so many decimals; "-" where there is none.
+/// With this many decimals; "-" if absent.
 [[nodiscard]] std::string fixed(std::optional<double> value, int decimals);
 
 /// A share times 100, as `fixed`.
 [[nodiscard]] std::string percent(std::optional<double> share, int decimals);
 
-/// part / whole; nothing where the whole is 0.
+/// part / whole; nothing if the whole is 0.
 [[nodiscard]] std::optional<double> share(std::size_t part, std::size_t whole);
 
 }  // namespace conelane::experiments

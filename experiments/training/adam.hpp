@@ -7,17 +7,17 @@
 
 namespace conelane::experiments {
 
-/// The running means of Adam (Kingma, Ba 2015) over the derivatives of some parameters, with the constants
-/// that its authors propose. A step is learning rate * mean() / deviation().
+/// The running means of Adam (Kingma, Ba 2015) over the derivatives of some parameters, with its authors'
+/// constants. A step is learning rate * mean() / deviation().
 class Adam {
   public:
-    /// `smallest_deviation` keeps the division from noise where a derivative is hardly ever other than 0.
+    /// `smallest_deviation` keeps the quotient from noise if a derivative is nearly always 0.
     Adam(Eigen::Index parameters, double smallest_deviation)
         : first_(Eigen::ArrayXd::Zero(parameters)),
           second_(Eigen::ArrayXd::Zero(parameters)),
           smallest_deviation_(smallest_deviation) {}
 
-    /// Takes in the derivatives of the next step.
+    /// Adds the derivatives of the next step.
     void add(const Eigen::Ref<const Eigen::ArrayXd>& derivatives) {
         first_power_ *= kFirstDecay;
         second_power_ *= kSecondDecay;
@@ -25,14 +25,14 @@ class Adam {
         second_ = kSecondDecay * second_ + (1.0 - kSecondDecay) * derivatives * derivatives;
     }
 
-    /// Of the derivatives, unbiased. Precondition: something was added.
+    /// Mean of the derivatives, unbiased. Precondition: something was added.
     [[nodiscard]] auto mean() const { return first_ / (1.0 - first_power_); }
-    /// The root of the mean of their squares, unbiased. Precondition: something was added.
+    /// Root mean square of the derivatives, unbiased. Precondition: something was added.
     [[nodiscard]] auto deviation() const {
         return (second_ / (1.0 - second_power_)).sqrt() + smallest_deviation_;
     }
 
-    /// All of it, for a training that is to go on later.
+    /// The whole state, for a training that resumes later.
     struct State {
         Eigen::ArrayXd first;
         Eigen::ArrayXd second;

@@ -8,15 +8,15 @@
 
 namespace conelane::experiments {
 
-/// Adds `factor` times the derivatives of the network's score for these inputs, by its weights, to
-/// `derivatives`, which has the same shape.
+/// Adds `factor` times the derivatives of the network's score for these inputs, with respect to its weights,
+/// to `derivatives`, which has the same shape.
 void add_derivatives(const FrontNetworkWeights& network, std::span<const float> inputs, float factor,
                      FrontNetworkWeights& derivatives);
 
 /// All numbers of the networks, block by block, always in the same order.
 void for_each_block(FrontWeights& weights, const std::function<void(std::span<float>)>& use);
 void for_each_block(const FrontWeights& weights, const std::function<void(std::span<const float>)>& use);
-/// How many there are.
+/// Their number.
 [[nodiscard]] std::size_t parameter_count(const FrontWeights& weights);
 
 /// a += b

@@ -12,12 +12,12 @@ struct FrontJudgeLossOptions {
     FrontRiskOptions risk;
     double minimum_risk = 3.0;  ///< weight of the expected risk
     double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
-    double risk_scale = 0.05;   ///< lanes with so much more risk should be e times less likely
+    double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
 };
 
 /// The loss of FrontJudge in one scene and its derivatives: of `rank` as FrontLearner has it for the lanes of
-/// a search, of `usable` and `right` the cross-entropy for the lane that is answered. FrontCost stays as it
-/// is. Keeps memory from scene to scene; one serves one thread.
+/// a search, of `usable` and `right` the cross-entropy for the answered lane. FrontCost stays unchanged.
+/// Keeps memory from scene to scene; one object serves one thread.
 class FrontJudgeLearner {
   public:
     struct Loss {
@@ -25,13 +25,13 @@ class FrontJudgeLearner {
         bool found = false;
         bool is_usable = false;
         double confidence = 0.0;
-        double risk = 0.0;  ///< of the lane that is answered
-        /// The highest FrontWeights::least_trust with which the lane that is answered is trusted farther than
-        /// it is right; below 0 where all of it is right.
+        double risk = 0.0;  ///< of the answered lane
+        /// The highest FrontWeights::least_trust with which the answered lane is trusted farther than it is
+        /// right; below 0 if all of it is right.
         double trust_where_wrong = -1.0;
     };
 
-    /// `derivatives` absent: the loss alone.
+    /// `derivatives` absent: only the loss.
     Loss judge(const AnnotatedScene& scene, const TrackBoundaries& boundaries, const FrontWeights& weights,
                FrontCost& cost, FrontJudge& judge, const FrontJudgeLossOptions& options,
                FrontWeights* derivatives);

@@ -14,16 +14,16 @@ namespace conelane::experiments {
 
 struct FrontLossOptions {
     FrontSearchOptions search;
-    std::size_t listed = 20;    ///< best lanes that the loss of a whole lane compares
+    std::size_t listed = 20;    ///< number of best lanes that the loss of a whole lane compares
     double fall_out = 1.0;      ///< weight of the cross-entropy where the true lane falls out of the beam
     double minimum_risk = 3.0;  ///< weight of the expected risk
     double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
-    double risk_scale = 0.05;   ///< lanes with so much more risk should be e times less likely
+    double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
     FrontRiskOptions risk;
 };
 
-/// The loss of the true lane in one scene and its derivatives. Keeps memory from scene to scene; one serves
-/// one thread.
+/// The loss of the true lane in one scene and its derivatives. Keeps memory from scene to scene; one object
+/// serves one thread.
 class FrontLearner {
   public:
     struct Loss {
@@ -32,7 +32,7 @@ class FrontLearner {
         bool reached = false;       ///< whether the rules allow the whole true lane
         bool kept = false;          ///< whether the beam kept it to its end
         bool found = false;         ///< whether it is the best of all
-        double risk = 0.0;          ///< of the best lane; FrontRiskOptions::worst where there is none
+        double risk = 0.0;          ///< of the best lane; FrontRiskOptions::worst without a lane
     };
 
     /// Teacher forcing: the softmax over the starts, then over the moves of each state of the true lane.
@@ -44,16 +44,16 @@ class FrontLearner {
                 FrontCost& cost, const FrontLossOptions& options, FrontWeights& derivatives);
 
   private:
-    /// The place of the true pair among the starts, kNone where it is none.
+    /// Position of the true pair among the starts; kNone if it is not among them.
     [[nodiscard]] std::size_t true_start() const;
     /// The true move of a state with the true cones so far; its `edge` is not set.
     [[nodiscard]] FrontMove true_move(const FrontState& state, Side side) const;
-    /// Adds the derivatives of the scores of nodes, each times its coefficient, and of what led to them.
+    /// Adds the derivatives of the scores of nodes and their ancestors, each times its coefficient.
     void add_coefficients(const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives);
     void add_move(const FrontState& state, Side side, const FrontMove& move, double factor,
                   const FrontWeights& weights, FrontCost& cost, FrontWeights& derivatives);
     void add_start(std::size_t start, double factor, const FrontWeights& weights, FrontWeights& derivatives);
-    /// Follows the true lane from where it is; whether it is still in the beam.
+    /// Follows the true lane by one step; whether it is still in the beam.
     struct Follow {
         std::size_t node = FrontSearch::kNone;  ///< the last true state kept
         std::size_t level = 0;                  ///< where the next one belongs

@@ -18,25 +18,25 @@ struct FrontSceneOptions {
     bool respace = true;
     bool disturb = true;      ///< noise, missed cones and pose error
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
-    /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
+    /// A second course beside it, whose cones are false: better among parallel legs, worse elsewhere.
     bool other_course = false;
-    double highest_rate = 0.7;  ///< some views have so many where false positives stay at a rate of 0.5
+    double highest_rate = 0.7;  ///< some views reach it if false positives persist at a rate of 0.5
 };
 
-/// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,
-/// mirrors it or not, scales it, bends it by a smooth swirl, places its cones anew along its boundaries, lays
-/// another course beside it, and shows it from a few poses anywhere along it, with fresh false positives at
-/// any rate.
+/// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in either direction,
+/// may mirror it, scales it, bends it by a smooth swirl, places its cones again along its boundaries, lays
+/// another course beside it, and shows it from a few poses anywhere along it, with new false positives at any
+/// rate.
 class FrontScenes {
   public:
-    /// Throws InvalidInput where there is no course, or one has no centre line.
+    /// Throws InvalidInput without a course, or if one has no centre line.
     FrontScenes(std::vector<Track> courses, const FrontSceneOptions& options, std::uint64_t seed);
 
     struct Drawn {
-        std::vector<AnnotatedScene> scenes;  ///< with a ground truth; maybe none
+        std::vector<AnnotatedScene> scenes;  ///< with a ground truth; possibly none
         TrackBoundaries boundaries;
     };
-    /// The same for the same number, whatever was drawn before and on any thread.
+    /// Depends only on the number: not on earlier draws or on the thread.
     [[nodiscard]] Drawn draw(std::uint64_t number) const;
 
   private:

@@ -26,24 +26,24 @@ struct FrontTrainingOptions {
     double imitation_rate = 3e-3;       ///< learning rates of Adam, which fall to 0 along a cosine
     double search_rate = 1e-3;
     double judge_rate = 2e-3;
-    /// Share of the lanes that shall be right up to their trusted length.
+    /// Target share of lanes that are right up to their trusted length.
     double trusted = 0.995;
     std::size_t trust_draws = 1000;    ///< changed courses that least_trust is chosen on
-    std::size_t figures_every = 1000;  ///< steps between two looks at the scenes held out
+    std::size_t figures_every = 1000;  ///< steps between two measurements on the scenes held out
     std::uint64_t seed = 0;
     unsigned threads = 1;                ///< the weights are the same with any number
-    std::string checkpoint;              ///< file to go on from, written every so often; none where empty
+    std::string checkpoint;              ///< file to resume from, written regularly; none if empty
     std::size_t checkpoint_every = 200;  ///< steps
 };
 
 /// Throws InvalidInput naming the option that is out of its range.
 void validate(const FrontTrainingOptions& options);
 
-/// How good the lanes of a detector with these weights are.
+/// Quality of the lanes of a detector with these weights.
 struct FrontFigures {
     std::size_t scenes = 0;  ///< those that count
     double usable = 0.0;     ///< share
-    // Of the scenes with annotated boundaries; 0 where there are none.
+    // Over the scenes with annotated boundaries; 0 if there are none.
     double iou = 0.0;    ///< mean
     double exact = 0.0;  ///< share of ground truths
     Calibration calibration;
@@ -63,11 +63,10 @@ struct FrontProgress {
     std::vector<FrontFigures> held_out;  ///< of each set held out
 };
 
-/// Learns the weights of `front` from courses: first each move of the true lane alone, then through the
-/// search, then FrontJudge on what that ends with. The same courses, options but for `threads` and files, and
-/// build give the same weights to the last bit, also where a run was ended and went on from its checkpoint.
-/// Throws InvalidInput where an option is out of range, InputError where the checkpoint is not one of the
-/// same training.
+/// Learns the weights of `front` from courses: first each move of the true lane, then through the search,
+/// then FrontJudge on the results of the search. The same courses, options (except `threads` and files) and
+/// build give the same weights to the last bit, also if a run was stopped and resumed from its checkpoint.
+/// Throws InvalidInput if an option is out of range, InputError if the checkpoint is of another training.
 [[nodiscard]] FrontWeights train_front(const std::vector<Track>& courses,
                                        const std::vector<SceneSet>& held_out,
                                        const FrontTrainingOptions& options,

@@ -20,11 +20,11 @@ struct FrontTrainingRunOptions {
 
 struct FrontTrainingRun {
     FrontWeights weights;
-    std::string record;  ///< JSON object: what it depended on, the last figures, the commit
+    std::string record;  ///< JSON object: everything that determines the result, the last figures, the commit
 };
 
 /// From track names to weights and the record of their training. The record names tracks, not files. Throws
-/// InputError or InvalidInput; also where a track is both trained on and held out.
+/// InputError or InvalidInput; also if a track is both trained on and held out.
 [[nodiscard]] FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
                                                   const std::function<void(const FrontProgress&)>& report);
 

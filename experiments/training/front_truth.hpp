@@ -12,16 +12,16 @@
 
 namespace conelane::experiments {
 
-/// What a lane is worth in training.
+/// Weights of the risk of a lane in training.
 struct FrontRiskOptions {
-    double unusable = 0.5;  ///< added for a lane that cannot be driven by
+    double unusable = 0.5;  ///< added for an unusable lane
     double cones = 0.3;     ///< added for cones too many and too few, as a share of the true ones
-    /// Of a scene without a lane.
+    /// The risk of a scene without a lane.
     [[nodiscard]] double worst() const { return 1.0 + unusable + cones; }
 };
 
-/// The ground truth of a scene as FrontMap sees it, and what others are worth beside it. The scene and the
-/// map must outlive it. Reuses the memory of the one before.
+/// The ground truth of a scene in FrontMap, and the risk of other lanes compared with it. The scene and the
+/// map must outlive it. Reuses memory from call to call.
 class FrontTruth {
   public:
     using Cones = std::array<std::vector<Vertex>, 2>;
@@ -30,12 +30,12 @@ class FrontTruth {
     void set(const AnnotatedScene& scene, const FrontMap& map);
     [[nodiscard]] const Cones& cones() const { return cones_; }
 
-    /// 1 - IoU, and what FrontRiskOptions adds; 0 for the truth itself.
+    /// 1 - IoU, plus the terms of FrontRiskOptions; 0 for the truth itself.
     [[nodiscard]] double risk(const Cones& lane, const TrackBoundaries& boundaries,
                               const FrontRiskOptions& options) const;
     /// As SceneScore::usable.
     [[nodiscard]] bool is_usable(const Cones& lane, const TrackBoundaries& boundaries) const;
-    /// Of each boundary, how many cones come before the first one that is off (see boundary_divergence).
+    /// For each boundary, the number of cones before the first one that is off (see boundary_divergence).
     [[nodiscard]] std::array<std::size_t, 2> right_cones(const Cones& lane,
                                                          const TrackBoundaries& boundaries) const;
     /// As SceneScore::divergence_distance_m.

@@ -12,7 +12,7 @@
 
 namespace conelane::experiments {
 
-/// The parameters of a network in training; the bias of the output cancels in every difference of scores.
+/// The parameters of a network in training; the output bias cancels in every difference of scores.
 struct RankNetParameters {
     Eigen::MatrixXd hidden;  ///< a row for each unit, a column for each input
     Eigen::VectorXd hidden_bias;
@@ -27,7 +27,8 @@ struct CandidatePairs {
 };
 
 /// Binary cross-entropy of p_pred = sigmoid(Net(first) - Net(second)) with p_GT, mean over the pairs; section
-/// VII of the CLC paper. Writes the derivatives by the parameters to `gradient` where that is not null.
+/// VII of the CLC paper. Writes the derivatives with respect to the parameters to `gradient` if that is not
+/// null.
 [[nodiscard]] double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pairs,
                                RankNetParameters* gradient);
 
@@ -38,9 +39,9 @@ struct CandidateScenes {
     std::vector<Eigen::Index> begins;  ///< of each scene, and the end of the last one
 };
 
-/// Minus the quality to be expected where a scene's lane is drawn with probabilities softmax(scores), mean
-/// over the scenes. Where equation (14) is content with the order of two lanes, this is the figure that
-/// counts itself, made smooth: how good the one chosen is. Writes the derivatives as pair_loss does.
+/// Minus the expected quality if a scene's lane is drawn with probabilities softmax(scores), mean over the
+/// scenes. Equation (14) only compares two lanes; this is a smooth form of the final figure, the quality of
+/// the chosen lane. Writes the derivatives as pair_loss does.
 [[nodiscard]] double choice_loss(const RankNetParameters& parameters, const CandidateScenes& scenes,
                                  RankNetParameters* gradient);
 
@@ -53,7 +54,7 @@ struct RankNetTrainingOptions {
     std::size_t inputs = kPaperFeatureCount;  ///< the paper's features, or kLaneFeatureCount for all
     std::size_t units = 100;
     RankLoss loss = RankLoss::pairs;
-    /// In each, every candidate is the first of one pair; or for choice_loss, every scene is met once.
+    /// In each epoch, every candidate is the first of one pair; for choice_loss, every scene is used once.
     std::size_t epochs = 60;
     std::size_t pairs_a_step = 4096;  ///< a batch of 8192 candidates, as in VIII-B
     std::size_t scenes_a_step = 64;   ///< for choice_loss
@@ -62,30 +63,30 @@ struct RankNetTrainingOptions {
     /// weight decay).
     double weight_decay = 0.0;
     double iou_factor = 50.0;  ///< lambda_iou of equation (14); pairs only
-    /// Subtracted from the IoU, which is else the quality of a candidate, where it diverges below
-    /// kCriticalDivergence_m, ...
+    /// Subtracted from the IoU, the quality of a candidate, if it diverges below kCriticalDivergence_m, ...
     double divergence_penalty = 0.0;
-    /// ... and where it diverges later. 0 is the paper. A short way off the lane costs little area.
+    /// ... and if it diverges later. 0 in the paper. A short way off the lane costs little area.
     double late_divergence_penalty = 0.0;
-    /// Subtracted besides where the lane is not usable, for whichever reason: a stub that ends before it can
-    /// go wrong is no answer either. 0 is the paper.
+    /// Also subtracted if the lane is not usable, for any reason: a stub that ends before it can go wrong is
+    /// not an answer. 0 in the paper.
     double unusable_penalty = 0.0;
     /// Share of the pairs whose second candidate is the one that the network ranked first at the beginning of
-    /// the epoch; the others have any of the scene. What counts in the end is who is first. Pairs only.
+    /// the epoch; the others use any candidate of the scene. In the end only the first rank counts. Pairs
+    /// only.
     double leader_share = 0.5;
     std::uint64_t seed = 0;
     bool show_progress = true;
 };
 
-/// Trains a network from nothing. The same lists, options and build give the same weights to the last bit;
-/// runs on one thread. Throws InvalidInput where no list has two candidates or an option is out of range.
+/// Trains a network from random weights. The same lists, options and build give the same weights to the last
+/// bit; runs on one thread. Throws InvalidInput if no list has two candidates or an option is out of range.
 [[nodiscard]] RankNetWeights train_rank_net(std::span<const CandidateList> lists,
                                             const RankNetTrainingOptions& options);
 
-/// How a ranking chooses among candidates.
+/// Quality of the candidates that a ranking chooses.
 struct RankingFigures {
     std::size_t scenes = 0;
-    double mean_iou = 0.0;              ///< of the candidates chosen; 0 where a scene has none
+    double mean_iou = 0.0;              ///< of the chosen candidates; 0 for a scene without candidates
     double mean_best_iou = 0.0;         ///< the ceiling
     double near_best_share = 0.0;       ///< scenes with a candidate of IoU >= kNearGroundTruthIou
     double usable_share = 0.0;          ///< scenes whose chosen candidate can be driven by
@@ -93,7 +94,7 @@ struct RankingFigures {
     double critical_share = 0.0;        ///< scenes without candidate or whose chosen one diverges below 20 m
     double least_critical_share = 0.0;  ///< scenes in which every candidate does
 };
-/// All zero where there is no list.
+/// All zero without lists.
 [[nodiscard]] RankingFigures ranking_figures(std::span<const CandidateList> lists,
                                              const LaneRanking& ranking);
 

@@ -6,7 +6,8 @@
 
 namespace conelane::experiments {
 
-/// Turns scores into probabilities in place; returns the logarithm of their sum. Precondition: there is one.
+/// Turns scores into probabilities in place; returns the logarithm of the sum of exponentials. Precondition:
+/// at least one score.
 template <typename Number>
 double to_probabilities(std::vector<Number>& scores) {
     const double highest = *std::ranges::max_element(scores);

@@ -7,10 +7,10 @@
 
 namespace conelane::experiments {
 
-/// Another track of the same kind, to learn the lanes and not the track: stretched along an axis and across
-/// it, the axis and both factors drawn at random, up to exp(0.15) = 1.16 either way; every second one is
-/// driven the other way round. `number`: which one, from 1; it is part of the name and of what the draws
-/// depend on, with the name and the seed.
+/// A variant of a track, so that lanes are learned instead of tracks: stretched along an axis and across it,
+/// with a random axis and random factors up to exp(0.15) = 1.16 either way; every second variant is driven in
+/// the other direction. `number`, from 1, is part of the name and, with the name and the seed, determines the
+/// draws.
 [[nodiscard]] Track track_variant(Track track, std::size_t number, std::uint64_t seed);
 
 }  // namespace conelane::experiments

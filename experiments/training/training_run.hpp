@@ -26,12 +26,12 @@ struct TrainingRunOptions {
 struct TrainingRun {
     RankNetWeights weights;
     RankingFigures trained;   ///< on the lists of the training
-    RankingFigures held_out;  ///< on all candidates of the hold-out scenes; all zero where there are none
-    std::string record;       ///< JSON object: what it depended on, both figures, the commit
+    RankingFigures held_out;  ///< on all candidates of the hold-out scenes; all zero if there are none
+    std::string record;  ///< JSON object: everything that determines the result, both figures, the commit
 };
 
 /// From track names to a trained network and the record of its training. The record names tracks, not files.
-/// Throws InputError or InvalidInput; also where a track is both trained on and held out.
+/// Throws InputError or InvalidInput; also if a track is both trained on and held out.
 [[nodiscard]] TrainingRun run_training(const TrainingRunOptions& options);
 
 struct StepTrainingRunOptions {

@@ -14,16 +14,16 @@
 
 namespace conelane::experiments {
 
-/// One number that tuning moves.
+/// A number that tuning changes.
 struct TunableParameter {
     std::string_view key;
     double lowest;
     double highest;
     bool logarithmic;  ///< equal steps are equal ratios
-    double start;      ///< set by hand, so that it has seen no course that a tuning holds out
+    double start;      ///< set by hand, so independent of the courses that a tuning holds out
 };
 
-/// A detector whose parameters can be tuned without knowing what they mean.
+/// A detector whose parameters can be tuned without knowledge of their meaning.
 struct TunableDetector {
     std::string_view name;
     std::vector<TunableParameter> parameters;
@@ -34,17 +34,17 @@ struct TunableDetector {
 /// All of them: delaunay-beam and astar-lane.
 [[nodiscard]] const std::vector<TunableDetector>& tunable_detectors();
 
-/// Throws InvalidInput that lists the names where there is none of that name.
+/// Throws InvalidInput that lists the names for an unknown name.
 [[nodiscard]] const TunableDetector& find_tunable_detector(std::string_view name);
 
-/// What values reach on scenes. Better is usable more often; what is usable equally often is better by IoU.
+/// Figures of values on scenes. More often usable is better; if equal, higher IoU is better.
 struct DetectorFigure {
     std::size_t scenes = 0;
     double usable = 0.0;  ///< share of the scenes
     double iou = 0.0;     ///< mean
 
-    /// What tuning makes as large as it can: the share usable plus a tenth of the mean IoU, which leads where
-    /// a share of a few hundred scenes does not move.
+    /// The objective of tuning: the share usable plus a tenth of the mean IoU, which guides the search where
+    /// a share of a few hundred scenes does not change.
     [[nodiscard]] double value() const { return usable + 0.1 * iou; }
 };
 
@@ -65,9 +65,9 @@ struct TunedDetector {
 };
 
 /// Random search: the start, then points drawn uniformly from the ranges for two fifths of the evaluations,
-/// then around the best so far in steps that shrink from a quarter of each range to a fortieth. The best
-/// point evaluated is the answer. The same scenes, seed and options give the same answer. `advance` is called
-/// after each evaluation.
+/// then points around the best so far in steps that shrink from a quarter of each range to a fortieth. The
+/// best point evaluated is the answer. The same scenes, seed and options give the same answer. `advance` is
+/// called after each evaluation.
 [[nodiscard]] TunedDetector tune_detector(const TunableDetector& detector, const SceneSet& set,
                                           const DetectorTuningOptions& options,
                                           const std::function<void()>& advance = {});

@@ -15,43 +15,43 @@
 
 namespace conelane::experiments {
 
-/// What tuning makes as large as it can, as a mean over scenes.
+/// The objective of a tuning, as a mean over scenes.
 enum class TuningObjective {
     accuracy,  ///< share accurate (RLD paper, IV-B)
     iou,       ///< mean intersection over union (CLC paper)
     success,   ///< share successful (CLC paper, Table I)
-    usable,    ///< share that can be driven by
+    usable,    ///< share usable
 };
 [[nodiscard]] std::string_view to_string(TuningObjective objective);
 
 struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;
-    std::optional<std::size_t> nearest{};  ///< cone-set size; all cones where absent
+    std::optional<std::size_t> nearest{};  ///< cone-set size; all cones if absent
     std::optional<std::size_t> context{};  ///< as ConeSet::context
-    /// Slow parameters are no good ones: a scene whose search takes longer, or more nodes, has value 0.
+    /// Slow parameters are not useful: a scene whose search takes more time or nodes has value 0.
     double time_limit_ms = 20.0;
     std::int64_t max_nodes = 1000;
-    /// Once more of the scenes than this have run into the time limit, all scenes have value 0.
+    /// If more than this number of scenes have reached the time limit, all scenes have value 0.
     double max_timed_out = 0.02;
     unsigned threads = 1;
 };
 
-/// A scene solved under some parameters, and what is answered.
+/// A scene solved with some parameters, and its answer.
 struct EvaluatedScene : SolvedScene {
-    Scene seen;  ///< the cone set, or the context where that is larger
+    Scene seen;  ///< the cone set, or the context if that is larger
     LaneAnswer answer;
 };
 [[nodiscard]] EvaluatedScene evaluate(RldSolver& solver, const Scene& scene, const RldParameters& parameters,
                                       const EvaluationOptions& options);
 
-/// The lane of a lane graph over the cones seen, cut to the cone set; not found where nothing is left of it.
+/// The lane of a lane graph over the cones seen, cut to the cone set; not found if nothing is left.
 [[nodiscard]] LaneAnswer answer_of(const LaneGraph& graph, const Scene& seen,
                                    const EvaluationOptions& options);
-/// The value of an answer under the objective, in [0, 1]; 0 where no lane was found.
+/// The value of an answer under the objective, in [0, 1]; 0 without a lane.
 [[nodiscard]] double value_of(const LaneAnswer& answer, const AnnotatedScene& scene,
                               const TrackBoundaries& boundaries, const EvaluationOptions& options);
 
-/// The number of nearest cones that a lane is found among; all cones where absent.
+/// Number of nearest cones that a lane is found among; all cones if absent.
 [[nodiscard]] std::optional<std::size_t> seen_count(const EvaluationOptions& options);
 
 /// The values that parameters reach on the scenes of one track, rate and range.
@@ -68,7 +68,7 @@ struct LapFigure {
 /// Scenes that parameters are evaluated on. Each is solved to optimality by path-pair.
 class Evaluation {
   public:
-    /// Keeps the scenes that the objective is defined on. Throws InvalidInput where there is none.
+    /// Keeps the scenes on which the objective is defined. Throws InvalidInput if there are none.
     Evaluation(SceneSet set, const EvaluationOptions& options);
 
     /// A figure for each lap, in the order of the scenes. The same for any number of threads as long as no

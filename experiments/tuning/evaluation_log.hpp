@@ -12,16 +12,16 @@
 
 namespace conelane::experiments {
 
-/// Every evaluation on file as soon as it is made, a line each behind a first line with all that the figures
-/// depend on. What the file holds is not evaluated again: a tuning that was stopped goes on, and one that
-/// asks for more evaluations starts where the last ended.
+/// Stores every evaluation in a file at once, a line each, after a first line with everything that the
+/// figures depend on. Stored points are not evaluated again: a tuning that was stopped resumes, and one with
+/// more evaluations starts where the last one ended.
 class EvaluationLog {
   public:
-    /// `header`: a JSON object. An empty path keeps the memory but no file. An unfinished last line is
-    /// dropped. Throws InputError where the file holds another header or is none of this kind.
+    /// `header`: a JSON object. With an empty path, evaluations are kept in memory only. An unfinished last
+    /// line is dropped. Throws InputError if the file has another header or format.
     EvaluationLog(std::filesystem::path file, const std::string& header, Evaluate evaluate);
 
-    /// From memory, or evaluated and written through. Throws InputError where the disk is full.
+    /// From memory, or evaluated and stored. Throws InputError if the disk is full.
     [[nodiscard]] std::vector<LapFigure> operator()(const RldParameters& parameters);
 
     [[nodiscard]] std::size_t evaluations() const { return figures_.size(); }

@@ -13,11 +13,11 @@
 
 namespace conelane::experiments {
 
-/// Why the lane graph of least cost is, or is not, accurate on a scene. The first that fits.
+/// Why the lane graph of least cost is, or is not, accurate on a scene. The first cause that applies.
 enum class FailureCause {
     no_ground_truth,  ///< the cone set holds fewer than two cones of a boundary: not counted
     accurate,
-    // Inaccurate, and the ground truth itself is cut off:
+    // Inaccurate, and the ground truth itself is infeasible:
     breaks_spacing,    ///< by (27): an edge too short or too long
     breaks_angle,      ///< by (28): a turn too sharp
     breaks_width,      ///< by (6)-(8): its boundaries too close
@@ -37,9 +37,9 @@ enum class FailureCause {
 inline constexpr std::size_t kFailureCauseCount = 16;
 [[nodiscard]] std::string_view to_string(FailureCause cause);
 
-/// Cones that are chosen and not in the ground truth, or missed, by where on their boundary they are: before
-/// the first cone that it shares with the ground truth, behind the last, or between. A boundary that shares
-/// none is lost, with all cones of both.
+/// Cones that are chosen and not in the ground truth, or missed, by their place on the boundary: before the
+/// first cone that it shares with the ground truth, after the last one, or between. A boundary that shares
+/// none is lost, with all its cones.
 struct WrongCones {
     std::size_t near_end = 0;
     std::size_t inside = 0;

@@ -9,7 +9,7 @@
 
 namespace conelane::experiments {
 
-/// What each weight of the objective multiplies: of (29), and of the terms for color and shape beside it.
+/// The factor of each weight of the objective: of (29), and of the terms for color and shape.
 enum class ObjectiveTerm { benefit, spacing, angle, heading, color, unevenness, facing, near_ends };
 inline constexpr std::size_t kObjectiveTermCount = 8;
 
@@ -18,8 +18,8 @@ inline constexpr std::array<double RldParameters::*, kObjectiveTermCount> kObjec
     &RldParameters::w_b,     &RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p,
     &RldParameters::w_color, &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n};
 
-/// Each term of a lane graph's objective without its weight: the objective is the sum of weights times these.
-/// Benefit and near ends are at most zero.
+/// Each term of a lane graph's objective without its weight: the objective is the sum of weights times these
+/// terms. Benefit and near ends are at most zero.
 using ObjectiveSums = std::array<double, kObjectiveTermCount>;
 
 /// Zero for w_b, w_u and w_v where those are zero. Precondition: every edge is listed in the problem.

@@ -8,7 +8,7 @@
 
 namespace conelane::experiments {
 
-/// A parameter that tuning moves, and how far.
+/// A parameter that tuning changes, and its range.
 struct TunedParameter {
     std::string_view key;  ///< as in rld_parameter_fields()
     double RldParameters::*value;
@@ -17,17 +17,18 @@ struct TunedParameter {
     bool logarithmic;  ///< equal steps are equal ratios
 };
 
-/// What tuning moves. The rest would move nothing: w_b sets the unit of the objective, and d_t, theta_t with
-/// their weights and limits only enter as w_s / d_t^4, d_t^4 s_crit, w_t / theta_t^4 and theta_t^4 t_crit. An
-/// expected angle below pi would prefer bends to straights. The pairing stays as well.
-/// Where the shape costs have a weight in `start`, their parameters are moved in place of the limits.
+/// The parameters that tuning changes. The others have no effect of their own: w_b sets the unit of the
+/// objective, and d_t, theta_t with their weights and limits occur only as w_s / d_t^4, d_t^4 s_crit, w_t /
+/// theta_t^4 and theta_t^4 t_crit. An expected angle below pi would prefer bends to straights. The pairing
+/// stays too. If the shape costs have a weight in `start`, their parameters are changed instead of the
+/// limits.
 [[nodiscard]] std::span<const TunedParameter> tuned_parameters(const RldParameters& start);
 
 /// To four decimals: short numbers in files, and the same ones on every machine, whose logarithms differ in
 /// the last bits.
 [[nodiscard]] double rounded(double value);
 
-/// The parameters that are tuned from this start as a point of the unit cube; what lies outside its range is
+/// The parameters that are tuned from this start as a point of the unit cube; values outside a range are
 /// moved to its end.
 [[nodiscard]] std::vector<double> to_unit_cube(const RldParameters& parameters);
 

@@ -14,8 +14,8 @@
 namespace conelane::experiments {
 
 struct TunerOptions {
-    std::size_t folds = 4;          ///< of tracks; fewer than two: none is held out
-    std::size_t evaluations = 400;  ///< at most, in each fit
+    std::size_t folds = 4;          ///< number of groups of tracks; below two, none is held out
+    std::size_t evaluations = 400;  ///< largest number in each fit
     std::uint64_t seed = 0;
 };
 
@@ -38,20 +38,20 @@ struct Tuned {
 /// The figures of parameters on every lap; the same laps in each call.
 using Evaluate = std::function<std::vector<LapFigure>(const RldParameters&)>;
 
-/// Parameters that may be better than the start on the tracks named; see fit_weights_in_rounds.
+/// Parameters that may be better than the start on the named tracks; see fit_weights_in_rounds.
 using Propose = std::function<std::vector<RldParameters>(const RldParameters& start,
                                                          const std::set<std::string>& tracks)>;
 
 /// Mean over the scenes of the laps; 0 without laps.
 [[nodiscard]] double mean_over_scenes(std::span<const LapFigure> laps);
 
-/// Parameters that make the mean over scenes as large as the search finds, in the ranges of
-/// tuned_parameters(start). Each fit tries what is proposed, then from the best of these and the start
+/// Parameters that maximise the mean over scenes as far as the search finds, in the ranges of
+/// tuned_parameters(start). Each fit evaluates the proposals, then from the best of these and the start runs
 /// NLopt's controlled random search (GN_CRS2_LM) around it on 30 % of the evaluations, then Subplex
-/// (LN_SBPLX) from the best point in the whole ranges; what counts is the best point evaluated. Track i, in
-/// the order of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so that
-/// memory in `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
-/// InvalidInput where there are fewer tracks than folds, and what `evaluate` throws.
+/// (LN_SBPLX) from the best point in the whole ranges; the best point evaluated counts. Track i, in the order
+/// of the laps, belongs to fold i modulo `folds`. Every fit draws the same first points, so memory in
+/// `evaluate` saves most of a fold's work. The same seed and figures give the same answer. Throws
+/// InvalidInput if there are fewer tracks than folds, and the exceptions of `evaluate`.
 [[nodiscard]] Tuned tune(const Evaluate& evaluate, const RldParameters& start, const TunerOptions& options,
                          const Propose& propose = {});
 

@@ -26,16 +26,17 @@ struct RatedGraph {
 /// Some of a scene's lane graphs.
 using RatedGraphs = std::vector<RatedGraph>;
 
-/// Mean over the scenes of the expected value where each scene's lane graph is drawn with probability
-/// proportional to exp(-kSharpness objective / w_b): the value of the one of least cost, made smooth. 0
-/// without scenes. Writes the derivatives by the logarithms of the weights to `gradient` where that is not
-/// null; 0 for w_b, the unit, which no fit moves. Preconditions: no scene without lane graphs; w_b > 0.
+/// Mean over the scenes of the expected value if each scene's lane graph is drawn with probability
+/// proportional to exp(-kSharpness objective / w_b): a smooth form of the value of the lane graph of least
+/// cost. 0 without scenes. Writes the derivatives with respect to the logarithms of the weights to `gradient`
+/// if that is not null; 0 for w_b, the unit, which no fit changes. Preconditions: no scene without lane
+/// graphs; w_b > 0.
 inline constexpr double kSharpness = 8.0;
 [[nodiscard]] double expected_value(std::span<const RatedGraphs> scenes, const RldParameters& parameters,
                                     ObjectiveSums* gradient);
 
-/// The parameters with weights that make expected_value as large as NLopt's MMA finds from those of
-/// `start`, among the weights that tuned_parameters(start) moves and in their ranges, rounded to four
+/// The parameters with weights that maximise expected_value as far as NLopt's MMA finds, starting from those
+/// of `start`, among the weights that tuned_parameters(start) changes and in their ranges, rounded to four
 /// decimals.
 [[nodiscard]] RldParameters fit_weights(std::span<const RatedGraphs> scenes, const RldParameters& start);
 

@@ -8,8 +8,8 @@
 
 namespace conelane::playground {
 
-/// JSON, written from front to back. Numbers have as many digits as it takes to read the same number; one
-/// that is not finite is null.
+/// JSON, written from front to back. Numbers have as many digits as needed to read back the same number; a
+/// number that is not finite is null.
 class JsonText {
   public:
     [[nodiscard]] const std::string& text() const { return text_; }
@@ -34,7 +34,7 @@ class JsonText {
     JsonText& member(std::string_view name, const Value& given) {
         return key(name).value(given);
     }
-    /// Nothing where the value is absent.
+    /// Nothing if the value is absent.
     template <class Value>
     JsonText& member(std::string_view name, const std::optional<Value>& given) {
         return given ? member(name, *given) : *this;

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 /// The sub-commands of the program `conelane`, a file each. `add_X` declares the options of X; the callback
-/// runs it. Whatever a command throws becomes one line on stderr and exit code 2.
+/// runs it. An exception of a command becomes one line on stderr and exit code 2.
 namespace conelane::experiments {
 
 void add_scenes_command(CLI::App& program);

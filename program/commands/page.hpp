@@ -4,13 +4,13 @@
 
 namespace conelane::experiments {
 
-/// Throws InputError where the directory holds a report.html that is no page of this program: it would be
+/// Throws InputError if the directory holds a report.html that is not a page of this program: it would be
 /// lost.
 void require_own_page(const std::filesystem::path& directory);
 
-/// Writes report.html beside the results of a comparison and says where all of it is. The results are whole
-/// without the page, which takes Python and matplotlib: where these are missing, that is said instead. Throws
-/// what else keeps the page from being made, such as a full disk.
+/// Writes report.html beside the results of a comparison and prints where they are. The results are complete
+/// without the page, which needs Python and matplotlib: if these are missing, it prints so. Throws if another
+/// failure prevents the page, such as a full disk.
 void write_page(const std::filesystem::path& directory);
 
 }  // namespace conelane::experiments

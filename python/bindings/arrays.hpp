@@ -15,7 +15,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-/// From and to NumPy. What an array may not be is an InvalidInput that names the argument; Python gets it as
+/// From and to NumPy. An invalid array is an InvalidInput that names the argument; Python gets it as
 /// ValueError.
 namespace conelane::python {
 
@@ -30,8 +30,8 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] std::vector<Point> points(py::handle object, const char* key);
 /// (x, y, yaw)
 [[nodiscard]] Pose pose(py::handle object);
-/// An (N, 2) array and beside it, where they are not None, N ids, colors and confidences. Without ids a cone
-/// has its index.
+/// An (N, 2) array and, unless they are None, N ids, colors and confidences. Without ids a cone has its
+/// index.
 [[nodiscard]] std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
                                       py::handle confidences);
 /// Ids of the cones that an array of indices names.
@@ -50,7 +50,7 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] Indices ids(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<std::uint8_t> colors(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<double> confidences(std::span<const Cone> cones);
-/// Where the cones of these ids are in the list. Throws InvalidInput naming `key` where one is not.
+/// Positions of the cones with these ids in the list. Throws InvalidInput naming `key` for an unknown id.
 [[nodiscard]] std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,
                                                    std::string_view key);
 

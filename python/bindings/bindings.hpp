@@ -9,13 +9,13 @@
 
 #include <pybind11/pybind11.h>
 
-/// The module conelane._core. Each function adds its part; docstrings begin with the signature, since
-/// pybind11 knows it only in terms of C++.
+/// The module conelane._core. Each function adds its part; docstrings begin with the Python signature, since
+/// pybind11's own would have C++ types.
 namespace conelane::python {
 
 namespace py = pybind11;
 
-/// A scene as Python holds it: nothing changes it, so lanes may refer to it.
+/// A scene as Python holds it: immutable, so lanes may refer to it.
 using SceneObject = std::shared_ptr<const AnnotatedScene>;
 
 /// An answer and the scene that it is about.
@@ -24,8 +24,8 @@ struct LaneObject {
     std::shared_ptr<const Scene> scene;
 };
 
-/// What Python gives a detector of that name beside it. Throws InvalidInput where the detector does not use
-/// an option. That there is no such detector is left to make_detector.
+/// The options that Python gives a detector of that name. Throws InvalidInput if the detector does not use an
+/// option. make_detector reports an unknown name.
 [[nodiscard]] DetectorOptions detector_options(const std::string& name, const py::kwargs& given);
 
 void add_scenes(py::module_& module);
