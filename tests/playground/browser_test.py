@@ -4,7 +4,9 @@ error. Exit code 77 without Chromium or page."""
 
 import json
 import os
+import subprocess
 import sys
+import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
@@ -207,6 +209,18 @@ class PlaygroundTest(unittest.TestCase):
         small = self.value("""[...document.querySelectorAll("button, select")].filter((one) => one.offsetParent !== null)
             .filter((one) => one.getBoundingClientRect().height < 28).map((one) => one.id)""")
         self.assertEqual(small, [])
+
+    def test_its_picture_is_made_by_the_script(self):
+        script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "playground", "screenshot")
+        with tempfile.TemporaryDirectory() as folder:
+            picture = os.path.join(folder, "page.png")
+            done = subprocess.run([sys.executable, script, PAGE, picture, "--width", "640", "--height", "480"], check=False,
+                                  capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            with open(picture, "rb") as stream:
+                head = stream.read(24)
+        self.assertEqual(head[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual([int.from_bytes(head[i:i + 4], "big") for i in (16, 20)], [640, 480])
 
     def test_theme(self):
         self.open()

@@ -1,5 +1,6 @@
 // page_code_test.mjs: what of the page needs no browser: files, links, what the car sees.
 import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
 
 const page = new URL("../../playground/page/", import.meta.url);
 const { readBytes, readText } = await import(new URL("files.mjs", page));
@@ -114,6 +115,20 @@ const tests = {
     assert.ok(run.car.x > 25 && run.car.x <= 30 && Math.abs(run.car.y) < 0.1, JSON.stringify(run.car));
     assert.equal(run.hit.size, 0);
   },
+};
+
+tests["what a file of the page imports is exported by the file that it names"] = () => {
+  const files = readdirSync(page).filter((name) => name.endsWith(".mjs"));
+  const textOf = Object.fromEntries(files.map((name) => [name, readFileSync(new URL(name, page), "utf8")]));
+  const exported = (text) => [...text.matchAll(/^export (?:async )?(?:function|class|const) (.+)$/gm)].join("\n");
+  for (const [name, text] of Object.entries(textOf)) {
+    for (const [, names, from] of text.matchAll(/^import \{([^}]*)\} from "\.\/([^"]+)";$/gm)) {
+      if (!(from in textOf)) continue; // the module, for the worker
+      for (const one of names.split(",").map((word) => word.trim()).filter(Boolean))
+        assert.match(exported(textOf[from]), new RegExp(`(?<![\\w$])${one.replace("$", "\\$")}(?![\\w$])`), `${name}: ${one} of ${from}`);
+    }
+    assert.ok(text.split("\n").length < 350, `${name} is long: split it by subject`);
+  }
 };
 
 let failed = 0;
