@@ -20,13 +20,16 @@ struct FrontSceneOptions {
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
     bool other_course = false;
+    /// Half of the draws show colors, which are wrong or not seen at any rate. Else none does.
+    bool colors = true;
+    bool noise_scenes = true;   ///< a fifth of the draws has a scene of false cones alone, for the judge
     double highest_rate = 0.7;  ///< some views have so many where false positives stay at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,
 /// mirrors it or not, scales it, bends it by a smooth swirl, places its cones anew along its boundaries, lays
 /// another course beside it, and shows it from a few poses anywhere along it, with fresh false positives at
-/// any rate.
+/// any rate, and with colors or without.
 class FrontScenes {
   public:
     /// Throws InvalidInput where there is no course, or one has no centre line.
@@ -35,6 +38,7 @@ class FrontScenes {
     struct Drawn {
         std::vector<AnnotatedScene> scenes;  ///< with a ground truth; maybe none
         TrackBoundaries boundaries;
+        std::vector<Scene> noise;  ///< false cones alone
     };
     /// The same for the same number, whatever was drawn before and on any thread.
     [[nodiscard]] Drawn draw(std::uint64_t number) const;
