@@ -4,6 +4,7 @@
 #include "model/geometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_set>
 #include <utility>
@@ -15,6 +16,18 @@ constexpr const char* kNotFinite = "must be a finite number";
 
 std::string key_of(std::size_t cone, const char* member) {
     return "cones[" + std::to_string(cone) + "]." + member;
+}
+
+void require_probabilities(const ColorProbabilities& given, std::size_t cone) {
+    constexpr double kOff = 1e-3;  // printed with three digits they are off by less
+    double sum = 0.0;
+    for (const double value : {given.unknown, given.blue, given.yellow, given.orange, given.big_orange}) {
+        if (!(value >= 0.0 && value <= 1.0))
+            throw InvalidInput(key_of(cone, "color_probabilities"), "must be in [0, 1]");
+        sum += value;
+    }
+    if (std::abs(sum - 1.0) > kOff)
+        throw InvalidInput(key_of(cone, "color_probabilities"), "must add up to 1");
 }
 
 }  // namespace
@@ -45,6 +58,36 @@ std::string_view to_string(ConeColor color) {
     return "unknown";
 }
 
+ColorProbabilities probabilities_of(ConeColor color) {
+    ColorProbabilities result;
+    switch (color) {
+        case ConeColor::blue:
+            result.blue = 1.0;
+            break;
+        case ConeColor::yellow:
+            result.yellow = 1.0;
+            break;
+        case ConeColor::orange:
+            result.orange = 1.0;
+            break;
+        case ConeColor::unknown:
+            result.unknown = 1.0;
+            break;
+    }
+    return result;
+}
+
+ConeColor most_probable_color(const ColorProbabilities& probabilities) {
+    const std::array<std::pair<double, ConeColor>, 4> labels{
+        {{probabilities.unknown, ConeColor::unknown},
+         {probabilities.blue, ConeColor::blue},
+         {probabilities.yellow, ConeColor::yellow},
+         {probabilities.orange + probabilities.big_orange, ConeColor::orange}}};
+    const auto best = std::ranges::max_element(labels, {}, &std::pair<double, ConeColor>::first);
+    const auto is_best = [&](const auto& label) { return label.first == best->first; };
+    return std::ranges::count_if(labels, is_best) > 1 ? ConeColor::unknown : best->second;
+}
+
 void validate(const Scene& scene) {
     std::vector<ConeId> ids;
     validate(scene, ids);
@@ -62,6 +105,7 @@ void validate(const Scene& scene, std::vector<ConeId>& ids) {
         if (!(cone.confidence >= 0.0 && cone.confidence <= 1.0)) {
             throw InvalidInput(key_of(i, "confidence"), "must be in [0, 1]");
         }
+        if (cone.color_probabilities) require_probabilities(*cone.color_probabilities, i);
     }
     ids.clear();
     for (const Cone& cone : scene.cones) ids.push_back(cone.id);

@@ -3,23 +3,21 @@
 #include "evaluation/files/file_text.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/scenes/cone_colors.hpp"
 #include "evaluation/tracks/run_log.hpp"
 
-#include <array>
 #include <string_view>
 #include <utility>
 
 namespace conelane {
 namespace {
 
-constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::orange, ConeColor::unknown};
-
 Cone read_cone(const JsonNode& json) {
     Cone cone;
     cone.id = kNoId;
     if (const auto id = json.find("id")) cone.id = id->integer();
     cone.position = {json.member("x").number(), json.member("y").number()};
-    if (const auto color = json.find("color")) cone.color = color->one_of(kColors);
+    read_color(json, cone);
     if (const auto confidence = json.find("confidence")) cone.confidence = confidence->number();
     return cone;
 }

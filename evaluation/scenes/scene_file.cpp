@@ -4,6 +4,7 @@
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/scenes/cone_colors.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_pair.hpp"
 
@@ -20,13 +21,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::array kColors{ConeColor::blue, ConeColor::yellow, ConeColor::orange, ConeColor::unknown};
-
 Cone read_cone(const JsonNode& json) {
     Cone cone;
     cone.id = json.member("id").integer();
     cone.position = {json.member("x").number(), json.member("y").number()};
-    if (const auto color = json.find("color")) cone.color = color->one_of(kColors);
+    read_color(json, cone);
     if (const auto confidence = json.find("confidence")) cone.confidence = confidence->number();
     return cone;
 }
@@ -112,6 +111,8 @@ ordered_json to_json(const AnnotatedScene& annotated, const std::string& key) {
                          {"y", cone.position.y()},
                          {"color", to_string(cone.color)},
                          {"confidence", cone.confidence}});
+        if (cone.color_probabilities)
+            cones.back()["color_probabilities"] = color_probabilities_json(*cone.color_probabilities);
     }
     ordered_json json{
         {"id", scene.id},

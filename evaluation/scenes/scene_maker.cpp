@@ -65,6 +65,7 @@ class SceneMaker {
         }
         scene.cones = seen_cones(sights);
         mistake_colors(scene.cones);
+        hide_colors(scene.cones);
         if (course_.track.driven.empty()) {
             Lane lane = ground_truth(sights, scene);
             if (lane.left.size() < 2 || lane.right.size() < 2) return std::nullopt;
@@ -102,6 +103,8 @@ class SceneMaker {
             id += "/" + condition.name;
         }
         if (options_.color_error_rate > 0.0) id += fmt::format("/color_error_{}", options_.color_error_rate);
+        if (options_.color_unknown_rate > 0.0)
+            id += fmt::format("/color_unknown_{}", options_.color_unknown_rate);
         if (options_.with_confidence) id += "/confidence";
         if (options_.nearest) id += fmt::format("/nearest_{}", *options_.nearest);
         return id;
@@ -175,6 +178,15 @@ class SceneMaker {
             } else if (cone.color == ConeColor::yellow) {
                 cone.color = ConeColor::blue;
             }
+        }
+    }
+
+    void hide_colors(std::vector<Cone>& cones) const {
+        if (options_.color_unknown_rate == 0.0) return;
+        SceneGenerator random = generator("unknown colors");
+        boost::random::uniform_01<double> uniform;
+        for (Cone& cone : cones) {
+            if (uniform(random) < options_.color_unknown_rate) cone.color = ConeColor::unknown;
         }
     }
 

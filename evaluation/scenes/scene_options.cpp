@@ -72,6 +72,10 @@ void validate(const SceneOptions& options) {
     if (options.color_error_rate > 0.0 && !options.with_color) {
         throw InvalidInput("color-error", "needs scenes with colour");
     }
+    require_between(options.color_unknown_rate, 0.0, 1.0, "color-unknown");
+    if (options.color_unknown_rate > 0.0 && !options.with_color) {
+        throw InvalidInput("color-unknown", "needs scenes with colour");
+    }
     if (options.threads < 1 || options.threads > 1024) {
         throw InvalidInput("threads", "must be in [1, 1024]");
     }

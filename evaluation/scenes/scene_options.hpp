@@ -27,6 +27,10 @@ struct SceneOptions {
     bool with_color = false;  ///< false: every cone is of unknown color
     /// Share of the map's blue and yellow cones seen in the other color, in [0, 1]; only with color.
     double color_error_rate = 0.0;
+    /// Share of the map's cones whose color is not seen, in [0, 1]; only with color. Of the other blue or
+    /// yellow cones color_error_rate is wrong. False positives are blue, yellow or of unknown color, a third
+    /// each, whatever the two rates are.
+    double color_unknown_rate = 0.0;
     /// Without it every confidence is 1. A cone of a boundary draws its confidence from Beta(5, 2) (mean
     /// 0.71), any other point from Beta(2, 4) (mean 0.33): the cone's is the higher one in 93 % of such
     /// pairs.

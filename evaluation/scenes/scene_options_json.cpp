@@ -13,6 +13,7 @@ nlohmann::ordered_json scene_options_json(const SceneOptions& options) {
         {"miss", options.miss_rate.value_or(0.0)},
         {"color", options.with_color},
         {"color_error", options.color_error_rate},
+        {"color_unknown", options.color_unknown_rate},
         {"confidence", options.with_confidence},
         {"seed", options.seed}};
     if (!options.conditions.empty()) json["condition"] = condition_names(options);

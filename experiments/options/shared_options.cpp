@@ -166,8 +166,13 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         "--persist,!--no-persist", [&options](std::int64_t count) { options.persistent = count > 0; },
         "false positives keep id and place along a lap; without it they are drawn at each pose");
     command.add_flag("--color", options.with_color, "scenes carry the colours of their cones");
-    command.add_option("--color-error", options.color_error_rate,
-                       "with --color: share of the cones seen in the other boundary's colour");
+    command.add_option(
+        "--color-wrong,--color-error", options.color_error_rate,
+        "with --color: share of the cones whose colour is seen that show the other boundary's");
+    command.add_option(
+        "--color-unknown", options.color_unknown_rate,
+        "with --color: share of the course's cones whose colour is not seen; of false positives "
+        "it is a third");
     command.add_flag("--confidence", options.with_confidence,
                      "scenes carry simulated confidences, lower ones for false positives");
     command.add_option("--seed", options.seed, "base seed")

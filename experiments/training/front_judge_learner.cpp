@@ -25,32 +25,16 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
                                                  FrontWeights* derivatives) {
     Loss loss;
     loss.risk = options.risk.worst();
-    front_.begin(scene.scene, cost, options.search);
-    SearchBudget unlimited;
-    front_.run(unlimited);
-    truth_.set(scene, front_.map());
-    front_.sort_finished(FrontJudge::kContenders);
-    contenders_.clear();
-    lanes_.clear();
-    risks_.clear();
-    for (const FrontSearch::Finished& lane : front_.finished()) {
-        if (contenders_.size() == FrontJudge::kContenders) break;
-        FrontTruth::Cones cones;
-        front_.cones(lane.parent, cones);
-        even_far_ends(front_.map(), cones);
-        contenders_.push_back({lane.parent, lane.score});
-        risks_.push_back(truth_.risk(cones, boundaries, options.risk));
-        lanes_.push_back(std::move(cones));
-    }
+    search(scene.scene, cost, options);
     if (contenders_.empty()) return loss;
+    truth_.set(scene, front_.map());
+    risks_.clear();
+    for (const FrontTruth::Cones& lane : lanes_)
+        risks_.push_back(truth_.risk(lane, boundaries, options.risk));
     judge.look(front_, contenders_);
     add_rank(weights, judge, options, loss, derivatives);
-
-    const auto is_lane = [&](std::size_t place) {
-        return lanes_[place][kLeft].size() > 1 && lanes_[place][kRight].size() > 1;
-    };
-    const auto chosen = std::ranges::find_if(judge.order(), is_lane);
-    if (chosen == judge.order().end()) return loss;
+    const std::optional<std::size_t> chosen = answered(judge);
+    if (!chosen) return loss;
     loss.found = true;
     loss.risk = risks_[*chosen];
     loss.is_usable = truth_.is_usable(lanes_[*chosen], boundaries);
@@ -64,6 +48,49 @@ FrontJudgeLearner::Loss FrontJudgeLearner::judge(const AnnotatedScene& scene,
     add_right(boundaries, weights, judge, *chosen, loss, derivatives);
     loss.trust_where_wrong = trust_where_wrong(boundaries, judge, *chosen);
     return loss;
+}
+
+double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost,
+                                      FrontJudge& judge, const FrontJudgeLossOptions& options,
+                                      FrontWeights& derivatives) {
+    search(scene, cost, options);
+    if (contenders_.empty()) return 0.0;
+    judge.look(front_, contenders_);
+    const std::optional<std::size_t> chosen = answered(judge);
+    if (!chosen) return 0.0;
+    const double confidence = judge.confidence(*chosen);
+    add_derivatives(weights.usable, judge.features(*chosen), static_cast<float>(confidence),
+                    derivatives.usable);
+    const FrontJudge::Step& first = judge.steps()[judge.path(*chosen).front()];
+    add_derivatives(weights.right, first.inputs, static_cast<float>(first.right), derivatives.right);
+    return cross_entropy(confidence, false) + cross_entropy(first.right, false);
+}
+
+/// Sets the contenders and their lanes, the best by its score first.
+void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontJudgeLossOptions& options) {
+    front_.begin(scene, cost, options.search);
+    SearchBudget unlimited;
+    front_.run(unlimited);
+    front_.sort_finished(FrontJudge::kContenders);
+    contenders_.clear();
+    lanes_.clear();
+    for (const FrontSearch::Finished& lane : front_.finished()) {
+        if (contenders_.size() == FrontJudge::kContenders) break;
+        FrontTruth::Cones cones;
+        front_.cones(lane.parent, cones);
+        even_far_ends(front_.map(), cones);
+        contenders_.push_back({lane.parent, lane.score});
+        lanes_.push_back(std::move(cones));
+    }
+}
+
+/// The contender that the detector answers; nothing where none is a lane.
+std::optional<std::size_t> FrontJudgeLearner::answered(const FrontJudge& judge) const {
+    const auto is_lane = [&](std::size_t place) {
+        return lanes_[place][kLeft].size() > 1 && lanes_[place][kRight].size() > 1;
+    };
+    const auto chosen = std::ranges::find_if(judge.order(), is_lane);
+    return chosen == judge.order().end() ? std::nullopt : std::optional(*chosen);
 }
 
 void FrontJudgeLearner::add_rank(const FrontWeights& weights, const FrontJudge& judge,

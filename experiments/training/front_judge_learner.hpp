@@ -3,6 +3,8 @@
 #include "experiments/training/front_truth.hpp"
 #include "graph_search/front/front_judge.hpp"
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace conelane::experiments {
@@ -36,7 +38,14 @@ class FrontJudgeLearner {
                FrontCost& cost, FrontJudge& judge, const FrontJudgeLossOptions& options,
                FrontWeights* derivatives);
 
+    /// The same of a scene of false cones alone, in which no lane is usable and no first pair right: the
+    /// cross-entropy of `usable`, and of `right` for the first pair. 0 where no lane is found.
+    double judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost, FrontJudge& judge,
+                       const FrontJudgeLossOptions& options, FrontWeights& derivatives);
+
   private:
+    void search(const Scene& scene, FrontCost& cost, const FrontJudgeLossOptions& options);
+    [[nodiscard]] std::optional<std::size_t> answered(const FrontJudge& judge) const;
     void add_rank(const FrontWeights& weights, const FrontJudge& judge, const FrontJudgeLossOptions& options,
                   Loss& loss, FrontWeights* derivatives) const;
     void add_right(const TrackBoundaries& boundaries, const FrontWeights& weights, const FrontJudge& judge,

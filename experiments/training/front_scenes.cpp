@@ -1,6 +1,7 @@
 #include "experiments/training/front_scenes.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/scenes/course.hpp"
 #include "evaluation/scenes/half_disc.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/seeded_random.hpp"
@@ -10,6 +11,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -42,6 +45,18 @@ constexpr double kMaxMissed = 0.1;
 constexpr double kMaxLateral_m = 0.5;
 constexpr double kMaxYaw_rad = 8.0 * kDegree_rad;
 constexpr double kShortSightShare = 0.15;
+// How often colors are seen, and how well.
+constexpr double kColoredShare = 0.5;
+constexpr double kAllRightShare = 0.25;  ///< of the coloured ones: no color is wrong
+constexpr double kMaxWrong = 0.35;       ///< share of the cones that show the other side's color
+constexpr double kAllSeenShare = 0.35;   ///< no color is missing
+constexpr double kMaxUnseen = 0.6;       ///< share of a side's cones whose color is not seen
+constexpr double kUsualFalseShare =
+    0.5;                             ///< a third of the false positives is of unknown color, else any share
+constexpr double kSoftShare = 0.3;   ///< colors come as probabilities
+constexpr double kNoiseShare = 0.2;  ///< of the draws that have a scene of false cones alone
+constexpr std::size_t kFewestNoise = 4;  ///< cones of such a scene
+constexpr std::size_t kMostNoise = 60;
 constexpr double kCleanShare = 0.1;  ///< without false positives
 
 double uniform(Random& random, double low, double high) {
@@ -122,31 +137,41 @@ Track changed(const Track& track, const Warp& warp, bool backwards, bool respace
     Track result;
     result.closed = track.closed;
     std::array<std::vector<Point>, 2> sides;
+    std::array<std::vector<ConeColor>, 2> colors;  // orange where a gate stands
     std::vector<bool> is_boundary(track.cones.size(), false);
     const std::array<const std::vector<std::size_t>*, 2> runs{&track.left, &track.right};
     for (std::size_t side = 0; side < 2; ++side) {
         for (const std::size_t cone : *runs[side]) {
             sides[side].push_back(warp(track.cones[cone].position));
+            colors[side].push_back(track.cones[cone].color);
             is_boundary[cone] = true;
         }
         if (backwards) std::ranges::reverse(sides[side]);
+        if (backwards) std::ranges::reverse(colors[side]);
         if (spacing != 1.0) {
             std::vector<Point> anew = respaced(sides[side], track.closed, spacing, random);
-            if (anew.size() >= 3) sides[side] = std::move(anew);
+            if (anew.size() >= 3) {
+                sides[side] = std::move(anew);
+                colors[side].assign(sides[side].size(), ConeColor::unknown);
+            }
         }
     }
-    if (warp.mirrors() != backwards) std::swap(sides[0], sides[1]);
-    const auto add = [&](const Point& position) {
+    if (warp.mirrors() != backwards) {
+        std::swap(sides[0], sides[1]);
+        std::swap(colors[0], colors[1]);
+    }
+    const auto add = [&](const Point& position, ConeColor color) {
         Cone cone;
         cone.id = static_cast<ConeId>(result.cones.size());
         cone.position = position;
+        cone.color = color;
         result.cones.push_back(cone);
         return result.cones.size() - 1;
     };
-    for (const Point& position : sides[0]) result.left.push_back(add(position));
-    for (const Point& position : sides[1]) result.right.push_back(add(position));
+    for (std::size_t i = 0; i < sides[0].size(); ++i) result.left.push_back(add(sides[0][i], colors[0][i]));
+    for (std::size_t i = 0; i < sides[1].size(); ++i) result.right.push_back(add(sides[1][i], colors[1][i]));
     for (std::size_t i = 0; i < track.cones.size(); ++i) {
-        if (!is_boundary[i]) add(warp(track.cones[i].position));
+        if (!is_boundary[i]) add(warp(track.cones[i].position), track.cones[i].color);
     }
     return result;
 }
@@ -185,10 +210,66 @@ void add_other_course(Track& track, const std::vector<Pose>& poses, const Track&
     }
 }
 
-/// Adds false positives where the cones of the course are not seen so far.
-void add_false_positives(Scene& scene, double rate, double range_m, Random& random) {
-    const auto seen = static_cast<double>(scene.cones.size());
-    const long count = std::lround(rate * seen / (1.0 - rate));
+/// How the colors of a scene's cones are seen.
+class ColorSight {
+  public:
+    explicit ColorSight(Random& random) : random_(random) {
+        if (!one_in(random, kAllRightShare)) wrong_ = uniform(random, 0.0, kMaxWrong);
+        if (!one_in(random, kAllSeenShare)) {
+            unseen_[0] = uniform(random, 0.0, kMaxUnseen);
+            unseen_[1] = one_in(random, 0.5) ? unseen_[0] : uniform(random, 0.0, kMaxUnseen);
+        }
+        if (!one_in(random, kUsualFalseShare)) false_unseen_ = uniform(random, 0.0, 1.0);
+        soft_ = one_in(random, kSoftShare);
+    }
+
+    /// `boundary`: of a cone of a boundary its true color, of any other one nothing.
+    void show(Cone& cone, std::optional<ConeColor> boundary) const {
+        const bool is_false = !boundary;
+        cone.color = is_false ? (one_in(random_, 0.5) ? ConeColor::blue : ConeColor::yellow) : *boundary;
+        const double unseen = is_false ? false_unseen_ : unseen_[cone.color == ConeColor::yellow ? 1 : 0];
+        if (one_in(random_, unseen)) cone.color = ConeColor::unknown;
+        if (cone.color == ConeColor::unknown) return;
+        // A softened color is wrong as often as it says.
+        const double wrong = soft_ ? uniform(random_, 0.0, std::min(1.0, 2.0 * wrong_)) : wrong_;
+        const bool is_orange = cone.color == ConeColor::orange;
+        if (!is_false && !is_orange && one_in(random_, wrong))
+            cone.color = cone.color == ConeColor::blue ? ConeColor::yellow : ConeColor::blue;
+        if (!soft_) return;
+        ColorProbabilities soft;
+        soft.unknown = uniform(random_, 0.0, 0.2);
+        const double known = 1.0 - soft.unknown;
+        soft.blue = known * (cone.color == ConeColor::blue ? 1.0 - wrong : is_orange ? 0.0 : wrong);
+        soft.yellow = known * (cone.color == ConeColor::yellow ? 1.0 - wrong : is_orange ? 0.0 : wrong);
+        if (is_orange) (one_in(random_, 0.5) ? soft.orange : soft.big_orange) = known;
+        cone.color_probabilities = soft;
+    }
+
+  private:
+    Random& random_;
+    double wrong_ = 0.0;
+    std::array<double, 2> unseen_{};
+    double false_unseen_ = 1.0 / 3.0;
+    bool soft_ = false;
+};
+
+/// Shows the colors of a scene of that track, made with these options.
+void show_colors(Scene& scene, const Track& track, SceneOptions options, Random& random) {
+    options.with_color = true;
+    const Course course = make_course(track, options);
+    std::unordered_map<ConeId, ConeColor> true_colors;  // of the boundaries, for look-up only
+    for (const Cone& cone : course.cones) {
+        if (course.boundary_ids.contains(cone.id)) true_colors.emplace(cone.id, cone.color);
+    }
+    const ColorSight sight(random);
+    for (Cone& cone : scene.cones) {
+        const auto known = true_colors.find(cone.id);
+        sight.show(cone, known == true_colors.end() ? std::nullopt : std::optional(known->second));
+    }
+}
+
+/// Adds so many false positives, anywhere in view.
+void add_false_positives(Scene& scene, long count, double range_m, Random& random) {
     ConeId id = 0;
     for (const Cone& cone : scene.cones) id = std::max(id, cone.id);
     const HalfDisc view{scene.pose.position, scene.pose.heading(), range_m};
@@ -229,6 +310,8 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
     if (options_.other_course && one_in(random, kOtherCourseShare)) {
         add_other_course(track, poses, courses_[any_below(random, courses_.size())].track, random);
     }
+    Random color_random = generator_of(name + "/colors", seed_);
+    const bool colored = options_.colors && one_in(color_random, kColoredShare);
     Drawn drawn;
     drawn.boundaries = boundaries(track);
     for (std::size_t i = 0; i < options_.scenes_per_draw; ++i) {
@@ -249,9 +332,26 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         scenes.ranges_m = {short_sight ? range_m * uniform(random, 0.6, 0.95) : range_m};
         scenes.false_positive_rates = {short_sight ? 0.0 : rate};
         for (AnnotatedScene& scene : generate_scenes(track, std::span(&pose, 1), scenes)) {
-            if (short_sight) add_false_positives(scene.scene, rate, range_m, random);
+            if (short_sight) {
+                // The cones of the course are not seen so far.
+                const auto seen = static_cast<double>(scene.scene.cones.size());
+                add_false_positives(scene.scene, std::lround(rate * seen / (1.0 - rate)), range_m, random);
+            }
+            if (colored) show_colors(scene.scene, track, scenes, color_random);
             drawn.scenes.push_back(std::move(scene));
         }
+    }
+    Random noise_random = generator_of(name + "/noise", seed_);
+    if (options_.noise_scenes && one_in(noise_random, kNoiseShare)) {
+        Scene noise;
+        noise.id = name + "/noise";
+        const std::size_t count = kFewestNoise + any_below(noise_random, kMostNoise - kFewestNoise + 1);
+        add_false_positives(noise, static_cast<long>(count), uniform(noise_random, 15.0, 55.0), noise_random);
+        if (colored) {
+            const ColorSight sight(noise_random);
+            for (Cone& cone : noise.cones) sight.show(cone, std::nullopt);
+        }
+        drawn.noise.push_back(std::move(noise));
     }
     return drawn;
 }

@@ -20,13 +20,17 @@ struct FrontSceneOptions {
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// A second course beside it, whose cones are false: better among parallel legs, worse elsewhere.
     bool other_course = false;
+    /// Half of the draws show colors, which are wrong or not seen at any rate. Without it no draw shows
+    /// colors.
+    bool colors = true;
+    bool noise_scenes = true;   ///< a fifth of the draws has a scene of false cones alone, for the judge
     double highest_rate = 0.7;  ///< some views reach it if false positives persist at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in either direction,
 /// may mirror it, scales it, bends it by a smooth swirl, places its cones again along its boundaries, lays
 /// another course beside it, and shows it from a few poses anywhere along it, with new false positives at any
-/// rate.
+/// rate, and with colors or without.
 class FrontScenes {
   public:
     /// Throws InvalidInput without a course, or if one has no centre line.
@@ -35,6 +39,7 @@ class FrontScenes {
     struct Drawn {
         std::vector<AnnotatedScene> scenes;  ///< with a ground truth; possibly none
         TrackBoundaries boundaries;
+        std::vector<Scene> noise;  ///< false cones alone
     };
     /// Depends only on the number: not on earlier draws or on the thread.
     [[nodiscard]] Drawn draw(std::uint64_t number) const;

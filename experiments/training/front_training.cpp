@@ -103,7 +103,7 @@ class Training {
     Training(const std::vector<Track>& courses, const FrontTrainingOptions& options)
         : options_(options),
           scenes_(courses, options.scenes, options.seed),
-          weights_(initial_weights(options.seed)),
+          weights_(options.initial ? *options.initial : initial_weights(options.seed)),
           adam_(static_cast<Eigen::Index>(parameter_count(weights_)), kMinDeviation),
           slots_(options.draws_per_step) {
         leave_out(options.without, weights_);
@@ -226,6 +226,10 @@ class Training {
         const FrontScenes::Drawn drawn = scenes_.draw(number);
         for (const AnnotatedScene& scene : drawn.scenes)
             slot.losses.push_back(loss_of(slot, scene, drawn.boundaries, cost, judge, stage));
+        if (stage != FrontProgress::Stage::judging) return;
+        for (const Scene& scene : drawn.noise)
+            static_cast<void>(slot.judge_learner.judge_noise(scene, weights_, cost, judge, judge_options(),
+                                                             slot.derivatives));
     }
 
     [[nodiscard]] FrontLearner::Loss loss_of(Slot& slot, const AnnotatedScene& scene,
@@ -275,6 +279,7 @@ void validate(const FrontTrainingOptions& options) {
         if (!valid) throw InvalidInput(key, reason);
     };
     validate(options.loss.search);
+    if (options.initial) validate(*options.initial);
     for (const std::string& name : options.without) {
         const auto all = cost_inputs();
         const bool known = std::ranges::any_of(

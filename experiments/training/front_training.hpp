@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ namespace conelane::experiments {
 struct FrontTrainingOptions {
     FrontSceneOptions scenes;
     FrontLossOptions loss;
+    /// Weights that the training begins with, instead of drawn ones, and what a record calls them.
+    std::optional<FrontWeights> initial;
+    std::string initial_name;
     /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
     std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam

@@ -32,7 +32,7 @@ std::span<const float> FrontCost::score_starts(FrontMap& map, const FrontStarts&
     scores_.resize(2 * count);
     FrontSums sums{};
     start_network_.begin({}, sums);
-    start_network_.score(sums, 0, starts_, scores_);
+    start_network_.score(sums, 0, starts_, scores_, map.has_colors() ? 0 : kStartColorFeatures);
     for (std::size_t i = 0; i < count; ++i) scores_[i] = scores_[2 * i] + scores_[2 * i + 1];
     return std::span(scores_).first(count);
 }
@@ -49,11 +49,15 @@ std::span<const float> FrontCost::score_moves(FrontMap& map, const FrontState& s
     const std::size_t count = moves.extensions.size();
     scores_.resize(count + (moves.stops ? 1 : 0));
     FrontSums sums{};
-    extend_network_.begin(state_, sums);
-    extend_network_.score(sums, kStateFeatures, extensions_, std::span(scores_).first(count));
+    const bool has_colors = map.has_colors();
+    const std::span<const float> state_inputs =
+        std::span(state_).first(kStateFeatures - (has_colors ? 0 : kStateColorFeatures));
+    extend_network_.begin(state_inputs, sums);
+    extend_network_.score(sums, kStateFeatures, extensions_, std::span(scores_).first(count),
+                          has_colors ? 0 : kExtendColorFeatures);
     if (moves.stops) {
         stop_ = stop_features(map, state, side, extensions_);
-        stop_network_.begin(state_, sums);
+        stop_network_.begin(state_inputs, sums);
         stop_network_.score(sums, kStateFeatures, stop_, std::span(scores_).subspan(count));
     }
     return scores_;

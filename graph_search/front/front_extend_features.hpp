@@ -13,6 +13,20 @@
 
 namespace conelane {
 
+/// What the color of a cone says, seen from a side; all 0 where no cone of the scene has one.
+struct ConeColors {
+    float own = 0.0F;      ///< probability of the color of that side
+    float against = 0.0F;  ///< of the other side's
+    float orange = 0.0F;
+    float none = 0.0F;         ///< that it is unknown, times the share of the cones that have a color
+    float consistency = 0.0F;  ///< see FrontMap
+};
+struct ExtendColors {
+    ConeColors cone;       ///< the new one
+    float beside = 0.0F;   ///< nearness of the nearest cone of the own color beside the segment
+    float partner = 0.0F;  ///< what the cone at the place across speaks for, times how near it is
+};
+
 /// What the features of a move that extends are found from. Angles are positive inward.
 struct ExtendSeen {
     const StateMeasures& measures;
@@ -34,6 +48,7 @@ struct ExtendSeen {
     float log_own;      ///< logarithm of the length over the own last one's
     float log_other;    ///< over the other's
     float inside;       ///< cones in the triangle just swept
+    ExtendColors colors;
 };
 
 inline constexpr std::array<FrontFeatureOf<ExtendSeen>, kExtendFeatures> kExtendSchema{{
@@ -95,6 +110,18 @@ inline constexpr std::array<FrontFeatureOf<ExtendSeen>, kExtendFeatures> kExtend
      [](const ExtendSeen& s) { return scaled(s.view_m - s.at.norm(), kViewScale_m, kFarBeyond); }},
     {"crowding", "1", "nearness of the nearest cone to the new one: boundary cones stand alone",
      [](const ExtendSeen& s) { return s.about.crowding; }},
+    {"color_own", "1", "probability that the new cone has the color of its side",
+     [](const ExtendSeen& s) { return s.colors.cone.own; }},
+    {"color_against", "1", "that it has the other side's",
+     [](const ExtendSeen& s) { return s.colors.cone.against; }},
+    {"color_orange", "1", "that it is orange: a gate, on either side",
+     [](const ExtendSeen& s) { return s.colors.cone.orange; }},
+    {"color_none", "1", "that its color is unknown, times the share of the cones in view that have one",
+     [](const ExtendSeen& s) { return s.colors.cone.none; }},
+    {"color_beside", "1", "nearness of the nearest cone of the own color beside the segment: one was skipped",
+     [](const ExtendSeen& s) { return s.colors.beside; }},
+    {"color_partner", "1", "color of the cone at the place across, times how near it is: 1 the other side's",
+     [](const ExtendSeen& s) { return s.colors.partner; }},
 }};
 
 }  // namespace conelane

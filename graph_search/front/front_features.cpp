@@ -18,6 +18,15 @@ constexpr double kFarOff_m = 6.0;
 constexpr double kStrip_m = 1.5;
 constexpr double kRounding_m = 1e-3;  // lengths of edges are float
 
+/// What the colors of a scene say of a state; all 0 where there are none.
+struct StateColors {
+    float share = 0.0F;
+    float consistency = 0.0F;
+    float agreement = 0.0F;
+    float end = 0.0F;
+    float other_end = 0.0F;
+};
+
 /// What the features of a state are found from.
 struct StateSeen {
     const FrontEnd& own;
@@ -30,6 +39,7 @@ struct StateSeen {
     double distance_m;  ///< of the end from the car
     double view_m;
     float density;
+    StateColors colors;
 };
 
 constexpr std::array<FrontFeatureOf<StateSeen>, kStateFeatures> kStateSchema{{
@@ -75,6 +85,16 @@ constexpr std::array<FrontFeatureOf<StateSeen>, kStateFeatures> kStateSchema{{
      [](const StateSeen& s) { return scaled(s.view_m - s.distance_m, kViewScale_m, kFarBeyond); }},
     {"own_cones", "1", "cones of the boundary so far, up to 8: at the beginning less is known",
      [](const StateSeen& s) { return static_cast<float>(std::min<std::size_t>(s.own.count, 8)) / 8.0F; }},
+    {"color_share", "1", "share of the cones in view that have the color of a side",
+     [](const StateSeen& s) { return s.colors.share; }},
+    {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
+     [](const StateSeen& s) { return s.colors.consistency; }},
+    {"color_agreement", "1", "whether the colors of the lane so far are those of their sides",
+     [](const StateSeen& s) { return s.colors.agreement; }},
+    {"color_end", "1", "color of the own end: 1 of its side, -1 of the other one",
+     [](const StateSeen& s) { return s.colors.end; }},
+    {"color_other_end", "1", "the same of the other boundary",
+     [](const StateSeen& s) { return s.colors.other_end; }},
 }};
 
 /// What the features of a stop are found from.
@@ -90,6 +110,8 @@ struct StopSeen {
     double straight_off_m;
     std::size_t moves;
     float smoothest;
+    float color_next;
+    float color_goes_on;
 };
 
 constexpr std::array<FrontFeatureOf<StopSeen>, kStopFeatures> kStopSchema{{
@@ -121,9 +143,14 @@ constexpr std::array<FrontFeatureOf<StopSeen>, kStopFeatures> kStopSchema{{
      [](const StopSeen& s) {
          return s.distance_m > 0.0 ? static_cast<float>(s.at.x() / s.distance_m) : 0.0F;
      }},
+    {"color_next", "1", "color of the cone nearest to where the next one would stand: 1 own, -1 the other's",
+     [](const StopSeen& s) { return s.color_next; }},
+    {"color_goes_on", "1", "smoothness, up to 2, of the smoothest way to a cone of the own color",
+     [](const StopSeen& s) { return s.color_goes_on; }},
 }};
 
-/// What the features of a start are found from.
+/// What the features of a start are found from. Both boundaries look at a pair, so each looks at the color of
+/// its own cone alone.
 struct StartSeen {
     const StartCone& own;
     const StartCone& other;
@@ -135,6 +162,7 @@ struct StartSeen {
     double lead_m;
     double middle_m;  ///< outward
     float inside;
+    ConeColors colors;
 };
 
 constexpr std::array<FrontFeatureOf<StartSeen>, kStartFeatures> kStartSchema{{
@@ -181,6 +209,16 @@ constexpr std::array<FrontFeatureOf<StartSeen>, kStartFeatures> kStartSchema{{
      [](const StartSeen& s) { return s.a.x() < 0.0 ? 1.0F : 0.0F; }},
     {"other_passed", "1", "the same of the other cone",
      [](const StartSeen& s) { return s.b.x() < 0.0 ? 1.0F : 0.0F; }},
+    {"color_own", "1", "probability that it has the color of its side",
+     [](const StartSeen& s) { return s.colors.own; }},
+    {"color_against", "1", "that it has the other side's",
+     [](const StartSeen& s) { return s.colors.against; }},
+    {"color_orange", "1", "that it is orange: a gate, on either side",
+     [](const StartSeen& s) { return s.colors.orange; }},
+    {"color_none", "1", "that its color is unknown, times the share of the cones in view that have one",
+     [](const StartSeen& s) { return s.colors.none; }},
+    {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
+     [](const StartSeen& s) { return s.colors.consistency; }},
 }};
 
 /// +1 where a turn to the left is inward, -1 where it is outward.
@@ -191,6 +229,13 @@ double inward(Side side) {
 /// From a direction to another one.
 double turn(float from_rad, float to_rad) {
     return wrapped_angle(static_cast<double>(to_rad) - static_cast<double>(from_rad));
+}
+
+/// Precondition: the map has colors.
+ConeColors colors_of(const FrontMap& map, Vertex cone, Side side) {
+    const ConeSide& color = map.color(cone);
+    return {color.of_side[side], color.of_side[opposite(side)], color.orange,
+            color.unknown() * map.color_share(), map.color_consistency()};
 }
 
 /// Of the segments of both sides, some usual ones where there are few.
@@ -247,11 +292,18 @@ Point next_place(const FrontMap& map, const FrontEnd& end, double turn_rad, doub
     return map.position(end.cones[0]) + length_m * Point(c * d.x() - s * d.y(), s * d.x() + c * d.y());
 }
 
-/// Distance from a place to the nearest neighbour of the end that is not on the front, and how many are near.
-std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const FrontEnd& other,
-                                    const Point& place) {
+/// The neighbours of an end about a place.
+struct Nearest {
+    double off_m;
+    float count;  ///< of those that are near
+    Vertex cone;  ///< kNoCone where none is nearer than kFarOff_m
+};
+
+/// Those of a place, without the cones of the front.
+Nearest nearest_to(FrontMap& map, const FrontEnd& end, const FrontEnd& other, const Point& place) {
     double nearest_m2 = kFarOff_m * kFarOff_m;
     float near = 0.0F;
+    Vertex nearest = kNoCone;
     // Neighbours come by their distance from the end: beyond farthest_m none is near the place or nearest to
     // it.
     const double reach_m = (place - map.position(end.cones[0])).norm() + kRounding_m;
@@ -262,11 +314,12 @@ std::pair<double, float> nearest_to(FrontMap& map, const FrontEnd& end, const Fr
         const double off_m2 = (map.position(edge.to) - place).squaredNorm();
         if (off_m2 < nearest_m2) {
             nearest_m2 = off_m2;
+            nearest = edge.to;
             farthest_m = reach_m + std::max(std::sqrt(nearest_m2), kPlaceReach_m);
         }
         if (off_m2 < kPlaceReach_m * kPlaceReach_m) near = std::min(near + 1.0F, kMaxCounted);
     }
-    return {std::sqrt(nearest_m2), near};
+    return {std::sqrt(nearest_m2), near, nearest};
 }
 
 }  // namespace
@@ -324,8 +377,15 @@ StateFeatures state_features(FrontMap& map, const FrontState& state, Side side,
     const double along_norm = along.norm();
     const double lag_m = along_norm > 0.0 ? (facing - at).dot(along) / along_norm : 0.0;
     const double distance_m = at.norm();
+    StateColors colors;
+    if (map.has_colors()) {
+        colors = {map.color_share(), map.color_consistency(), state.color_agreement(),
+                  map.color(own.cones[0]).speaks_for(side),
+                  map.color(other.cones[0]).speaks_for(opposite(side))};
+    }
     return values_of<kStateSchema>(StateSeen{own, other, measures, in, skew_rad, (facing - at).norm(), lag_m,
-                                             distance_m, map.view_radius_m(), map.density(own.cones[0])});
+                                             distance_m, map.view_radius_m(), map.density(own.cones[0]),
+                                             colors});
 }
 
 ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side, const FrontMove& move,
@@ -356,18 +416,31 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
                                   std::min(kPartnerReach_m, std::sqrt(partner_m2) + kRounding_m));
     };
     float break_m = farthest_m();
+    Vertex partner = other.cones[0];
     for (const FrontEdge& near : map.edges(move.to)) {
         if (near.length_m > break_m) break;
         if (near.to == from) continue;
         const double off_m2 = (map.position(near.to) - across).squaredNorm();
         if (off_m2 >= partner_m2) continue;
         partner_m2 = off_m2;
+        partner = near.to;
         break_m = farthest_m();
     }
     const float inside = inside_triangle(map, from, at, facing, move.to, other.cones[0], measures);
-    return values_of<kExtendSchema>(ExtendSeen{
-        measures, about, edge, other, side, at, facing, length_m, turn_rad, change_rad, turn_other_rad,
-        skew_rad, width_m, mean_width_m, map.view_radius_m(), partner_m2, log_own, log_other, inside});
+    ExtendColors colors;
+    if (map.has_colors()) {
+        colors.cone = colors_of(map, move.to, side);
+        colors.beside = about.nearest_of_color[side];
+        const double nearness = std::max(0.0, 1.0 - std::sqrt(partner_m2) / kPartnerReach_m);
+        colors.partner = static_cast<float>(nearness) * map.color(partner).speaks_for(opposite(side));
+    }
+    return values_of<kExtendSchema>(ExtendSeen{measures,   about,          edge,
+                                               other,      side,           at,
+                                               facing,     length_m,       turn_rad,
+                                               change_rad, turn_other_rad, skew_rad,
+                                               width_m,    mean_width_m,   map.view_radius_m(),
+                                               partner_m2, log_own,        log_other,
+                                               inside,     colors});
 }
 
 StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
@@ -382,18 +455,26 @@ StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
     const Point next = next_place(map, own, own.turn_rad, length_of(own));
     const Point straight = next_place(map, own, 0.0, length_of(own));
     const Point other_next = next_place(map, other, other.turn_rad, length_of(other));
-    const auto [next_off_m, next_cones] = nearest_to(map, own, other, next);
-    const double straight_off_m = nearest_to(map, own, other, straight).first;
+    const auto [next_off_m, next_cones, next_cone] = nearest_to(map, own, other, next);
+    const double straight_off_m = nearest_to(map, own, other, straight).off_m;
     constexpr std::size_t kTurnChangeSize = place_of(kExtendSchema, "turn_change_size");
     constexpr std::size_t kLogRatioOwnSize = place_of(kExtendSchema, "log_ratio_own_size");
     const std::size_t moves = extensions.size() / kExtendFeatures;
-    float smoothest = 2.0F;
+    constexpr std::size_t kColorOwn = place_of(kExtendSchema, "color_own");
+    constexpr float kRough = 2.0F;
+    float smoothest = kRough;
+    float color_goes_on = 0.0F;
     for (std::size_t i = 0; i < moves; ++i) {
         const float* const extension = extensions.data() + i * kExtendFeatures;
-        smoothest = std::min(smoothest, extension[kTurnChangeSize] + extension[kLogRatioOwnSize]);
+        const float badness = extension[kTurnChangeSize] + extension[kLogRatioOwnSize];
+        smoothest = std::min(smoothest, badness);
+        color_goes_on = std::max(color_goes_on, extension[kColorOwn] * (kRough - badness));
     }
+    const bool color_known = map.has_colors() && next_cone != kNoCone;
+    const float color_next = color_known ? map.color(next_cone).speaks_for(side) : 0.0F;
     return values_of<kStopSchema>(StopSeen{at, at.norm(), view_m, next, straight, other_next, next_off_m,
-                                           next_cones, straight_off_m, moves, smoothest});
+                                           next_cones, straight_off_m, moves, smoothest, color_next,
+                                           color_goes_on});
 }
 
 StartCone start_cone(FrontMap& map, Vertex cone) {
@@ -433,8 +514,10 @@ StartFeatures start_features(FrontMap& map, const StartCone& own, const StartCon
             inside = std::min(inside + 1.0F, kMaxCounted);
         }
     }
+    ConeColors colors;
+    if (map.has_colors()) colors = colors_of(map, own.cone, side);
     return values_of<kStartSchema>(
-        StartSeen{own, other, a, b, own_out_m, other_out_m, width_m, lead_m, middle_m, inside});
+        StartSeen{own, other, a, b, own_out_m, other_out_m, width_m, lead_m, middle_m, inside, colors});
 }
 
 }  // namespace conelane

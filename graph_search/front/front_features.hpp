@@ -12,10 +12,15 @@
 namespace conelane {
 
 // The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
-inline constexpr std::size_t kStateFeatures = 20;
-inline constexpr std::size_t kExtendFeatures = 28;
-inline constexpr std::size_t kStopFeatures = 13;
-inline constexpr std::size_t kStartFeatures = 24;
+// Features of colors stand last, and are all 0 where no cone of the scene has one.
+inline constexpr std::size_t kStateColorFeatures = 5;
+inline constexpr std::size_t kExtendColorFeatures = 6;
+inline constexpr std::size_t kStopColorFeatures = 2;
+inline constexpr std::size_t kStartColorFeatures = 5;
+inline constexpr std::size_t kStateFeatures = 20 + kStateColorFeatures;
+inline constexpr std::size_t kExtendFeatures = 28 + kExtendColorFeatures;
+inline constexpr std::size_t kStopFeatures = 13 + kStopColorFeatures;
+inline constexpr std::size_t kStartFeatures = 24 + kStartColorFeatures;
 inline constexpr std::size_t kExtendInputs = kStateFeatures + kExtendFeatures;
 inline constexpr std::size_t kStopInputs = kStateFeatures + kStopFeatures;
 

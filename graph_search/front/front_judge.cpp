@@ -80,6 +80,7 @@ struct Tally {
     float turn_change = 0.0F;
     float largest_turn = 0.0F;
     float log_ratio = 0.0F;
+    float color_against = 0.0F;
     std::array<double, 2> length_m{};
     std::array<float, 2> view_left{1.0F, 1.0F};
 
@@ -108,6 +109,7 @@ struct Tally {
         turn_change += move[place_of(kExtendSchema, "turn_change_size")];
         largest_turn = std::max(largest_turn, move[place_of(kExtendSchema, "turn_size")]);
         log_ratio += move[place_of(kExtendSchema, "log_ratio_own_size")];
+        color_against += move[place_of(kExtendSchema, "color_against")];
         view_left[node.side] = move[place_of(kExtendSchema, "view_left")];
     }
 };
@@ -125,6 +127,9 @@ struct WholeLaneSeen {
     float moves;
     double view_m;
     float log_cones_off;
+    float color_agreement;
+    float color_share;
+    float color_consistency;
 };
 
 constexpr std::array<FrontFeatureOf<WholeLaneSeen>, kWholeLaneFeatures> kWholeLaneSchema{{
@@ -187,6 +192,14 @@ constexpr std::array<FrontFeatureOf<WholeLaneSeen>, kWholeLaneFeatures> kWholeLa
     {"start_score", "1", "of the first pair", [](const WholeLaneSeen& s) { return s.start_score; }},
     {"cones_off", "1", "logarithm of the cones of the scene over those of the lane",
      [](const WholeLaneSeen& s) { return s.log_cones_off; }},
+    {"color_agreement", "1", "whether the colors of its cones are those of their sides, from -1 to 1",
+     [](const WholeLaneSeen& s) { return s.color_agreement; }},
+    {"color_against", "1", "cones of the other side's color, up to 4",
+     [](const WholeLaneSeen& s) { return std::min(s.all.color_against, 4.0F) / 2.0F; }},
+    {"color_share", "1", "share of the cones in view that have the color of a side",
+     [](const WholeLaneSeen& s) { return s.color_share; }},
+    {"color_consistency", "1", "whether cones next to each other have one color: else many colors are wrong",
+     [](const WholeLaneSeen& s) { return s.color_consistency; }},
 }};
 
 /// The lowest score of a stop. Of both the last one is no state of its own.
@@ -217,12 +230,12 @@ std::span<const FrontFeature, kWholeLaneFeatures> whole_lane_feature_table() {
 }
 
 std::array<FrontFeatureList, 6> front_feature_lists() {
-    return {{{"state", state_feature_table()},
-             {"extend", extend_feature_table()},
-             {"stop", stop_feature_table()},
-             {"start", start_feature_table()},
-             {"cone", cone_feature_table()},
-             {"lane", whole_lane_feature_table()}}};
+    return {{{"state", state_feature_table(), kStateColorFeatures},
+             {"extend", extend_feature_table(), kExtendColorFeatures},
+             {"stop", stop_feature_table(), kStopColorFeatures},
+             {"start", start_feature_table(), kStartColorFeatures},
+             {"cone", cone_feature_table(), 0},
+             {"lane", whole_lane_feature_table(), kWholeLaneColorFeatures}}};
 }
 
 FrontJudge::FrontJudge(const FrontWeights& weights)
@@ -358,11 +371,12 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
     const auto moves = static_cast<float>(path.size());
     const double view_m = std::max(search.map().view_radius_m(), 1.0);
     const double cones_off = static_cast<double>(search.map().size()) / static_cast<double>(path.size() + 1);
-    features_[contender] = values_of<kWholeLaneSchema>(
-        WholeLaneSeen{all, scores_.front() - scores_[contender], probability_[contender],
-                      scores_[contender] / static_cast<double>(moves), worst_stop(search, lane),
-                      steps_[path.front()].inputs[place_of(kConeSchema, "move_score")], both_m, expected_m_,
-                      moves, view_m, static_cast<float>(std::log(cones_off))});
+    features_[contender] = values_of<kWholeLaneSchema>(WholeLaneSeen{
+        all, scores_.front() - scores_[contender], probability_[contender],
+        scores_[contender] / static_cast<double>(moves), worst_stop(search, lane),
+        steps_[path.front()].inputs[place_of(kConeSchema, "move_score")], both_m, expected_m_, moves, view_m,
+        static_cast<float>(std::log(cones_off)), search.node(lane.node).state.color_agreement(),
+        search.map().color_share(), search.map().color_consistency()});
 }
 
 double FrontJudge::confidence(std::size_t contender) const {

@@ -15,7 +15,8 @@ namespace conelane {
 /// Of a cone of a lane, before what FrontCost saw of the move that added it (0 for the first pair).
 inline constexpr std::size_t kConeFeatures = 8;
 /// Of a whole lane.
-inline constexpr std::size_t kWholeLaneFeatures = 30;
+inline constexpr std::size_t kWholeLaneColorFeatures = 4;  ///< the last ones
+inline constexpr std::size_t kWholeLaneFeatures = 30 + kWholeLaneColorFeatures;
 inline constexpr std::size_t kRightInputs = kConeFeatures + kExtendInputs;
 
 [[nodiscard]] std::span<const FrontFeature, kConeFeatures> cone_feature_table();
@@ -25,6 +26,7 @@ inline constexpr std::size_t kRightInputs = kConeFeatures + kExtendInputs;
 struct FrontFeatureList {
     std::string_view key;
     std::span<const FrontFeature> features;
+    std::size_t colors;  ///< how many at their end are of colors
 };
 [[nodiscard]] std::array<FrontFeatureList, 6> front_feature_lists();
 

@@ -56,9 +56,59 @@ void FrontMap::build(const Scene& scene) {
     });
     for (std::size_t i = 0; i < count; ++i) positions_[i] = in_car_frame(order_[i]);
     find_view_radius();
+    take_colors(scene);
     places_.assign(count, {0, kNotAsked});
     used_ = 0;
     left_out_edges_ = false;
+}
+
+void FrontMap::take_colors(const Scene& scene) {
+    has_colors_ = std::ranges::any_of(scene.cones, [](const Cone& cone) {
+        return cone.color_probabilities ? cone.color_probabilities->unknown < 1.0
+                                        : cone.color != ConeColor::unknown;
+    });
+    color_share_ = 0.0F;
+    color_consistency_ = 0.0F;
+    if (!has_colors_) return;
+    colors_.resize(positions_.size());
+    for (Vertex cone = 0; cone < positions_.size(); ++cone) {
+        const ColorProbabilities p = scene.cones[order_[cone]].probabilities();
+        colors_[cone] = {{static_cast<float>(p.blue), static_cast<float>(p.yellow)},
+                         static_cast<float>(p.orange + p.big_orange)};
+        color_share_ += colors_[cone].of_side[kLeft] + colors_[cone].of_side[kRight];
+    }
+    color_share_ /= static_cast<float>(positions_.size());
+    float sum = 0.0F;
+    float pairs = 0.0F;
+    for (Vertex cone = 0; cone < positions_.size(); ++cone) {
+        const float own = colors_[cone].speaks_for(kLeft);
+        if (own == 0.0F) continue;
+        const Vertex other = nearest_colored(cone);
+        if (other == kNoCone) continue;
+        sum += own * colors_[other].speaks_for(kLeft);
+        pairs += 1.0F;
+    }
+    if (pairs > 0.0F) color_consistency_ = sum / pairs;
+}
+
+/// The nearest other cone that speaks for a side; of equally near ones the first.
+Vertex FrontMap::nearest_colored(Vertex cone) const {
+    const Point& at = positions_[cone];
+    double nearest_m2 = kShortSegment_m * kShortSegment_m;
+    Vertex nearest = kNoCone;
+    const auto look = [&](Vertex other) {
+        const double ahead_m = positions_[other].x() - at.x();
+        if (ahead_m * ahead_m >= nearest_m2) return false;
+        const double off_m2 = (positions_[other] - at).squaredNorm();
+        if (off_m2 < nearest_m2 && colors_[other].speaks_for(kLeft) != 0.0F) {
+            nearest_m2 = off_m2;
+            nearest = other;
+        }
+        return true;
+    };
+    for (Vertex other = cone; other > 0 && look(other - 1);) --other;
+    for (Vertex other = cone + 1; other < positions_.size() && look(other);) ++other;
+    return nearest;
 }
 
 void FrontMap::find_view_radius() {
@@ -172,6 +222,11 @@ void FrontMap::look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& abou
         float& nearest = about.nearest_beside[left_m > 0.0 ? kLeft : kRight];
         nearest = std::max(nearest, nearness);
         about.beside += nearness;
+        if (!has_colors_) continue;
+        for (const Side side : {kLeft, kRight}) {
+            const float of_color = nearness * colors_[other.to].of_side[side];
+            about.nearest_of_color[side] = std::max(about.nearest_of_color[side], of_color);
+        }
     }
     about.continuation = kNoContinuation;
     for (const FrontEdge& next : edges(way.to)) {

@@ -74,6 +74,22 @@ struct EdgeNeighbourhood {
     float within_disc = 0.0F;   ///< cones in the disc that has the way as diameter
     float continuation = 0.0F;  ///< how badly the best next segment goes on: bend + change of log length
     float crowding = 0.0F;      ///< how near the nearest cone at its end is, as nearest_beside
+    /// As nearest_beside, on either side, of the cones of a color, each times the probability that it has
+    /// that color: of the left boundary's, of the right one's.
+    std::array<float, 2> nearest_of_color{};
+};
+
+/// What the color of a cone says; all 0 where that is unknown.
+struct ConeSide {
+    std::array<float, 2> of_side{};  ///< probability that it stands on the left (blue), on the right (yellow)
+    float orange = 0.0F;             ///< that it is a small or a big orange one
+
+    /// From -1, of the other side, to 1, of that one.
+    [[nodiscard]] float speaks_for(Side side) const { return of_side[side] - of_side[opposite(side)]; }
+    /// The probability that nothing is known.
+    [[nodiscard]] float unknown() const {
+        return std::max(0.0F, 1.0F - of_side[kLeft] - of_side[kRight] - orange);
+    }
 };
 
 /// The cones of a scene as the search sees them: in the frame of the car (x ahead, y to the left), ordered by
@@ -97,6 +113,17 @@ class FrontMap {
     /// as the car sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one
     /// where all are alone.
     [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
+
+    /// Whether any cone may have a color. Where none has, all that is said of colors is 0.
+    [[nodiscard]] bool has_colors() const { return has_colors_; }
+    /// Only where has_colors.
+    [[nodiscard]] const ConeSide& color(Vertex cone) const { return colors_[cone]; }
+    /// Mean probability that a cone has the color of a side.
+    [[nodiscard]] float color_share() const { return color_share_; }
+    /// Whether cones next to each other have the same color: of each colored cone and the nearest other one
+    /// within kShortSegment_m, the mean of the product of what they speak for, from -1 to 1. About 0 where
+    /// colors are drawn.
+    [[nodiscard]] float color_consistency() const { return color_consistency_; }
 
     /// The ways from a cone of at most kMaxSegment_m, the shortest first; where they are fewer than
     /// kFewEdges, as many of at most kMaxLengthAmongFew_m. Cones at the same place are not joined. Stays
@@ -137,6 +164,8 @@ class FrontMap {
     void find_view_radius();
     [[nodiscard]] bool is_alone(Vertex cone) const;
     void look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about);
+    void take_colors(const Scene& scene);
+    [[nodiscard]] Vertex nearest_colored(Vertex cone) const;
 
     std::vector<Point> positions_;
     std::vector<std::uint32_t> order_;
@@ -148,6 +177,10 @@ class FrontMap {
     std::size_t used_ = 0;
     double view_radius_m_ = 0.0;
     bool left_out_edges_ = false;
+    bool has_colors_ = false;
+    float color_share_ = 0.0F;
+    float color_consistency_ = 0.0F;
+    std::vector<ConeSide> colors_;  ///< stale where there are none
 };
 
 }  // namespace conelane

@@ -106,14 +106,15 @@ void FrontNetwork::begin(std::span<const float> first_inputs, FrontSums& sums) c
 }
 
 void FrontNetwork::score(const FrontSums& sums, std::size_t first, std::span<const float> inputs,
-                         std::span<float> scores) const {
-    const std::size_t count = weights_.inputs - first;
+                         std::span<float> scores, std::size_t unused) const {
+    const std::size_t stride = weights_.inputs - first;
+    const std::size_t count = stride - unused;
     const float* const hidden = weights_.hidden.data() + first * kFrontUnits;
     const float* const linear = weights_.linear.data() + first;
     for (std::size_t i = 0; i < scores.size(); i += 2) {
-        const float* const a = inputs.data() + i * count;
+        const float* const a = inputs.data() + i * stride;
         const bool is_pair = i + 1 < scores.size();
-        const float* const b = is_pair ? a + count : a;
+        const float* const b = is_pair ? a + stride : a;
         std::array<float, 2> results{sums.linear + dot(linear, a, count),
                                      sums.linear + dot(linear, b, count)};
         add_hidden(hidden, a, b, count, sums.hidden.data(), weights_.output.data(), results.data());

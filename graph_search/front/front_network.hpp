@@ -50,9 +50,9 @@ class FrontNetwork {
     /// The sums over the first inputs.
     void begin(std::span<const float> first_inputs, FrontSums& sums) const;
     /// The scores that come out where the inputs from `first` on are added to `sums`: `inputs` holds those of
-    /// a move behind those of another.
+    /// a move behind those of another. The last `unused` of each are 0, and are left out.
     void score(const FrontSums& sums, std::size_t first, std::span<const float> inputs,
-               std::span<float> scores) const;
+               std::span<float> scores, std::size_t unused = 0) const;
     /// Of all inputs.
     [[nodiscard]] float score(std::span<const float> inputs) const;
 

@@ -14,6 +14,10 @@ float FrontState::mean_width_m() const {
     return (kDefaultWidth_m + width_sum_m) / static_cast<float>(1 + widths);
 }
 
+float FrontState::color_agreement() const {
+    return color_sum / static_cast<float>(1 + ends[kLeft].count + ends[kRight].count);
+}
+
 bool FrontState::same_front(const FrontState& other) const {
     return std::ranges::equal(ends, other.ends, [](const FrontEnd& a, const FrontEnd& b) {
         return a.cones == b.cones && a.stopped == b.stopped;
@@ -28,6 +32,7 @@ FrontState start_state(const FrontMap& map, Vertex left, Vertex right) {
         state.ends[side].count = 1;
         // How far ahead it begins counts as progress: else lanes that begin later would seem to be behind.
         state.ends[side].length_m = std::max(0.0, map.position(cones[side]).x());
+        if (map.has_colors()) state.color_sum += map.color(cones[side]).speaks_for(side);
     }
     return state;
 }
@@ -63,6 +68,7 @@ FrontState moved(FrontMap& map, const FrontState& state, Side side, const FrontM
     next.width_sum_m +=
         static_cast<float>(facing_distance_m(map, state.ends[opposite(side)], map.position(move.to)));
     ++next.widths;
+    if (map.has_colors()) next.color_sum += map.color(move.to).speaks_for(side);
     return next;
 }
 

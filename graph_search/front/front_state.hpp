@@ -26,9 +26,13 @@ struct FrontState {
     std::array<FrontEnd, 2> ends;
     float width_sum_m = 0.0F;  ///< of the widths that `widths` moves found
     std::size_t widths = 0;
+    float color_sum = 0.0F;  ///< of its cones: what each speaks for its side, see ConeSide
 
     /// Mean width so far, drawn towards that of a usual lane as long as there are few.
     [[nodiscard]] float mean_width_m() const;
+    /// Whether the colors of its cones fit their sides: 1 where all do, -1 where all are of the other side.
+    /// As long as there are few cones it is drawn to 0.
+    [[nodiscard]] float color_agreement() const;
     /// Whether two states have the same future but for the cones used before.
     [[nodiscard]] bool same_front(const FrontState& other) const;
     [[nodiscard]] bool finished() const { return ends[kLeft].stopped && ends[kRight].stopped; }

@@ -10,7 +10,9 @@
 #include <cmath>
 #include <cstddef>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -20,80 +22,120 @@
 namespace conelane {
 namespace {
 
-constexpr double kVersion = 1.0;
+/// Files of version 1 have no features of colors: their weights are 0.
+constexpr int kOldVersion = 1;
+constexpr int kVersion = 2;
 
-/// The inputs have to be those that the library computes, in their order.
-void read_features(JsonReader& json) {
+/// Of a list, how many a file of that version has.
+std::size_t names_in(const FrontFeatureList& list, int version) {
+    return list.features.size() - (version == kOldVersion ? list.colors : 0);
+}
+
+/// The names of a file, by list.
+using NamesByList = std::map<std::string, std::vector<std::string>, std::less<>>;
+
+NamesByList read_features(JsonReader& json) {
     if (json.next() != '{') throw InvalidInput("features", "must be an object of lists of names");
-    std::set<std::string> seen;
+    NamesByList names;
     json.object([&](const std::string& key) {
         const auto lists = front_feature_lists();
-        const auto known = std::ranges::find(lists, key, &FrontFeatureList::key);
-        if (known == lists.end())
+        if (std::ranges::find(lists, key, &FrontFeatureList::key) == lists.end())
             throw InvalidInput("features", "'" + key + "' is not a list of the library");
-        if (!seen.insert(key).second) throw InvalidInput("features", "'" + key + "' is there twice");
+        if (names.contains(key)) throw InvalidInput("features", "'" + key + "' is there twice");
         if (json.next() != '[') throw InvalidInput("features", "'" + key + "' must be a list of names");
-        std::size_t count = 0;
+        std::vector<std::string>& list = names[key];
         json.array([&] {
             if (json.next() != '"') throw InvalidInput("features", "'" + key + "' must hold names");
-            const std::string name = json.string();
-            if (count >= known->features.size() || known->features[count].name != name) {
-                throw InvalidInput("features",
-                                   "'" + key + "' has '" + name + "' at place " + std::to_string(count) +
-                                       ", unlike the library: the weights are of another version");
-            }
-            ++count;
+            list.push_back(json.string());
         });
-        if (count != known->features.size())
-            throw InvalidInput("features", "'" + key + "' has " + std::to_string(count) + " names, not " +
-                                               std::to_string(known->features.size()) +
-                                               " as the library: the weights are of another version");
     });
+    return names;
+}
+
+/// The inputs have to be those that the library computes, in their order.
+void require_features(const NamesByList& names, int version) {
     for (const FrontFeatureList& list : front_feature_lists()) {
-        if (!seen.contains(std::string(list.key)))
-            throw InvalidInput("features", "'" + std::string(list.key) + "' is missing");
+        const std::string quoted = "'" + std::string(list.key) + "'";
+        const auto given = names.find(list.key);
+        if (given == names.end()) throw InvalidInput("features", quoted + " is missing");
+        const std::size_t count = names_in(list, version);
+        for (std::size_t i = 0; i < given->second.size(); ++i) {
+            if (i < count && list.features[i].name == given->second[i]) continue;
+            throw InvalidInput("features", quoted + " has '" + given->second[i] + "' at place " +
+                                               std::to_string(i) +
+                                               ", unlike the library: the weights are of another version");
+        }
+        if (given->second.size() != count)
+            throw InvalidInput("features", quoted + " has " + std::to_string(given->second.size()) +
+                                               " names, not " + std::to_string(count) +
+                                               " as the library: the weights are of another version");
     }
 }
 
-void read_numbers(JsonReader& json, const std::string& key, std::span<float> numbers) {
-    const auto fail = [&](const std::string& reason) { throw InvalidInput(key, reason); };
-    const std::string size = std::to_string(numbers.size());
-    if (json.next() != '[') fail("must be a list of " + size + " numbers");
-    std::size_t count = 0;
+std::vector<float> read_numbers(JsonReader& json, const std::string& key) {
+    std::vector<float> numbers;
+    if (json.next() != '[') throw InvalidInput(key, "must be a list of numbers");
     json.array([&] {
-        const std::string place = "number " + std::to_string(count);
-        if (!json.is_number()) fail(place + " (from 0) is not a number");
+        const std::string place = "number " + std::to_string(numbers.size());
+        if (!json.is_number()) throw InvalidInput(key, place + " (from 0) is not a number");
         const double number = json.number();
         if (std::abs(number) > static_cast<double>(std::numeric_limits<float>::max()))
-            fail(place + " (from 0) is out of range");
-        if (count < numbers.size()) numbers[count] = static_cast<float>(number);
-        ++count;
+            throw InvalidInput(key, place + " (from 0) is out of range");
+        numbers.push_back(static_cast<float>(number));
     });
-    if (count != numbers.size()) fail("has " + std::to_string(count) + " numbers, not " + size);
+    return numbers;
 }
 
+/// A list of numbers of a file: so many for each input of these lists of features, or without such lists so
+/// many in all.
 struct NumberList {
     std::string key;
     std::span<float> numbers;
+    std::vector<std::string_view> inputs;
+    std::size_t each = 1;
 };
 
 /// All lists of numbers of a file.
 std::vector<NumberList> number_lists(FrontWeights& weights) {
     std::vector<NumberList> lists;
-    const auto add = [&lists](const std::string& name, FrontNetworkWeights& network) {
-        lists.push_back({name + "_hidden", network.hidden});
-        lists.push_back({name + "_hidden_bias", network.hidden_bias});
-        lists.push_back({name + "_output", network.output});
-        lists.push_back({name + "_linear", network.linear});
-        lists.push_back({name + "_output_bias", std::span(&network.output_bias, 1)});
+    const auto add = [&lists](const std::string& name, FrontNetworkWeights& network,
+                              const std::vector<std::string_view>& inputs) {
+        lists.push_back({name + "_hidden", network.hidden, inputs, kFrontUnits});
+        lists.push_back({name + "_hidden_bias", network.hidden_bias, {}});
+        lists.push_back({name + "_output", network.output, {}});
+        lists.push_back({name + "_linear", network.linear, inputs});
+        lists.push_back({name + "_output_bias", std::span(&network.output_bias, 1), {}});
     };
-    add("extend", weights.extend);
-    add("stop", weights.stop);
-    add("start", weights.start);
-    add("rank", weights.rank);
-    add("usable", weights.usable);
-    add("right", weights.right);
+    add("extend", weights.extend, {"state", "extend"});
+    add("stop", weights.stop, {"state", "stop"});
+    add("start", weights.start, {"start"});
+    add("rank", weights.rank, {"lane"});
+    add("usable", weights.usable, {"lane"});
+    add("right", weights.right, {"cone", "state", "extend"});
     return lists;
+}
+
+/// Puts the numbers of a file of that version where they belong, and leaves those of other inputs as they
+/// are.
+void place(const std::vector<float>& numbers, const NumberList& list, int version) {
+    const auto features = front_feature_lists();
+    const auto list_of = [&](std::string_view key) -> const FrontFeatureList& {
+        return *std::ranges::find(features, key, &FrontFeatureList::key);
+    };
+    std::size_t count = list.inputs.empty() ? list.numbers.size() : 0;
+    for (const std::string_view key : list.inputs) count += list.each * names_in(list_of(key), version);
+    if (numbers.size() != count)
+        throw InvalidInput(
+            list.key, "has " + std::to_string(numbers.size()) + " numbers, not " + std::to_string(count));
+    if (list.inputs.empty()) std::ranges::copy(numbers, list.numbers.begin());
+    auto from = numbers.begin();
+    auto to = list.numbers.begin();
+    for (const std::string_view key : list.inputs) {
+        const auto size = static_cast<std::ptrdiff_t>(list.each * names_in(list_of(key), version));
+        std::copy(from, from + size, to);
+        from += size;
+        to += static_cast<std::ptrdiff_t>(list.each * list_of(key).features.size());
+    }
 }
 
 double read_number(JsonReader& json, const std::string& key) {
@@ -129,17 +171,24 @@ FrontWeights parse_front_weights(std::string_view text) {
     if (json.next() != '{') json.fail("must be a JSON object, as `conelane train front` writes it");
     FrontWeights weights = FrontWeights::zero();
     const std::vector<NumberList> lists = number_lists(weights);
+    std::vector<std::vector<float>> numbers(lists.size());
+    NamesByList names;
+    int version = 0;
     std::set<std::string> seen;
     std::string unknown;
     json.object([&](const std::string& key) {
         if (!seen.insert(key).second) throw InvalidInput(key, "is there twice");
         const auto list = std::ranges::find(lists, key, &NumberList::key);
         if (list != lists.end()) {
-            read_numbers(json, key, list->numbers);
+            numbers[static_cast<std::size_t>(list - lists.begin())] = read_numbers(json, key);
         } else if (key == "version") {
-            if (read_number(json, key) != kVersion) throw InvalidInput(key, "must be 1");
+            const double given = read_number(json, key);
+            for (const int known : {kOldVersion, kVersion}) {
+                if (given == known) version = known;
+            }
+            if (version == 0) throw InvalidInput(key, "must be 1 or 2");
         } else if (key == "features") {
-            read_features(json);
+            names = read_features(json);
         } else if (key == "least_trust") {
             weights.least_trust = read_number(json, key);
         } else {
@@ -153,7 +202,11 @@ FrontWeights parse_front_weights(std::string_view text) {
     };
     require("version");
     require("features");
-    for (const NumberList& list : lists) require(list.key);
+    require_features(names, version);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        require(lists[i].key);
+        place(numbers[i], lists[i], version);
+    }
     require("least_trust");
     if (!unknown.empty()) throw InvalidInput(unknown, "is not a key of weights of front");
     validate(weights);

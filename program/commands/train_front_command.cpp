@@ -1,9 +1,11 @@
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/training/front_training_run.hpp"
+#include "graph_search/front/front_weights_reader.hpp"
 #include "program/commands/commands.hpp"
 
 #include <cstdint>
@@ -18,6 +20,7 @@ namespace {
 
 struct Options {
     FrontTrainingRunOptions run;
+    std::string from;
     std::string out;
 };
 
@@ -50,7 +53,11 @@ void print(const FrontProgress& progress, const FrontTrainingRunOptions& run) {
     std::fflush(stdout);
 }
 
-void train(const Options& options) {
+void train(Options options) {
+    if (!options.from.empty()) {
+        options.run.training.initial = read_front_weights(options.from);
+        options.run.training.initial_name = file_hash(options.from);
+    }
     AtomicFile output(options.out);
     const FrontTrainingRun result =
         run_front_training(options.run, [&](const FrontProgress& progress) { print(progress, options.run); });
@@ -113,6 +120,10 @@ void add_train_front_command(CLI::App& train_command) {
                       "weight of the loss over the best lanes");
     add_count_option(command, "--figures-every", training.figures_every,
                      "steps between two measurements on the tracks held out");
+    command.add_option(
+        "--from", options->from,
+        "weights to begin with, such as those of an earlier version; drawn weights without it. "
+        "The record has the hash of the file");
     command.add_option("--checkpoint", training.checkpoint,
                        "file of the training's state, from which a stopped training resumes");
     command.add_option("--seed", training.seed, "seed of all random draws")->capture_default_str();
@@ -122,6 +133,10 @@ void add_train_front_command(CLI::App& train_command) {
     command.add_flag("!--no-disturbance", training.scenes.disturb, "no noise, missed cones and pose error");
     command.add_flag("--other-course", training.scenes.other_course,
                      "a second course lies beside the first in a third of the draws");
+    command.add_flag("!--no-colors", training.scenes.colors,
+                     "no cone has a colour; else in half of the draws");
+    command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
+                     "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
     command

@@ -74,8 +74,27 @@ ConeColor color_of(const std::string& name, const std::string& key) {
     return *color;
 }
 
+/// Rows of probabilities, and the most probable labels.
+void set_color_probabilities(std::vector<Cone>& cones, const Numbers& given) {
+    constexpr py::ssize_t kClasses = 5;
+    if (given.shape(0) != static_cast<py::ssize_t>(cones.size()) || given.shape(1) != kClasses)
+        throw InvalidInput("colors", "has shape " + shape_of(given) + ", not (" +
+                                         std::to_string(cones.size()) + ", 5) or (" +
+                                         std::to_string(cones.size()) + ",)");
+    const double* row = given.data();
+    for (Cone& cone : cones) {
+        cone.color_probabilities = ColorProbabilities{row[0], row[1], row[2], row[3], row[4]};
+        cone.color = most_probable_color(*cone.color_probabilities);
+        row += kClasses;
+    }
+}
+
 void set_colors(std::vector<Cone>& cones, py::handle object) {
     const py::array given = any_array(object, "colors");
+    if (given.ndim() == 2) {
+        set_color_probabilities(cones, numbers(object, "colors"));
+        return;
+    }
     require_length(given, cones.size(), "colors");
     if (cones.empty()) return;
     const auto key = [](std::size_t i) { return "colors[" + std::to_string(i) + "]"; };
@@ -276,6 +295,16 @@ py::array_t<std::uint8_t> colors(std::span<const Cone> cones) {
     return column<std::uint8_t>(cones, [](const Cone& cone) {
         return static_cast<std::uint8_t>(std::ranges::find(kColors, cone.color) - kColors.begin());
     });
+}
+
+py::array_t<double> color_probabilities(std::span<const Cone> cones) {
+    py::array_t<double> rows({static_cast<py::ssize_t>(cones.size()), py::ssize_t{5}});
+    double* out = rows.mutable_data();
+    for (const Cone& cone : cones) {
+        const ColorProbabilities p = cone.probabilities();
+        for (const double value : {p.unknown, p.blue, p.yellow, p.orange, p.big_orange}) *out++ = value;
+    }
+    return rows;
 }
 
 py::array_t<double> confidences(std::span<const Cone> cones) {

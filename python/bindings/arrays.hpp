@@ -49,6 +49,8 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] py::array_t<double> positions(std::span<const Cone> cones);
 [[nodiscard]] Indices ids(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<std::uint8_t> colors(std::span<const Cone> cones);
+/// (N, 5): unknown, blue, yellow, orange, big orange.
+[[nodiscard]] py::array_t<double> color_probabilities(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<double> confidences(std::span<const Cone> cones);
 /// Positions of the cones with these ids in the list. Throws InvalidInput naming `key` for an unknown id.
 [[nodiscard]] std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,

@@ -194,8 +194,10 @@ pose : (3,) array_like of float
 ids : (N,) array_like of int, optional
     What cones are called, each once. Detectors that remember their last lane (`...-warm`) know a cone by its
     id. By default the index.
-colors : (N,) array_like of str or int, optional
-    "unknown", "blue", "yellow", "orange", or their codes 0 to 3 (`Color`). By default unknown.
+colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
+    "unknown", "blue", "yellow", "orange", or their codes 0 to 3 (`Color`). Or probabilities of unknown, blue,
+    yellow, small orange and big orange, which add up to 1 for each cone: `front` uses them, other detectors
+    the most probable label. By default unknown.
 confidences : (N,) array_like of float, optional
     Of the detections, in [0, 1]. By default 1.
 time_limit_ms : float or None

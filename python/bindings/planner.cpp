@@ -238,8 +238,8 @@ time_s : float
 ids : (N,) array_like of int, optional
     What the map calls the cones, each once; `NO_ID` for a cone that it does not know. Without ids a cone is known
     again by its place.
-colors : (N,) array_like of str or int, optional
-    As of `Detector.detect`. Orange cones on both sides of the lane are the start line.
+colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
+    As of `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are the start line.
 time_limit_ms : float or None
     Of the detector, wall clock [ms]; None for no limit.
 confidences : (N,) array_like of float, optional

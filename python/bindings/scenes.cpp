@@ -123,6 +123,10 @@ Examples
             "colors", [](const AnnotatedScene& s) { return python::colors(s.scene.cones); },
             "(N,) ndarray of uint8: codes, see `Color`")
         .def_property_readonly(
+            "color_probabilities",
+            [](const AnnotatedScene& s) { return python::color_probabilities(s.scene.cones); },
+            "(N, 5) ndarray of float64: of unknown, blue, yellow, orange, big orange; of a label 1 and 0")
+        .def_property_readonly(
             "confidences", [](const AnnotatedScene& s) { return python::confidences(s.scene.cones); },
             "(N,) ndarray of float64")
         .def_property_readonly(

@@ -95,6 +95,13 @@ class Answers(unittest.TestCase):
         for colors in (names, np.array(names), codes, np.array(codes, dtype=np.uint8)):
             lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, colors=colors)
             self.assertEqual(lane.colors.tolist(), [2, 1] * 4)
+        rows = [[0.1, 0.2, 0.7, 0, 0], [0, 0.5, 0.25, 0.25, 0]] * 4
+        lane = conelane.Detector("front").detect(STRAIGHT, ORIGIN, colors=rows)
+        self.assertEqual(lane.colors.tolist(), [2, 1] * 4)
+        scene = conelane.Scene(STRAIGHT, ORIGIN, colors=rows)
+        self.assertEqual(scene.color_probabilities.tolist(), rows)
+        self.assertEqual(conelane.Scene(STRAIGHT, ORIGIN, colors=names).color_probabilities[0].tolist(),
+                         [0, 0, 1, 0, 0])
 
     def test_an_answer_keeps_its_own_cones(self):
         cones = STRAIGHT.copy()
@@ -151,6 +158,9 @@ class Refusals(unittest.TestCase):
         self.check("cones: has dtype object, not real numbers", np.array([[None, 1]]))
         self.check("ids: has dtype float64, not whole numbers", ids=np.arange(8.0))
         self.check("ids[1]: is above 2^63 - 1", ids=np.array([0, 2**63] + [1] * 6, dtype=np.uint64))
+        self.check("colors: has shape (8, 4), not (8, 5) or (8,)", colors=np.zeros((8, 4)))
+        self.check("cones[0].color_probabilities: must add up to 1", colors=np.zeros((8, 5)))
+        self.check("cones[0].color_probabilities: must be in [0, 1]", colors=np.full((8, 5), 2.0))
         self.check("colors: has dtype float64, not names or codes of colours", colors=np.zeros(8))
         self.check("colors[0]: 'red' is not a colour; colours are unknown, blue, yellow, orange", colors=["red"] * 8)
         self.check("colors[2]: 7 is not a colour; colours are 0 to 3: unknown, blue, yellow, orange",

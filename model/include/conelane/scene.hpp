@@ -3,6 +3,7 @@
 #include "conelane/point.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,11 +28,34 @@ struct Pose {
 enum class ConeColor { unknown, blue, yellow, orange };
 [[nodiscard]] std::string_view to_string(ConeColor color);
 
+/// How likely a cone is of each class, each in [0, 1], all together 1.
+struct ColorProbabilities {
+    double unknown = 0.0;  ///< that its class cannot be told
+    double blue = 0.0;
+    double yellow = 0.0;
+    double orange = 0.0;  ///< a small one
+    double big_orange = 0.0;
+
+    bool operator==(const ColorProbabilities&) const = default;
+};
+/// Of a label: 1 for it, 0 for all others. Orange cones count as small ones.
+[[nodiscard]] ColorProbabilities probabilities_of(ConeColor color);
+/// The most probable label, big orange cones with the small ones; unknown where two are equally probable.
+[[nodiscard]] ConeColor most_probable_color(const ColorProbabilities& probabilities);
+
 struct Cone {
     ConeId id = 0;
     Point position{0.0, 0.0};  ///< [m], map frame
     ConeColor color = ConeColor::unknown;
     double confidence = 1.0;  ///< of the detection, in [0, 1]
+    /// What is known beyond the label `color`. Where it is there, `front` looks at it alone, and all other
+    /// detectors at `color` alone.
+    std::optional<ColorProbabilities> color_probabilities{};
+
+    /// Those, or those of the label.
+    [[nodiscard]] ColorProbabilities probabilities() const {
+        return color_probabilities ? *color_probabilities : probabilities_of(color);
+    }
 };
 
 /// The input of a lane detector, without ground truth. Cones are unordered; their ids are distinct.
@@ -41,8 +65,9 @@ struct Scene {
     std::vector<Cone> cones;
 };
 
-/// Throws InvalidInput, naming the key, if a number is not finite, a confidence is outside [0, 1] or an id
-/// occurs twice. A scene without cones is valid: it has no lane.
+/// Throws InvalidInput, naming the key, if a number is not finite, a confidence or a probability is outside
+/// [0, 1], the probabilities of a cone add up to less than 0.999 or more than 1.001, or an id occurs twice. A
+/// scene without cones is valid: it has no lane.
 void validate(const Scene& scene);
 /// The same, with `ids` as workspace: it allocates only if `ids` has too little capacity.
 void validate(const Scene& scene, std::vector<ConeId>& ids);

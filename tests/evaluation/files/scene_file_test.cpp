@@ -90,6 +90,43 @@ TEST_F(SceneFileTest, WritesTheKeysInTheOrderOfTheFormat) {
     EXPECT_EQ(read_scenes(path("out")).front().seed, scene.seed);
 }
 
+TEST_F(SceneFileTest, ProbabilitiesOfColorsStandBesideTheLabelOrGiveIt) {
+    const fs::path file = file_with(scene(
+        R"({"id": 1, "x": 1, "y": 2, "color": "yellow", "color_probabilities": [0.25, 0.5, 0.125, 0.125, 0]},)"
+        R"({"id": 2, "x": 1, "y": 3, "color_probabilities": [0, 0.1, 0.3, 0.25, 0.35]},)"
+        R"({"id": 3, "x": 1, "y": 4, "color_probabilities": [0, 0.5, 0.5, 0, 0]},)"
+        R"({"id": 4, "x": 1, "y": 5, "color": "blue"})"));
+    const std::vector<AnnotatedScene> read = read_scenes(file);
+    const std::vector<Cone>& cones = read.front().scene.cones;
+    EXPECT_EQ(cones[0].color, ConeColor::yellow);
+    EXPECT_EQ(cones[0].probabilities(), (ColorProbabilities{0.25, 0.5, 0.125, 0.125, 0.0}));
+    EXPECT_EQ(cones[1].color, ConeColor::orange);
+    EXPECT_EQ(cones[2].color, ConeColor::unknown);  // blue and yellow are equally probable
+    EXPECT_FALSE(cones[3].color_probabilities.has_value());
+    EXPECT_EQ(cones[3].probabilities(), (ColorProbabilities{0.0, 1.0, 0.0, 0.0, 0.0}));
+    write_scenes(path("out"), read);
+    EXPECT_THAT(text_of(path("out")),
+                testing::HasSubstr(R"("color":"yellow","confidence":1.0,)"
+                                   R"("color_probabilities":[0.25,0.5,0.125,0.125,0.0]})"));
+    EXPECT_THAT(text_of(path("out")), testing::HasSubstr(R"("color":"blue","confidence":1.0})"));
+    EXPECT_EQ(read_scenes(path("out")).front().scene.cones[1].color_probabilities,
+              cones[1].color_probabilities);
+}
+
+TEST_F(SceneFileTest, NamesBadProbabilitiesOfColors) {
+    const auto error_with = [&](const std::string& list) {
+        return error_in(scene(R"({"id": 1, "x": 1, "y": 2, "color_probabilities": )" + list + "}"));
+    };
+    EXPECT_EQ(error_with("[0, 1, 0, 0]"),
+              "s.jsonl:1: cones[0].color_probabilities: must hold 5 numbers: "
+              "unknown, blue, yellow, orange, big orange");
+    EXPECT_EQ(error_with("[0, 1.5, 0, 0, 0]"),
+              "s.jsonl:1: cones[0].color_probabilities[1]: must be in [0, 1]");
+    EXPECT_EQ(error_with("[0, 0.4, 0.4, 0, 0]"), "s.jsonl:1: cones[0].color_probabilities: must add up to 1");
+    EXPECT_EQ(error_with("[0, \"a\", 0, 0, 1]"),
+              "s.jsonl:1: cones[0].color_probabilities[1]: must be a number");
+}
+
 TEST_F(SceneFileTest, ConditionAndMissedConesAreThereWhereASceneHasThem) {
     AnnotatedScene made;
     made.scene = {"a", {{0, 0}, 0}, {{7, {1, 2}}}};

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -121,6 +122,35 @@ TEST(SceneGeneration, ColorsShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem)
     for (const ConeColor color : {ConeColor::blue, ConeColor::yellow, ConeColor::unknown}) {
         EXPECT_GT(count[color], 10);  // of 63 false positives
     }
+}
+
+TEST(SceneGeneration, UnknownColorsAreThoseOfTheCourseAlone) {
+    const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.3}, {15.0});
+    wanted.with_color = true;
+    wanted.color_error_rate = 0.1;
+    const auto seen = generate(straight(), poses, wanted);
+    wanted.color_unknown_rate = 0.4;
+    const auto scenes = generate(straight(), poses, wanted);
+    ASSERT_THAT(scenes, SizeIs(1000));
+    EXPECT_EQ(scenes[3].scene.id, "toy/pose_0003/fp_0.30/range_15/color_error_0.1/color_unknown_0.4");
+    double unknown = 0.0;
+    double boundary = 0.0;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        std::set<ConeId> on_lane(scenes[i].ground_truth->left.begin(), scenes[i].ground_truth->left.end());
+        on_lane.insert(scenes[i].ground_truth->right.begin(), scenes[i].ground_truth->right.end());
+        for (const Cone& cone : scenes[i].scene.cones) {
+            const ConeColor before = cone_of(seen[i], cone.id).color;
+            if (cone.color != ConeColor::unknown || !on_lane.contains(cone.id)) {
+                // What is seen, and false positives, are as without: the stray point of the map is unknown.
+                EXPECT_EQ(cone.color, before);
+            }
+            if (!on_lane.contains(cone.id)) continue;
+            boundary += 1.0;
+            unknown += cone.color == ConeColor::unknown ? 1.0 : 0.0;
+        }
+    }
+    EXPECT_NEAR(unknown / boundary, 0.4, 0.03);
 }
 
 TEST(SceneGeneration, ColorErrorsPaintConesOfABoundaryLikeTheOtherOne) {

@@ -183,6 +183,13 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
               "color-error: must be in [0, 1]");
     EXPECT_EQ(error([](SceneOptions& o) { o.color_error_rate = 0.1; }),
               "color-error: needs scenes with colour");
+    EXPECT_EQ(error([](SceneOptions& o) { o.color_unknown_rate = 0.1; }),
+              "color-unknown: needs scenes with colour");
+    EXPECT_EQ(error([](SceneOptions& o) {
+                  o.with_color = true;
+                  o.color_unknown_rate = -0.5;
+              }),
+              "color-unknown: must be in [0, 1]");
     EXPECT_EQ(error([](SceneOptions& o) { o.threads = 0; }), "threads: must be in [1, 1024]");
     EXPECT_EQ(error([](SceneOptions& o) { o.conditions = {"rain"}; }),
               "condition: 'rain' is not one of paper, car, harsh");

@@ -15,15 +15,18 @@
 #include "tests/support/test_paths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <ranges>
 #include <sstream>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace conelane::experiments {
 namespace {
@@ -371,6 +374,61 @@ TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
     EXPECT_TRUE(parse_front_weights(text.str()) == shipped_front_weights());
 }
 
+/// What a file of version 1 lacks is the features of colors; its numbers stand for the other ones.
+TEST(FrontWeightsFile, OfVersionOneKnowNoColors) {
+    FrontWeights weights = random_front_weights(8);
+    weights.rank = random_network(kWholeLaneFeatures, 5);
+    weights.right = random_network(kRightInputs, 6);
+    // The blocks of inputs of each network, with how many of each are of colors.
+    using Blocks = std::vector<std::pair<std::size_t, std::size_t>>;
+    const Blocks state_and_extend{{kStateFeatures, kStateColorFeatures},
+                                  {kExtendFeatures, kExtendColorFeatures}};
+    Blocks right{{kConeFeatures, 0}};
+    right.insert(right.end(), state_and_extend.begin(), state_and_extend.end());
+    const std::vector<std::pair<FrontNetworkWeights*, Blocks>> networks{
+        {&weights.extend, state_and_extend},
+        {&weights.stop, {{kStateFeatures, kStateColorFeatures}, {kStopFeatures, kStopColorFeatures}}},
+        {&weights.start, {{kStartFeatures, kStartColorFeatures}}},
+        {&weights.rank, {{kWholeLaneFeatures, kWholeLaneColorFeatures}}},
+        {&weights.usable, {{kWholeLaneFeatures, kWholeLaneColorFeatures}}},
+        {&weights.right, right}};
+    const auto for_each_color = [](const Blocks& blocks, const auto& use) {
+        std::size_t first = 0;
+        for (const auto& [inputs, colors] : blocks) {
+            for (std::size_t i = inputs - colors; i < inputs; ++i) use(first + i);
+            first += inputs;
+        }
+    };
+    for (const auto& [network, blocks] : networks) {
+        for_each_color(blocks, [net = network](std::size_t input) {
+            net->linear[input] = 0.0F;
+            std::fill_n(net->hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits), kFrontUnits,
+                        0.0F);
+        });
+    }
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(front_weights_json(weights, "{}"));
+    json["version"] = 1;
+    for (const FrontFeatureList& list : front_feature_lists()) {
+        auto& names = json["features"][std::string(list.key)];
+        names.erase(names.end() - static_cast<std::ptrdiff_t>(list.colors), names.end());
+    }
+    const std::array keys{"extend", "stop", "start", "rank", "usable", "right"};
+    for (std::size_t n = 0; n < keys.size(); ++n) {
+        std::vector<std::size_t> colors;
+        for_each_color(networks[n].second, [&](std::size_t input) { colors.push_back(input); });
+        auto& linear = json[keys[n] + std::string("_linear")];
+        auto& hidden = json[keys[n] + std::string("_hidden")];
+        for (const std::size_t input : std::views::reverse(colors)) {
+            linear.erase(input);
+            const auto from = hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits);
+            hidden.erase(from, from + kFrontUnits);
+        }
+    }
+    EXPECT_TRUE(parse_front_weights(json.dump()) == weights);
+    json["version"] = 2;
+    EXPECT_THROW((void)parse_front_weights(json.dump()), InvalidInput);
+}
+
 TEST(FrontWeightsFile, ErrorsNameTheKey) {
     const std::string good = front_weights_json(random_front_weights(8), "{}");
     const auto key_of = [&](const std::string& from, const std::string& to) -> std::string {
@@ -385,7 +443,8 @@ TEST(FrontWeightsFile, ErrorsNameTheKey) {
         }
         return "accepted";
     };
-    EXPECT_EQ(key_of("\"version\": 1", "\"version\": 2"), "version");
+    EXPECT_EQ(key_of("\"version\": 2", "\"version\": 3"), "version");
+    EXPECT_EQ(key_of("\"version\": 2", "\"version\": 1"), "features");  // which has no colors
     EXPECT_EQ(key_of("own_segment_known", "unknown"), "features");
     EXPECT_EQ(key_of("\"stop_linear\"", "\"stop_lines\""), "stop_linear");
     EXPECT_EQ(key_of("\"start_hidden\": [", "\"start_hidden\": [1,"), "start_hidden");

@@ -4,6 +4,7 @@
 #include "graph_search/front/front_features.hpp"
 
 #include "graph_search/front/front_cost.hpp"
+#include "graph_search/front/front_judge_features.hpp"
 #include "tests/support/front_fixture.hpp"
 
 #include <algorithm>
@@ -26,10 +27,11 @@ constexpr float kRounding = 1e-4F;  ///< angles are approximated
 /// Cones of a scene by their place in it, so that a test can name them; the car stands at the origin.
 class Growth {
   public:
-    explicit Growth(const std::vector<Point>& cones) {
-        Scene scene;
+    /// `colors`: of the first cones; the others' are unknown.
+    explicit Growth(const std::vector<Point>& cones, const std::vector<ConeColor>& colors = {}) {
         for (const Point& cone : cones)
             scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), cone});
+        for (std::size_t i = 0; i < colors.size(); ++i) scene.cones[i].color = colors[i];
         map.build(scene);
         vertex_.resize(cones.size());
         for (Vertex v = 0; v < map.size(); ++v) vertex_[map.scene_index(v)] = v;
@@ -45,6 +47,7 @@ class Growth {
     void go_on(Side side, std::size_t to) { state = moved(map, state, side, move(side, to)); }
     [[nodiscard]] Vertex vertex(std::size_t cone) const { return vertex_[cone]; }
 
+    Scene scene;
     FrontMap map;
     FrontState state;
 
@@ -119,6 +122,104 @@ TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
     EXPECT_NEAR(named(state_feature_table(), right, "mean_segment"), (3.5F + 3.0F) / 2.0F / 4.0F, kRounding);
     // Beside the beginning of the last segment it is as wide as between the cones there.
     EXPECT_NEAR(named(state_feature_table(), right, "width"), 4.0F / 4.0F, kRounding);
+}
+
+constexpr ConeColor kBlue = ConeColor::blue;
+constexpr ConeColor kYellow = ConeColor::yellow;
+constexpr ConeColor kUnknown = ConeColor::unknown;
+
+/// The left boundary 0, 1, 2 with a cone 6 beside its second segment, the right one 3, 4, 5:
+///     0 ----- 1 --6-- 2
+///     3 ----- 4 ----- 5
+std::vector<Point> colored_lane() {
+    return {{2.0, 1.8}, {6.0, 1.8}, {10.0, 1.8}, {2.0, -1.8}, {6.0, -1.8}, {10.0, -1.8}, {8.0, 2.8}};
+}
+
+TEST(FrontFeatures, OfColorsSpeakForAndAgainstTheSideThatMoves) {
+    Growth lane(colored_lane(), {kBlue, kYellow, kBlue, kYellow, kYellow, ConeColor::orange, kBlue});
+    lane.start(0, 3);
+    lane.go_on(kLeft, 1);  // onto a yellow cone
+    lane.go_on(kRight, 4);
+    const StateMeasures measures = measure(lane.map, lane.state, kLeft);
+    const StateFeatures state = state_features(lane.map, lane.state, kLeft, measures);
+    const auto of_state = [&](std::string_view name) { return named(state_feature_table(), state, name); };
+    EXPECT_FLOAT_EQ(of_state("color_share"), 6.0F / 7.0F);
+    EXPECT_FLOAT_EQ(of_state("color_agreement"), (3.0F - 1.0F) / 5.0F);
+    EXPECT_EQ(of_state("color_end"), -1.0F);
+    EXPECT_EQ(of_state("color_other_end"), 1.0F);
+    // The nearest one to each within 5.8 m that is blue or yellow: 0-3 differ, both ways; 1-6 (3.83 m off)
+    // are farther apart than 1-4 (3.6 m), alike, both ways; 2-6 alike, both ways; 6 has 2 and 1 to choose.
+    EXPECT_FLOAT_EQ(of_state("color_consistency"), (-2.0F + 2.0F + 2.0F) / 6.0F);
+
+    const ExtendFeatures left = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 2), measures);
+    const auto of_left = [&](std::string_view name) { return named(extend_feature_table(), left, name); };
+    EXPECT_EQ(of_left("color_own"), 1.0F);
+    EXPECT_EQ(of_left("color_against"), 0.0F);
+    EXPECT_EQ(of_left("color_orange"), 0.0F);
+    EXPECT_EQ(of_left("color_none"), 0.0F);
+    EXPECT_NEAR(of_left("color_beside"), 0.5F, kRounding);  // 1 of 2 m away, and blue
+    EXPECT_EQ(of_left("color_partner"), 0.0F);              // an orange cone
+
+    const StateMeasures of_right = measure(lane.map, lane.state, kRight);
+    const ExtendFeatures right =
+        extend_features(lane.map, lane.state, kRight, lane.move(kRight, 5), of_right);
+    EXPECT_EQ(named(extend_feature_table(), right, "color_orange"), 1.0F);
+    EXPECT_EQ(named(extend_feature_table(), right, "color_own"), 0.0F);
+    const ExtendFeatures astray =
+        extend_features(lane.map, lane.state, kRight, lane.move(kRight, 2), of_right);
+    EXPECT_EQ(named(extend_feature_table(), astray, "color_against"), 1.0F);
+
+    const StopFeatures stop = stop_features(lane.map, lane.state, kLeft, left);
+    EXPECT_EQ(named(stop_feature_table(), stop, "color_next"), 1.0F);  // cone 2 stands where the next should
+    EXPECT_NEAR(named(stop_feature_table(), stop, "color_goes_on"), 2.0F, kRounding);
+}
+
+TEST(FrontFeatures, OfColorsTakeProbabilities) {
+    Growth lane(colored_lane());
+    lane.scene.cones[0].color = kBlue;
+    lane.scene.cones[1].color_probabilities = ColorProbabilities{0.5, 0.3, 0.1, 0.04, 0.06};
+    lane.map.build(lane.scene);
+    lane.start(0, 3);
+    const StateMeasures measures = measure(lane.map, lane.state, kLeft);
+    const ExtendFeatures seen = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 1), measures);
+    const auto of = [&](std::string_view name) { return named(extend_feature_table(), seen, name); };
+    EXPECT_FLOAT_EQ(of("color_own"), 0.3F);
+    EXPECT_FLOAT_EQ(of("color_against"), 0.1F);
+    EXPECT_FLOAT_EQ(of("color_orange"), 0.1F);
+    EXPECT_NEAR(of("color_none"), 0.5F * 1.4F / 7.0F, 1e-6F);
+    const StartFeatures start = start_features(lane.map, start_cone(lane.map, lane.vertex(1)),
+                                               start_cone(lane.map, lane.vertex(3)), kLeft);
+    EXPECT_FLOAT_EQ(named(start_feature_table(), start, "color_own"), 0.3F);
+    EXPECT_FLOAT_EQ(named(start_feature_table(), start, "color_against"), 0.1F);
+    const StartFeatures swapped = start_features(lane.map, start_cone(lane.map, lane.vertex(1)),
+                                                 start_cone(lane.map, lane.vertex(3)), kRight);
+    EXPECT_FLOAT_EQ(named(start_feature_table(), swapped, "color_own"), 0.1F);
+}
+
+/// So that weights without any of colors, and scenes without colors, are judged as if there were none.
+TEST(FrontFeatures, OfColorsAreNothingWithoutColorsAndCountNothingThen) {
+    Growth lane(colored_lane());
+    lane.start(0, 3);
+    lane.go_on(kLeft, 1);
+    const StateMeasures measures = measure(lane.map, lane.state, kLeft);
+    const auto require_none = [](const auto& table, const auto& values) {
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            if (table[i].name.starts_with("color_")) EXPECT_EQ(values[i], 0.0F) << table[i].name;
+        }
+    };
+    const ExtendFeatures extend = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 2), measures);
+    require_none(state_feature_table(), state_features(lane.map, lane.state, kLeft, measures));
+    require_none(extend_feature_table(), extend);
+    require_none(stop_feature_table(), stop_features(lane.map, lane.state, kLeft, extend));
+    require_none(start_feature_table(), start_features(lane.map, start_cone(lane.map, lane.vertex(0)),
+                                                       start_cone(lane.map, lane.vertex(3)), kLeft));
+    // They stand at the end, where the cost leaves them out.
+    for (const FrontFeatureList& list : front_feature_lists()) {
+        for (std::size_t i = 0; i < list.features.size(); ++i) {
+            EXPECT_EQ(list.features[i].name.starts_with("color_"), i + list.colors >= list.features.size())
+                << list.key << " " << list.features[i].name;
+        }
+    }
 }
 
 /// From cone 0 to 1, of 4 m, with one cone inside and one outside beside it and one across:
