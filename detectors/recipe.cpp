@@ -106,7 +106,7 @@ constexpr std::array kRecipes{
 class NearestCones : public LaneDetector {
   public:
     NearestCones(std::unique_ptr<LaneDetector> detector, std::size_t nearest)
-        : detector_(std::move(detector)), nearest_(nearest) {}
+        : LaneDetector(detector->doubled_cone_m()), detector_(std::move(detector)), nearest_(nearest) {}
     void reset() override { detector_->reset(); }
 
   private:

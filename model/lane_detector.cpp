@@ -10,12 +10,18 @@
 namespace conelane {
 
 struct LaneDetector::Workspace {
+    explicit Workspace(double doubled_cone_m) : doubled(doubled_cone_m) {}
+
     std::vector<ConeId> ids;
     DoubledCones doubled;
 };
 
-LaneDetector::LaneDetector() : workspace_(std::make_unique<Workspace>()) {}
+LaneDetector::LaneDetector(double doubled_cone_m) : workspace_(std::make_unique<Workspace>(doubled_cone_m)) {}
 LaneDetector::~LaneDetector() = default;
+
+double LaneDetector::doubled_cone_m() const {
+    return workspace_->doubled.radius_m();
+}
 
 LaneAnswer LaneDetector::detect(const Scene& scene, const DetectionLimits& limits) {
     LaneAnswer failed;

@@ -51,7 +51,8 @@ bool cut_at_first_gap(Lane& lane, const Scene& scene) {
 
 class DrivableAnswers final : public LaneDetector {
   public:
-    explicit DrivableAnswers(std::unique_ptr<LaneDetector> detector) : detector_(std::move(detector)) {}
+    explicit DrivableAnswers(std::unique_ptr<LaneDetector> detector)
+        : LaneDetector(detector->doubled_cone_m()), detector_(std::move(detector)) {}
     void reset() override { detector_->reset(); }
 
   private:

@@ -37,7 +37,8 @@ class TimedDetector : public TimedMethod {
           limits_(options.limits),
           detector_(std::move(detector)),
           nearest_(nearest),
-          check_(std::move(check)) {}
+          check_(std::move(check)),
+          doubled_(detector_->doubled_cone_m()) {}
 
     LaneRecord answer(const Scene& scene) override {
         const Stopwatch watch;

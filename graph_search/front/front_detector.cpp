@@ -44,7 +44,10 @@ double near_width_m(const FrontMap& map, const std::vector<Vertex>& boundary,
 class FrontDetector final : public LaneDetector {
   public:
     explicit FrontDetector(const FrontOptions& options)
-        : cost_(options.weights), judge_(options.weights), options_(options.search) {
+        : LaneDetector(kFrontDoubledCone_m),
+          cost_(options.weights),
+          judge_(options.weights),
+          options_(options.search) {
         validate(options_);
         if (options.repeat_bonus) evidence_.emplace(*options.repeat_bonus);
     }

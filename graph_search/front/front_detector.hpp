@@ -8,6 +8,11 @@
 
 namespace conelane {
 
+/// Cones that stand at most this far apart [m] are one cone for `front` in scenes that have many of them (see
+/// DoubledCones). True cones of different boundaries stand metres apart, so at most cones of one boundary
+/// become one, or a false cone stands for a true one beside it, within what a lane may be off.
+inline constexpr double kFrontDoubledCone_m = 0.35;
+
 struct FrontOptions {
     FrontWeights weights;
     FrontSearchOptions search;

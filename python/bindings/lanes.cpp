@@ -128,7 +128,7 @@ lane was found, and where a file says nothing: trust none of that lane then.)")
                 return merged;
             },
             R"(dict of int to int: ids of the cones that the detector did not look at, since each stands within 0.12 m of
-another one, and the id that stands for both; empty for a lane from a file)")
+another one (front, front-warm: 0.35 m), and the id that stands for both; empty for a lane from a file)")
         .def_property_readonly("objective", objective, "float or None: of a detector that states one")
         .def_property_readonly(
             "bound",

@@ -28,14 +28,15 @@ namespace {
 
 constexpr ConeId kDouble = 1000;  ///< id of a cone's double, less that of the cone
 
-/// Every cone of the scene again at that distance, each in another direction, ahead of all others in the
-/// list.
+/// Every cone of the scene again, each in another direction and ahead of all others in the list: that much
+/// farther from the car, which is at the origin, or nearer where it is negative.
 Scene doubled(const Scene& scene, double distance_m) {
     Scene twice = scene;
     twice.cones.clear();
     for (std::size_t i = 0; i < scene.cones.size(); ++i) {
         Cone cone = scene.cones[i];
-        const double direction_rad = 2.4 * static_cast<double>(i);
+        const double direction_rad =
+            std::atan2(cone.position.y(), cone.position.x()) + std::sin(2.4 * static_cast<double>(i));
         cone.id += kDouble;
         cone.position += distance_m * Point(std::cos(direction_rad), std::sin(direction_rad));
         twice.cones.push_back(cone);
@@ -67,7 +68,7 @@ TEST_P(DoubledConesOf, UpToTenCentimetresAreOneCone) {
         SCOPED_TRACE(distance_m);
         const LaneAnswer answer = detect(doubled(once, distance_m));
         EXPECT_EQ(answer.status, LaneStatus::found) << answer.message;
-        EXPECT_EQ(answer.lane, expected.lane) << "by the smaller ids";
+        EXPECT_EQ(answer.lane, expected.lane) << "by the nearer cones";
         EXPECT_EQ(answer.confidence, expected.confidence);
         EXPECT_EQ(answer.trusted_m, expected.trusted_m);
         ASSERT_EQ(answer.merged.size(), once.cones.size());
@@ -78,13 +79,81 @@ TEST_P(DoubledConesOf, UpToTenCentimetresAreOneCone) {
 
 TEST_P(DoubledConesOf, FartherApartTheyAreCones) {
     const Scene once = tests::straight_front_scene(5);
-    for (const double distance_m : {0.2, 0.3}) {
+    const double radius_m = make_detector(GetParam())->doubled_cone_m();
+    for (const double distance_m : {0.2, 0.3, 0.4}) {
+        if (distance_m <= radius_m) continue;
         SCOPED_TRACE(distance_m);
         const LaneAnswer answer = detect(doubled(once, distance_m));
         EXPECT_NE(answer.status, LaneStatus::error) << answer.message;
         EXPECT_TRUE(answer.merged.empty());
     }
 }
+
+/// The radius is the detector's own, also through what wraps it.
+TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
+    const Scene once = tests::straight_front_scene(5);
+    const std::unique_ptr<LaneDetector> nearest = make_detector(GetParam(), {.nearest = 8});
+    EXPECT_EQ(nearest->doubled_cone_m(), make_detector(GetParam())->doubled_cone_m());
+    const LaneAnswer expected = nearest->detect(once, tests::kNoTimeLimit);
+    nearest->reset();
+    const LaneAnswer answer =
+        nearest->detect(doubled(once, 0.99 * nearest->doubled_cone_m()), tests::kNoTimeLimit);
+    EXPECT_EQ(answer.status, expected.status);
+    EXPECT_EQ(answer.lane, expected.lane);
+    EXPECT_EQ(answer.merged.size(), once.cones.size());
+}
+
+class DoublesOfFront : public testing::TestWithParam<std::string> {};
+
+/// At 1, 5, 10, 20 and 30 cm, whether all cones are doubled or every third one, and whichever of the two is
+/// nearer.
+TEST_P(DoublesOfFront, TakeNoTrustAway) {
+    const auto detect = [&](const Scene& scene) {
+        return make_detector(GetParam())->detect(scene, tests::kNoTimeLimit);
+    };
+    EXPECT_EQ(make_detector(GetParam())->doubled_cone_m(), kFrontDoubledCone_m);
+    const Scene once = tests::straight_front_scene(7);
+    const LaneAnswer expected = detect(once);
+    ASSERT_EQ(expected.status, LaneStatus::found);
+    ASSERT_GT(expected.trusted_m.value_or(0.0), 15.0);
+    for (const double distance_m : {0.01, 0.05, 0.1, 0.2, 0.3}) {
+        for (const std::size_t every : {std::size_t{1}, std::size_t{3}}) {
+            SCOPED_TRACE(testing::Message() << distance_m << " m, every " << every);
+            const std::size_t count = once.cones.size();
+            const auto doubled_at = [&](double farther_m) {
+                Scene twice = doubled(once, farther_m);
+                for (std::size_t i = count; i-- > 0;) {
+                    if (i % every != 0)
+                        twice.cones.erase(twice.cones.begin() + static_cast<std::ptrdiff_t>(i));
+                }
+                return twice;
+            };
+            const std::size_t doubles = (count + every - 1) / every;
+            const LaneAnswer first_kept = detect(doubled_at(distance_m));
+            EXPECT_EQ(first_kept.lane, expected.lane);
+            EXPECT_EQ(first_kept.trusted_m, expected.trusted_m);
+            EXPECT_EQ(first_kept.confidence, expected.confidence);
+            EXPECT_EQ(first_kept.merged.size(), doubles);
+            // The double is nearer: it stands for the cone, off by the distance.
+            const LaneAnswer double_kept = detect(doubled_at(-distance_m));
+            ASSERT_EQ(double_kept.merged.size(), doubles);
+            for (const MergedCone& merged : double_kept.merged) EXPECT_EQ(merged.into, merged.cone + kDouble);
+            Lane lane = double_kept.lane;
+            for (std::vector<ConeId>* side : {&lane.left, &lane.right}) {
+                for (ConeId& id : *side) id -= id >= kDouble ? kDouble : 0;
+            }
+            EXPECT_EQ(lane, expected.lane);
+            EXPECT_GT(double_kept.trusted_m.value_or(0.0), *expected.trusted_m - 1.0);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Front, DoublesOfFront, testing::Values("front", "front-warm"),
+                         [](const auto& detector) {
+                             std::string words = detector.param;
+                             std::ranges::replace(words, '-', '_');
+                             return words;
+                         });
 
 std::vector<std::string> all_names() {
     std::vector<std::string> names;
@@ -99,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), []
 });
 
 TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = tests::straight_front_scene(10);
         EXPECT_EQ(&doubles.merge(scene), &scene);
@@ -110,9 +179,11 @@ TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
 }
 
 TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
-    DoubledCones doubles;
     std::size_t merged = 0;
+    std::size_t crowds = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        const double radius_m = seed % 4 < 2 ? kDoubledCone_m : DoubledCones::kMaxRadius_m;
+        DoubledCones doubles(radius_m);
         SCOPED_TRACE(seed);
         boost::random::mt19937_64 random(seed);
         // From crowds to few doubles; about the origin, and where cells have large numbers.
@@ -128,34 +199,67 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         const std::vector<ConeId> kept = ids(once);
         merged += doubles.merged().size();
         EXPECT_EQ(kept.size() + doubles.merged().size(), scene.cones.size());
+        const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
+        const bool has_far_doubles = std::ranges::any_of(doubles.merged(), [&](const MergedCone& cone) {
+            return (at(cone.cone) - at(cone.into)).norm() > kDoubledCone_m;
+        });
+        const double apart_m = has_far_doubles ? radius_m : kDoubledCone_m;
+        crowds += has_far_doubles ? 1 : 0;
         for (const Cone& a : once.cones) {
             for (const Cone& b : once.cones) {
                 if (a.id == b.id) continue;
-                EXPECT_GT((a.position - b.position).norm(), kDoubledCone_m);
+                EXPECT_GT((a.position - b.position).norm(), apart_m);
             }
         }
-        const auto at = [&](ConeId id) { return std::ranges::find(scene.cones, id, &Cone::id)->position; };
         for (const MergedCone& cone : doubles.merged()) {
             EXPECT_EQ(std::ranges::count(kept, cone.cone), 0);
             EXPECT_EQ(std::ranges::count(kept, cone.into), 1);
-            EXPECT_LT(cone.into, cone.cone);
-            EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), kDoubledCone_m);
+            EXPECT_LE(at(cone.into).norm(), at(cone.cone).norm());
+            EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), radius_m);
         }
-        // The order of the list does not count.
+        // The order of the list does not count, nor do the ids.
         std::vector<MergedCone> before = doubles.merged();
         std::ranges::reverse(scene.cones);
         std::vector<ConeId> reversed = ids(doubles.merge(scene));
+        const std::vector<ConeId> reversed_in_list_order = reversed;
         std::ranges::reverse(reversed);
         EXPECT_EQ(reversed, kept);
         EXPECT_EQ(doubles.merged(), before);
+        for (Cone& cone : scene.cones) cone.id = 100 - cone.id;
+        std::vector<ConeId> renumbered = ids(doubles.merge(scene));
+        for (ConeId& id : renumbered) id = 100 - id;
+        EXPECT_EQ(renumbered, reversed_in_list_order);
     }
     EXPECT_GT(merged, 200U) << "scenes without doubles show little";
+    EXPECT_GT(crowds, 5U);
+}
+
+/// False cones stand near true ones by chance: one pair says nothing of the map.
+TEST(DoubledCones, FewFarDoublesAreChance) {
+    const auto merged_of = [](std::size_t cones, std::size_t pairs, double distance_m) {
+        Scene scene;
+        for (std::size_t i = 0; i < cones; ++i) {
+            const Point position(3.0 * static_cast<double>(i), 1.5);
+            scene.cones.push_back({static_cast<ConeId>(i), position});
+            if (i < pairs)
+                scene.cones.push_back({static_cast<ConeId>(1000 + i), position + Point(distance_m, 0.0)});
+        }
+        DoubledCones doubles(0.35);
+        (void)doubles.merge(scene);
+        return doubles.merged().size();
+    };
+    EXPECT_EQ(merged_of(10, 2, 0.3), 0U) << "fewer than three";
+    EXPECT_EQ(merged_of(10, 3, 0.3), 3U);
+    EXPECT_EQ(merged_of(40, 3, 0.3), 0U) << "fewer than one for each ten cones";
+    EXPECT_EQ(merged_of(40, 4, 0.3), 4U);
+    EXPECT_EQ(merged_of(40, 1, 0.1), 1U) << "so near they are one cone, however few";
+    EXPECT_EQ(merged_of(10, 10, 0.36), 0U);
 }
 
 TEST(DoubledCones, ARowOfConesDoesNotCollapse) {
     Scene scene;
     for (ConeId id = 0; id < 10; ++id) scene.cones.push_back({id, {0.08 * static_cast<double>(id), 2.0}});
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 2, 4, 6, 8}));
 }
 
@@ -163,7 +267,7 @@ TEST(DoubledCones, FarthestPositionsAreNoTrouble) {
     const double most = std::numeric_limits<double>::max();
     Scene scene;
     scene.cones = {{0, {most, -most}}, {1, {-most, most}}, {2, {1e300, 0.0}}, {3, {1e300, 0.0}}};
-    DoubledCones doubles;
+    DoubledCones doubles(kDoubledCone_m);
     EXPECT_EQ(ids(doubles.merge(scene)), (std::vector<ConeId>{0, 1, 2}));
 }
 
@@ -175,7 +279,8 @@ TEST(DoubledCones, ManyAtOnePlaceTakeNoLongerThanManyApart) {
         const double x = near(random);
         scene.cones.push_back({id, {x, near(random)}});
     }
-    DoubledCones doubles;  // each against each other would be 2e10 distances, which no test waits for
+    DoubledCones doubles(
+        kDoubledCone_m);  // each against each other would be 2e10 distances, which no test waits for
     EXPECT_EQ(doubles.merge(scene).cones.size(), 1U);
 }
 

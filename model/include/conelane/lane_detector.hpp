@@ -49,13 +49,14 @@ struct UncutLane {
 };
 
 /// Cones at most this far apart [m] are one cone that a map holds twice: the smallest cone of the rules is
-/// 0.228 m wide, so the middles of two cones cannot be this near.
+/// 0.228 m wide, so the middles of two cones cannot be this near. A detector may merge cones that are farther
+/// apart if a scene has many of them, see LaneDetector::doubled_cone_m.
 inline constexpr double kDoubledCone_m = 0.12;
 
-/// A cone that a detector left out, because it is within kDoubledCone_m of another one.
+/// A cone that a detector left out, because it is within its doubled_cone_m of another one.
 struct MergedCone {
     ConeId cone;
-    ConeId into;  ///< the smaller id, which represents both cones in the lane
+    ConeId into;  ///< represents both in the lane: the one nearer to the car; ties: the smaller id
 
     bool operator==(const MergedCone&) const = default;
 };
@@ -85,13 +86,13 @@ struct DetectionLimits {
     bool keep_candidates = false;  ///< fill Enumeration::candidates
 };
 
-/// A way from a scene to a lane. Doubled cones are merged first: the detector sees the one with the smallest
-/// id, and its answer, also a proof, is about the scene without the others. LaneAnswer::merged names them. An
-/// instance may carry state from one scene of a lap to the next. It serves one thread; instances are
+/// A way from a scene to a lane. Doubled cones are merged first: the detector sees the one nearest to the
+/// car, and its answer, also a proof, is about the scene without the others. LaneAnswer::merged names them.
+/// An instance may carry state from one scene of a lap to the next. It serves one thread; instances are
 /// independent of each other.
 class LaneDetector {
   public:
-    LaneDetector();
+    LaneDetector() : LaneDetector(kDoubledCone_m) {}
     LaneDetector(const LaneDetector&) = delete;
     LaneDetector& operator=(const LaneDetector&) = delete;
     virtual ~LaneDetector();
@@ -100,8 +101,16 @@ class LaneDetector {
     /// exception of a search or its backend give status error and a message.
     [[nodiscard]] LaneAnswer detect(const Scene& scene, const DetectionLimits& limits = {});
 
+    /// Cones at most this far apart [m] are one cone for this detector; beyond kDoubledCone_m only in a scene
+    /// with at least three such doubles, and one for each ten cones.
+    [[nodiscard]] double doubled_cone_m() const;
+
     /// Forgets earlier scenes.
     virtual void reset() {}
+
+  protected:
+    /// Of a detector that merges cones up to `doubled_cone_m` apart, 0.4 m at most.
+    explicit LaneDetector(double doubled_cone_m);
 
   private:
     /// Precondition: the scene is valid and has no doubles, and the limit is a number.
