@@ -3,6 +3,7 @@
 #include "evaluation/files/interruption.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "experiments/options/argument_words.hpp"
+#include "experiments/options/help_formatter.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 #include "solvers/registry.hpp"
@@ -12,6 +13,7 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <memory>
 #include <span>
 #include <string>
 #include <system_error>
@@ -83,6 +85,7 @@ int run(int argument_count, char** arguments) {
     namespace experiments = conelane::experiments;
     CLI::App program("Finds the lane between cones, exactly and in real time, and compares methods that do.",
                      "conelane");
+    program.formatter(std::make_shared<experiments::HelpFormatter>());  // its commands inherit it
     program.set_version_flag("--version", version());
     program.require_subcommand(0, 1);  // none is said below, after a misspelt one
     experiments::add_compare_command(program);

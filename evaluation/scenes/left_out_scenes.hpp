@@ -3,7 +3,9 @@
 #include "evaluation/scenes/scene_set.hpp"
 #include "evaluation/tracks/track_boundaries.hpp"
 
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,10 +17,13 @@ namespace conelane {
 /// Ids in their order, by track.
 using LeftOutScenes = std::map<std::string, std::vector<std::string>>;
 
+/// Called while scenes are made, with the number of laps that are done and their total.
+using LapsMade = std::function<void(std::size_t done, std::size_t total)>;
+
 /// The same as make_scene_set, and the scenes left out, which the caller has to report.
 [[nodiscard]] SceneSet make_scene_set(const std::vector<std::string>& track_specs,
                                       const SceneOptions& options, const Shard& shard,
-                                      LeftOutScenes& left_out);
+                                      LeftOutScenes& left_out, const LapsMade& made = {});
 
 /// The same as write_scene_set, with the scenes left out in the companion.
 void write_scene_set(const std::filesystem::path& scenes_file, const SceneSet& set,

@@ -6,8 +6,11 @@
 #include "evaluation/scenes/scene_pair.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -22,38 +25,41 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
 }
 
 SceneSet make_scene_set(const std::vector<std::string>& track_specs, const SceneOptions& options,
-                        const Shard& shard, LeftOutScenes& left_out) {
+                        const Shard& shard, LeftOutScenes& left_out, const LapsMade& made) {
     validate(options);
     left_out.clear();
     SceneSet set;
     std::size_t laps_with_scenes = 0;
-    for (const std::string& spec : track_specs) {
-        for (const Track& track : load_tracks(spec)) {
-            const auto [entry, is_new] = set.tracks.emplace(track.name, boundaries(track));
-            if (!is_new) throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
-            for (const std::string& warning : track.warnings) {
-                fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
-            }
-            const TrackLaps laps(track, options);
-            std::vector<std::string> of_track;  // left out
-            for (std::size_t lap = 0; lap < laps.size(); ++lap) {
-                // Laps without a scene are not counted: no reader of a scenes file can know of them.
-                if (laps_with_scenes % shard.count != shard.index) {
-                    if (!laps.is_empty(lap)) ++laps_with_scenes;
-                    continue;
-                }
-                const std::size_t scenes_before = set.scenes.size();
-                for (AnnotatedScene& scene : laps.make(lap)) {
-                    if (scene.ground_truth || !track.driven.empty()) {
-                        set.scenes.push_back(std::move(scene));
-                    } else {
-                        of_track.push_back(scene.scene.id);
-                    }
-                }
-                if (set.scenes.size() > scenes_before) ++laps_with_scenes;
-            }
-            if (!of_track.empty()) merge(left_out, {{track.name, of_track}});
+    std::vector<Track> tracks;
+    for (const std::string& spec : track_specs)
+        std::ranges::move(load_tracks(spec), std::back_inserter(tracks));
+    std::size_t done = 0;  // laps
+    for (const Track& track : tracks) {
+        const auto [entry, is_new] = set.tracks.emplace(track.name, boundaries(track));
+        if (!is_new) throw InputError("", 0, "--tracks", "track '" + track.name + "' is named twice");
+        for (const std::string& warning : track.warnings) {
+            fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
         }
+        const TrackLaps laps(track, options);
+        std::vector<std::string> of_track;  // left out
+        for (std::size_t lap = 0; lap < laps.size(); ++lap) {
+            if (made) made(done++, tracks.size() * laps.size());
+            // Laps without a scene are not counted: no reader of a scenes file can know of them.
+            if (laps_with_scenes % shard.count != shard.index) {
+                if (!laps.is_empty(lap)) ++laps_with_scenes;
+                continue;
+            }
+            const std::size_t scenes_before = set.scenes.size();
+            for (AnnotatedScene& scene : laps.make(lap)) {
+                if (scene.ground_truth || !track.driven.empty()) {
+                    set.scenes.push_back(std::move(scene));
+                } else {
+                    of_track.push_back(scene.scene.id);
+                }
+            }
+            if (set.scenes.size() > scenes_before) ++laps_with_scenes;
+        }
+        if (!of_track.empty()) merge(left_out, {{track.name, of_track}});
     }
     if (laps_with_scenes == 0) {
         throw InputError("", 0, "--tracks",

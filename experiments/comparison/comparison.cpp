@@ -9,11 +9,14 @@
 #include "experiments/comparison/echo_floor.hpp"
 #include "experiments/comparison/lane_log.hpp"
 #include "experiments/comparison/results.hpp"
+#include "experiments/comparison/summary.hpp"
+#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <system_error>
@@ -108,7 +111,7 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
     write_results(results.stream(), rows, scored, outside, run_record);
     table_text.stream() << table;
     commit_together(std::array{&scores, &results, &table_text});
-    return {table, errors_among(records)};
+    return {summary(scored, summary_notes(outside, left_out)), errors_among(records)};
 }
 
 ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& directory) {
@@ -124,7 +127,11 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     }
     const std::string record = run_record(options);
     LeftOutScenes left_out;
-    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard, left_out);
+    std::optional<Progress> progress(std::in_place, "scenes", 1);
+    const SceneSet set =
+        make_scene_set(options.tracks, options.scenes, options.shard, left_out,
+                       [&](std::size_t done, std::size_t total) { progress->set(done, total); });
+    progress.reset();
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");
     const auto finished = finished_lanes(options, set.scenes, directory);

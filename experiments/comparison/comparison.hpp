@@ -12,7 +12,7 @@ namespace conelane::experiments {
 
 /// What a comparison has to say beside its files.
 struct ComparisonOutcome {
-    std::string table;
+    std::string summary;  ///< for a terminal; the wide table is in table.txt
     AnswerErrors errors;
 };
 
@@ -25,7 +25,7 @@ struct ComparisonOutcome {
 ///   echo_floor.json                          what an echo program takes, where a program from outside ran
 ///   scores.jsonl           a line per scene and detector
 ///   results.jsonl          a line per detector, rate and range, with provenance
-///   table.txt              the same for reading
+///   table.txt              the same as a wide table for reading
 ///
 /// A run that was stopped goes on after its last whole lap. Throws InputError or
 /// InvalidInput, so where the directory holds another run (see open_run).

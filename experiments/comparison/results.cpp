@@ -6,6 +6,7 @@
 #include "evaluation/scoring/statistics.hpp"
 #include "experiments/comparison/known_detectors.hpp"
 #include "experiments/comparison/runner.hpp"
+#include "experiments/progress/progress.hpp"
 
 #include <algorithm>
 #include <exception>
@@ -202,7 +203,9 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
     std::vector<ScoredRecord> all(records.size());
     std::vector<CentreLine> lines(records.size());
     std::vector<std::exception_ptr> failures(records.size());
+    Progress progress("scoring " + lanes_file.filename().string(), records.size());
     oneapi::tbb::parallel_for(std::size_t{0}, records.size(), [&](std::size_t i) {
+        progress.advance();
         if (!truths[i]->counts) return;
         try {
             all[i] = {truths[i]->scene, &records[i], {}};

@@ -55,10 +55,11 @@ def _block(module, content, verdict=""):
             "</article>")
 
 
-def blocks(modules, results, published, absent):
-    """The experiments in order. What the results do not hold is added to `absent`, with the command that makes it."""
+def blocks(modules, results, published, absent, advance=lambda: None):
+    """The experiments in order. What the results do not hold is added to `absent`, with the command that makes it. `advance` is called before each."""
     present = []
     for module in modules:
+        advance()
         try:
             content = module.html(results, published)
             judged = _verdict(module.verdict(results, published)) if hasattr(module, "verdict") else ""

@@ -3,10 +3,18 @@ other conditions."""
 
 from html import escape
 
+from .conditions import whole
 from .figures import percent_label
 
 
-def html(results):
+def _explained(results, conditions):
+    """What the conditions are, beside the choice of one."""
+    told = [f"<b>{escape(name)}</b>: {escape(whole(conditions, name))}." for name in results.conditions
+            if whole(conditions, name)]
+    return f'<p class="note conditions">{" ".join(told)}</p>' if told else ""
+
+
+def html(results, conditions):
     def choice(key, title, values, show):
         if len(values) < 2:
             return ""
@@ -19,4 +27,4 @@ def html(results):
                  choice("range", "Range", results.ranges, lambda value: f"{value:g} m")]
     groups = [("Show in tables, charts and pictures", everywhere), ("in tables", in_tables)]
     return '<div class="controls" id="filters">' + "".join(
-        f"<span>{words}:</span>{''.join(choices)}" for words, choices in groups if any(choices)) + "</div>"
+        f"<span>{words}:</span>{''.join(choices)}" for words, choices in groups if any(choices)) + "</div>" + _explained(results, conditions)

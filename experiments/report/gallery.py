@@ -90,18 +90,29 @@ def style():
     rules.append(f'.scene .cone {{ stroke: var(--{MARKS["cone"]["color"]}); stroke-width: {_CONE_PX:g}; '
                  "stroke-linecap: round; }")
     rules.append(f'.scene .lane {{ stroke-width: {MARKS["lane"]["width"]:g}; stroke-linejoin: round; }}')
+    rules += [f'.scene .lane.{side} {{ stroke: var(--{side}); }}' for side in ("left", "right")]
     rules.append(f'.scene .bridged {{ stroke-dasharray: {_dashes(MARKS["bridged"])}; }}')
     return "\n".join(rules)
 
 
-def drawing(results, frame, slot, track, longest_gap_m):
-    """One scene with the lane of one method."""
+def view_of(frame):
+    """One view of a scene for all methods: round the truth and the usable lanes."""
+    cones = _points(frame["c"])
+    truth = [cones[i] for side in frame["g"][:2] for i in side]
+    lanes = [point for answer in frame["a"] if answer and answer[7] == 1
+             for side in answer[:2] for point in _side(cones, side)]
+    return _View(truth + lanes or cones)
+
+
+def drawing(results, frame, slot, track, longest_gap_m, view=None):
+    """One scene with the lane of one method, its left and right boundary in their colours; a centre line alone in that
+    of the method. Without a `view` one round the truth and the lane."""
     cones = _points(frame["c"])
     split = len(cones) - frame["f"]
     left, right, closed = ([cones[i] for i in frame["g"][0]], [cones[i] for i in frame["g"][1]], frame["g"][2])
     answer = frame["a"][slot]
     sides = [_side(cones, side) for side in answer[:2]] if answer else []
-    view = _View(left + right + [point for side in sides for point in side] + ([] if left else cones[:split]))
+    view = view or _View(left + right + [point for side in sides for point in side] + ([] if left else cones[:split]))
     band = _path(left, True) + _path(right[::-1], True) if closed else _path(left + right[::-1], True)
     radius = view.half / 60
     parts = [f'<path class="band" d="{band}"/>'] if band else []
@@ -114,11 +125,12 @@ def drawing(results, frame, slot, track, longest_gap_m):
     if strays:
         parts.append(f'<path class="false" d="{strays}"/>')
     color = results.methods.index(results.samples[slot].method) % METHOD_COLORS
-    pieces = [solid_and_bridged(side, answer[2], longest_gap_m) for side in sides]
-    for kind, lines in (("lane", [line for solid, _ in pieces for line in solid]),
-                        ("lane bridged", [line for _, bridged in pieces for line in bridged])):
-        if lines:
-            parts.append(f'<path class="{kind}" style="stroke:var(--m{color})" d="{"".join(map(_path, lines))}"/>')
+    is_line = len(sides) == 2 and not sides[1] and isinstance(answer[0], dict)
+    for name, side in zip(("left", "right"), sides):
+        look = f'style="stroke:var(--m{color})" ' if is_line else ""
+        for kind, lines in zip(("lane", "lane bridged"), solid_and_bridged(side, answer[2], longest_gap_m)):
+            if lines:
+                parts.append(f'<path class="{kind}{"" if is_line else " " + name}" {look}d="{"".join(map(_path, lines))}"/>')
     dots = "".join(f"M{_number(x)} {_number(y)}h0" for x, y in view.inside(cones[:split]))
     if dots:
         parts.append(f'<path class="cone" d="{dots}"/>')
@@ -129,7 +141,8 @@ def drawing(results, frame, slot, track, longest_gap_m):
     return f'<svg viewBox="{view.box()}" aria-hidden="true">{"".join(parts)}</svg>'
 
 
-def _what(answer):
+def said(answer):
+    """What became of an answer, in words."""
     if not answer:
         return "no answer stored"
     iou, category, usable, cause = answer[4], answer[5], answer[7], answer[8]
@@ -140,11 +153,26 @@ def _what(answer):
 
 def _card(results, data, slot, track_of, scene):
     frame = data.frames[scene]
-    what = _what(frame["a"][slot])
+    what = said(frame["a"][slot])
     return (f'<figure class="scene"><div role="img" aria-label="{escape(what)}">'
             f"{drawing(results, frame, slot, track_of[scene], data.longest_gap_m)}</div><figcaption>{escape(what)}<br>"
             f'<button type="button" class="link" data-open="{escape(scene)}">{escape(scene)}</button>'
             "</figcaption></figure>")
+
+
+def short_legend():
+    """What the parts are that a reader must know first."""
+    return ("<b class='left-key'>━</b> left, <b class='right-key'>━</b> right boundary; ● cone; × false positive; "
+            '<span class="driven-key">▲</span> car.')
+
+
+def legend():
+    """What the parts of a drawing are."""
+    marks = (("<b class='left-key'>━</b> left boundary", "<b class='right-key'>━</b> right boundary",
+              "┅ bridges a gap", '<span class="band-key"></span> ground truth', "● cone", "○ cone that was missed",
+              "× false positive", '<span class="driven-key">┅</span> path that was driven',
+              '<span class="driven-key">▲</span> car'))
+    return '<p class="note marks">' + " ".join(f'<span class="key">{mark}</span>' for mark in marks) + "</p>"
 
 
 def html(results, data):
@@ -158,17 +186,17 @@ def html(results, data):
             scenes = data.worst.get((sample.label, condition), ())
             if not scenes:
                 continue
-            usable = sum(1 for scene in scenes if (data.frames[scene]["a"][slot] or [None] * 9)[7] == 1)
             title = f"{sample.label}, {condition}" if condition else sample.label
-            tail = f"{len(scenes)} scenes, {usable} of them usable" if usable else f"{len(scenes)} scenes"
+            wrong = data.wrong.get((sample.label, condition), len(scenes))
+            tail = f"{len(scenes)} of {wrong} lanes that are not usable" if wrong > len(scenes) else (
+                f"{wrong} lane{'s are' if wrong > 1 else ' is'} not usable")
             cards = "".join(_card(results, data, slot, track_of, scene) for scene in scenes)
             blocks.append(f'<details class="worst" open data-method="{escape(sample.label)}" '
                           f'data-condition="{escape(condition)}"><summary>'
                           f'<span class="swatch" style="background:var(--m{color})"></span><b>{escape(title)}</b> '
                           f'<small>{tail}</small></summary><div class="scenes">{cards}</div></details>')
-    return (f"<p>The {WORST} worst scenes of each method in each condition, over all rates and ranges: those whose "
-            "lane is not usable come first, then the lowest IoU. To show different things, at most "
-            f"{WORST_OF_A_TRACK} are of one track, and these at least {WORST_APART_M:g} m apart. The band is the "
-            "ground truth, a dashed line the path that was driven, where that is the truth; lines are the method's "
-            "lane, dashed where it bridges a gap, dots cones, circles cones that were missed, crosses false positives. A "
-            "scene's name opens it in the viewer, with all methods.</p>" + "".join(blocks))
+    if not blocks:
+        return "<p>Every lane of the scenes on this page is usable: there is nothing to show.</p>"
+    return (f"<p>What went wrong: up to {WORST} lanes of each method in each condition that are not usable, over all rates "
+            f"and ranges, the lowest IoU first. At most {WORST_OF_A_TRACK} are of one track, and these at least "
+            f"{WORST_APART_M:g} m apart. A scene's name opens it in the viewer.</p>{legend()}" + "".join(blocks))

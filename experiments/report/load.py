@@ -107,8 +107,8 @@ class Sample:
 class Results:
     directory: str
     run: dict
-    rows: list  # of results.jsonl
-    samples: list  # of Sample, in the order of results.jsonl
+    rows: list  # of results.jsonl, best method first
+    samples: list  # of Sample, best first
     beside: dict  # of BESIDE: folder -> list of Sample, by method and then size; empty where there is none
     tracks: dict  # name -> {"left", "right", "closed"}
     methods: list = field(default_factory=list)  # names, in order
@@ -145,6 +145,12 @@ class Results:
         known = (method for run in [self.run, *self.runs_beside] for method in run.get("methods", ())
                  if isinstance(method, dict) and method.get("name") == sample.method)
         return json.dumps(next(known, {}).get("rld_parameters"), sort_keys=True)
+
+    @property
+    def time_limit_ms(self):
+        """Of an answer; infinite where the record names none."""
+        limit = self.run.get("time_limit_ms")
+        return float(limit) if isinstance(limit, (int, float)) and not isinstance(limit, bool) else math.inf
 
     @property
     def rates(self):
@@ -306,6 +312,13 @@ def _check_same_run(path, rows, samples):
                 raise InputError(f"{path}: {key} of {row_name(row)} is {mean}, results.jsonl has {stored}")
 
 
+def _best_first(samples):
+    """Labels by their share of usable lanes, of success where that is unknown; equal ones as they come."""
+    def share(sample):
+        return float(np.nanmean(sample.usable)) if sample.has("usable") else float(sample.success.mean())
+    return [sample.label for sample in sorted(samples, key=lambda sample: -share(sample))]
+
+
 def _read_beside(path):
     return _read_samples(path) if os.path.exists(path) else []
 
@@ -333,4 +346,7 @@ def load_results(directory):
     tracks = read_object(tracks_file) if os.path.exists(tracks_file) else {}
     runs_beside = [read_object(path(os.path.join(folder, "run.json"))) for folder in BESIDE
                    if os.path.exists(path(os.path.join(folder, "run.json")))]
+    order = _best_first(samples)  # of tables, legends and pictures; colours stay those of the order in the file
+    rows.sort(key=lambda row: order.index(label_of(row["method"], row.get("nearest"))))
+    samples.sort(key=lambda sample: order.index(sample.label))
     return Results(directory, run, rows, samples, beside, tracks, methods, runs_beside)

@@ -8,8 +8,12 @@ from . import experiments, filters, gallery, headline, provenance
 from .drawing import MARKS
 from .experiment import blocks
 from .load import CATEGORIES
+from .progress import Progress
 from .scenes import read_scenes
 from .theme import METHOD_COLORS
+
+_EXPERIMENTS = (experiments.COMPARISON, experiments.RACE, experiments.FAILURES, experiments.SPEED, experiments.EXACTNESS,
+                experiments.RLD_PAPER, experiments.CLC_PAPER)
 
 _VIEWER = """
 <div id="viewer" tabindex="0" aria-label="Scene viewer">
@@ -34,6 +38,7 @@ _VIEWER = """
 </tr></thead><tbody id="view-methods"></tbody></table></div>
 <p class="note">Arrow keys: pose and false positives. Space: play. Digits: methods on and off. Click the small map to go
 there; point at a cone for its place. <span class="key"><span class="band-key"></span> ground truth</span>
+<span class="key"><b class="left-key">━</b> left and <b class="right-key">━</b> right boundary where one method is on</span>
 <span class="key">┅ gap that a lane bridges</span> <span class="key">┈ boundary inferred from the other one</span>
 <span class="key">— across a lane: trusted up to here</span>
 <span class="key">● cone</span> <span class="key">○ cone that was missed</span> <span class="key">× false positive</span>
@@ -94,21 +99,22 @@ def _one_condition(results):
             "measured.</p>")
 
 
-def _sections(results, published, data):
+def _sections(results, published, data, advance):
     """(id, short title, title, content) of each; those of which the results hold nothing are left out."""
     main, note, absent = results.under(results.main_condition), _one_condition(results), []
 
     def shown(modules, of=results):
-        return blocks(modules, of, published, absent)
+        return blocks(modules, of, published, absent, advance)
 
     def alone(modules):
         content = shown(modules, main)
         return note + content if content else ""
 
     sections = [
-        ("verdict", "Headline", "Which method to run", headline.html(results, data)),
+        ("verdict", "Headline", "The methods, best first", headline.html(results, data, published["conditions"])),
         ("comparison", "Comparison", "Comparison",
-         filters.html(results) + shown(experiments.COMPARISON) + headline.by_rate(results)),
+         filters.html(results, published["conditions"]) + shown(experiments.COMPARISON)
+         + headline.by_rate(results, published["conditions"])),
         ("race", "Race", "An event, driven by the answers", shown(experiments.RACE)),
         ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
@@ -130,7 +136,10 @@ def _lead(results):
            if families else "")
     scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
     tracks = len(set().union(*(set(sample.track) for sample in results.samples)))
-    return (f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
+    return ("A Formula Student course is marked by cones alone. A <b>cone lane</b> is the chain of cones on the car's "
+            '<b class="left-key">left</b> and the one on its <b class="right-key">right</b> between which the course goes on. '
+            '</p><p class="lead">Compared: '
+            f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
             f"the same code, beside what the papers print.{how} "
             f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
 
@@ -138,7 +147,9 @@ def _lead(results):
 def render(results, published, tracks=()):
     """The whole page as text; the same results give the same bytes. `tracks`: see read_scenes."""
     data = read_scenes(results, published["conditions"], tracks, published["longest_gap_m"], published["usual_width_m"])
-    sections = _sections(results, published, data)
+    progress = Progress("page", sum(map(len, _EXPERIMENTS)))
+    sections = _sections(results, published, data, progress.advance)
+    progress.end()
     links = "".join(f'<a href="#{name}">{escape(short)}</a>' for name, short, _, _ in sections)
     body = "".join(f'<section id="{name}"><h2>{escape(title)}</h2>{content}</section>'
                    for name, _, title, content in sections)
@@ -148,8 +159,8 @@ def render(results, published, tracks=()):
 <link rel="icon" href="data:,"><style>{_asset("style.css")}{gallery.style()}</style></head>
 <body><header><div class="bar"><span class="name">conelane</span><nav aria-label="Sections">{links}</nav>
 <button type="button" id="theme" aria-label="light or dark">◐</button></div></header>
-<main><h1>Lanes between cones, compared</h1>
-<p class="lead">{_lead(results)}</p>
+<main><div class="intro"><div><h1>Lanes between cones, compared</h1>
+<p class="lead">{_lead(results)}</p>{headline.answer(results)}</div>{headline.picture(results, data)}</div>
 {body}</main>
 <script>{_asset("tables.js")}</script>
 <script>{_asset("viewer.js")}</script>

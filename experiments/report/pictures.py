@@ -3,9 +3,11 @@
 from .experiments import latency, quality, same_cone_set
 from .theme import picture_colors, png_of
 
-_MAIN = (("usable.png", quality.usable_figure), ("latency.png", latency.by_rate_figure),
-         ("success.png", quality.success_figure), ("iou.png", quality.iou_figure),
-         ("growth.png", same_cone_set.growth_figure))
+_MAIN = (("usable.png", "Usable lanes", quality.usable_figure),
+         ("latency.png", "Latency", latency.by_rate_figure),
+         ("success.png", "Success, as the CLC paper counts", quality.success_figure),
+         ("iou.png", "Overlap with the ground truth", quality.iou_figure),
+         ("growth.png", "Latency by cone-set size", same_cone_set.growth_figure))
 
 
 def pictures(results):
@@ -13,8 +15,9 @@ def pictures(results):
     made = []
     results = results.under(results.main_condition)
     with picture_colors():
-        for name, figure_of in _MAIN:
+        for name, title, figure_of in _MAIN:
             figure = figure_of(results)
             if figure is not None:
+                figure.axes[0].set_title(title, loc="left", fontsize=10)
                 made.append((name, png_of(figure)))
     return made

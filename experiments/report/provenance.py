@@ -1,8 +1,8 @@
 """How the numbers came about."""
 
-import math
 from html import escape
 
+from .conditions import whole
 from .load import label_of
 from .measures import RESAMPLES
 
@@ -26,17 +26,8 @@ def _flat(value, prefix=""):
 
 def _conditions(results, conditions):
     """What the conditions of this run are."""
-    pieces = []
-    for condition in conditions:
-        if condition["name"] not in results.conditions:
-            continue
-        disturbed = condition["noise_m"] or condition["miss_rate"]
-        what = (f"noise of {condition['noise_m']:g} m on seen positions, a pose {condition['pose_lateral_m']:g} m and "
-                f"{math.degrees(condition['pose_yaw_rad']):.0f}° off (one sigma each), "
-                f"{100 * condition['miss_rate']:g} % of the cones missed" if disturbed else "nothing disturbed")
-        strays = ("false positives stay where they are along a lap" if condition["persistent"] else
-                  "false positives are drawn at every pose")
-        pieces.append(f"<b>{escape(condition['name'])}</b>: {what}; {strays}")
+    pieces = [f"<b>{escape(condition['name'])}</b>: {whole(conditions, condition['name'])}" for condition in conditions
+              if condition["name"] in results.conditions]
     return f"<li>Conditions. {'. '.join(pieces)}.</li>" if pieces else ""
 
 

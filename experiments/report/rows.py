@@ -19,6 +19,14 @@ def note_on_training(results):
     return TRAINED if any(sample.has("trained_on") for sample in results.samples) else ""
 
 
+def note_on_limit(results):
+    """What a table says of times that the limit ended, where there are some."""
+    limit = results.time_limit_ms
+    if not any(sample.latency.max() >= limit for sample in results.samples):
+        return ""
+    return f" Limit: the time limit of {limit:g} ms ended the search, which would have taken longer."
+
+
 def keys(results):
     condition = [Column("condition", "text")] if results.conditions != [""] else []
     return [Column("method", "text")] + condition + [Column("false positives %"), Column("range m"), Column("scenes")]

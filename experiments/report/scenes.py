@@ -36,6 +36,7 @@ class SceneData:
     lap_count: int = 0
     stride: int = 1
     worst: dict = field(default_factory=dict)  # (label, condition) -> [scene ids]
+    wrong: dict = field(default_factory=dict)  # (label, condition) -> number of scenes of which `worst` has some
     missing: str = ""  # why there are none
     longest_gap_m: float = math.inf  # from boundary cone to boundary cone; what is longer is drawn as bridged
     usual_width_m: float = 3.5  # of a lane whose other boundary is inferred
@@ -68,16 +69,21 @@ def _poses(scenes_file):
     return places
 
 
+def _is_wrong(part):
+    return part.usable == 0.0 if part.has("usable") else part.success == 0.0
+
+
 def _worst(results, places):
-    """The worst scenes of each method in each condition: those that are not usable first, then by IoU, an unknown one
-    last; ties in order of scene ids. At most WORST_OF_A_TRACK of one track, and these WORST_APART_M apart."""
+    """The worst of the scenes on which a method's lane is not usable (no success in results of earlier versions), for
+    each method and condition: by IoU, an unknown one last; ties in order of scene ids. At most WORST_OF_A_TRACK of one
+    track, and these WORST_APART_M apart."""
     worst = {}
     for sample in results.samples:
         for condition in results.conditions:
             part = sample.at(condition=condition)
             iou = np.where(np.isnan(part.iou), 2.0, part.iou)
             chosen, of_track = [], {}
-            for i in sorted(range(len(part)), key=lambda i: (part.usable[i] != 0.0, iou[i], part.scene[i])):
+            for i in sorted(np.flatnonzero(_is_wrong(part)), key=lambda i: (iou[i], part.scene[i])):
                 place, others = places.get(part.scene[i]), of_track.setdefault(part.track[i], [])
                 if place is None:
                     continue
@@ -89,6 +95,12 @@ def _worst(results, places):
             if chosen:
                 worst[sample.label, condition] = chosen
     return worst
+
+
+def _wrong(results):
+    """How many scenes there are to choose the worst from."""
+    return {(sample.label, condition): int(np.sum(_is_wrong(sample.at(condition=condition))))
+            for sample in results.samples for condition in results.conditions}
 
 
 class _Laps:
@@ -273,11 +285,36 @@ def _read_frames(results, scenes_file, wanted, noise_of):
     return frames, poses, indices
 
 
-def _start(results, lap_list, worst):
-    """The first scene of the first lap shown; where there is none, the worst of the first method."""
+def _turning_rad(frame):
+    """How far the ground truth turns, the sum of its turns left and right; 0 where it has no boundaries."""
+    points = np.array(frame["c"], dtype=float).reshape(-1, 2)
+    turning = 0.0
+    for side in frame["g"][:2]:
+        steps = np.diff(points[side], axis=0)
+        headings = np.arctan2(steps[:, 1], steps[:, 0])
+        turns = np.abs((np.diff(headings) + np.pi) % (2 * np.pi) - np.pi)
+        turning = max(turning, float(turns.sum()))
+    return turning
+
+
+def _start(results, frames, lap_list):
+    """The scene to begin with, which the pictures of the methods take too: in the main condition and at the gallery's
+    rate where the page has that, one that the best method and at least half of all get right but not all, and of these
+    the one with the most turns ahead; the first of equal ones."""
     rate = gallery_rate(results)
-    first = next((lap for lap in lap_list if (lap["condition"], lap["rate"]) == (results.main_condition, rate)), None)
-    return first["scenes"][0] if first else next(iter(worst.values()))[0]
+
+    def rank(lap, scene):
+        answers = [bool(answer and answer[7] == 1) for answer in frames[scene]["a"]]
+        share = sum(answers) / len(answers)
+        return ((lap["condition"], lap["rate"]) == (results.main_condition, rate), answers[0], share >= 0.5, share < 1.0,
+                round(_turning_rad(frames[scene]), 1))
+    best = None
+    for lap in lap_list:
+        for scene in lap["scenes"]:
+            of_scene = rank(lap, scene)
+            if best is None or of_scene > best[0]:
+                best = (of_scene, scene)
+    return best[1] if best else ""
 
 
 def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual_width_m=3.5):
@@ -307,5 +344,5 @@ def read_scenes(results, conditions=(), tracks=(), longest_gap_m=math.inf, usual
                  "scenes": [scene for scene in scenes if scene in frames]}
                 for (track, condition, rate, range_m), scenes in laps.scenes.items()]
     lap_list = [lap for lap in lap_list if lap["scenes"]]
-    return SceneData(frames, lap_list, _start(results, lap_list, worst), laps.scene_count, len(chosen),
-                     len(laps.scenes), stride, worst, longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)
+    return SceneData(frames, lap_list, _start(results, frames, lap_list), laps.scene_count, len(chosen),
+                     len(laps.scenes), stride, worst, _wrong(results), longest_gap_m=longest_gap_m, usual_width_m=usual_width_m)

@@ -41,6 +41,30 @@
     }));
   }
 
+  // What is not seen of a table: a line at its edge says that there is more, and which way.
+  const boxes = [...document.querySelectorAll(".table .scroll")];
+  const cueOf = new Map(boxes.map((box) => {
+    const cue = document.createElement("div");
+    cue.className = "cue";
+    cue.setAttribute("aria-hidden", "true"); // a reader of the screen has the whole table
+    cue.hidden = true;
+    box.append(cue);
+    return [box, cue];
+  }));
+  const hint = (box) => {
+    const cue = cueOf.get(box), edge = box.getBoundingClientRect().bottom - (cue.hidden ? 0 : cue.offsetHeight);
+    const visible = [...box.querySelectorAll("tbody tr")].filter((row) => !row.hidden);
+    const below = visible.filter((row) => row.getBoundingClientRect().bottom > edge + 2).length;
+    const right = box.scrollWidth - box.clientWidth - box.scrollLeft > 2;
+    const words = [below > 0 ? `↓ ${below} more row${below > 1 ? "s" : ""}` : "", right ? "→ more columns" : ""];
+    cue.textContent = words.filter(Boolean).join("   ");
+    cue.hidden = cue.textContent === "";
+  };
+  const hintAll = () => boxes.forEach(hint);
+  for (const box of boxes) box.addEventListener("scroll", () => hint(box), { passive: true });
+  addEventListener("resize", hintAll);
+  addEventListener("load", hintAll);
+
   const filters = [...document.querySelectorAll("[data-filter]")];
   const apply = () => {
     const filtered = "main tr[data-condition], main figure[data-condition], main details[data-condition]";
@@ -57,6 +81,7 @@
     for (const title of document.querySelectorAll("tr.block")) {
       title.hidden = [...title.parentElement.rows].every((row) => row === title || row.hidden);
     }
+    hintAll();
   };
   for (const filter of filters) filter.addEventListener("change", apply);
   apply(); // a reloaded page keeps what was chosen

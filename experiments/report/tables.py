@@ -11,6 +11,7 @@ from .theme import METHOD_COLORS
 class Column:
     title: str
     kind: str = "number"  # or "text"
+    hint: str = ""  # stands small below the title
 
 
 @dataclass(frozen=True)
@@ -60,10 +61,12 @@ def degrees(value_rad, **attributes):
                                                     attributes=attributes)
 
 
-def milliseconds(value, interval=None, **attributes):
+def milliseconds(value, interval=None, limit_ms=math.inf, **attributes):
+    """Named a limit where the time limit ended it: what took longer is unknown."""
     def show(number):
         return f"{number:.2f}" if number < 1000 else f"{number:.0f}"
-    return Cell(show(value), float(value), _range(interval, show), attributes)
+    extra = "limit" if value >= limit_ms else _range(interval, show)
+    return Cell(show(value), float(value), extra, attributes)
 
 
 def _cell_html(cell, column, tag):
@@ -86,7 +89,9 @@ def _row_html(row, columns, name, attributes):
 
 def _table_html(name, caption, columns, bodies, note):
     head = "".join(f'<th scope="col"{" class=number" if column.kind == "number" else ""} aria-sort="none">'
-                   f'<button type="button">{escape(column.title)}</button></th>' for column in columns)
+                   f'<button type="button">{escape(column.title)}</button>'
+                   + (f'<small class="hint">{escape(column.hint)}</small>' if column.hint else "") + "</th>"
+                   for column in columns)
     note = f'<p class="note">{escape(note)}</p>' if note else ""
     title = f'<h4 id="{name}-title">{escape(caption)}</h4>' if caption else ""
     label = f'aria-labelledby="{name}-title"' if caption else f'aria-label="{name}"'

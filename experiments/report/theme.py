@@ -8,6 +8,7 @@ import re
 
 import matplotlib
 import matplotlib.colors
+import numpy as np
 
 matplotlib.use("svg")
 from matplotlib import pyplot  # noqa: E402  (the backend has to be chosen first)
@@ -71,6 +72,19 @@ def percent_axis(axes):
     axes.set_yticks([tick for tick in axes.get_yticks() if bottom <= tick <= 100])
 
 
+LEADERS_TICKS = (0, 50, 80, 90, 95, 98, 100)
+
+
+def leaders_axis(axes):
+    """Per cent, stretched towards 100 so that the best can be told apart."""
+    bottom = max(0.0, axes.get_ylim()[0])
+    axes.set_yscale("function", functions=(lambda y: -np.log10(np.maximum(103.0 - np.asarray(y, float), 1e-3)),
+                                           lambda y: 103.0 - 10.0 ** -np.asarray(y, float)))
+    axes.set_ylim(bottom, 100.5)
+    axes.set_yticks([tick for tick in LEADERS_TICKS if tick >= bottom])
+    axes.set_yticks([], minor=True)
+
+
 def new_figure(height=2.9, width=4.7):
     return pyplot.subplots(figsize=(width, height), layout="constrained")
 
@@ -84,16 +98,28 @@ def legend(axes):
                     ncol=max(1, min(3, 60 // (6 + max(map(len, labels))))), handlelength=2.4, columnspacing=1.4)
 
 
+_alone = False  # whether figures are pictures that stand alone
+
+
+def method_legend(axes):
+    """The legend of the methods' curves, in pictures alone: on the page one above the figures serves them all."""
+    if _alone:
+        legend(axes)
+
+
 @contextlib.contextmanager
 def picture_colors():
     """Figures made and saved within have the colours of the light page."""
     style = pkgutil.get_data(__package__, "style.css").decode("utf-8")
     light = dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", style[:style.index("}")]))
+    global _alone
     _use({variable: light[variable] for variable in _VARIABLES})
+    _alone = True
     try:
         yield
     finally:
         _use(_STAND_INS)
+        _alone = False
 
 
 def png_of(figure, dpi=200):

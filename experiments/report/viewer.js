@@ -8,7 +8,7 @@
   const element = (name) => document.getElementById("view-" + name);
   const box = document.getElementById("viewer");
   const scene = element("scene"), map = element("map"), tip = element("tip");
-  const state = { lap: data.laps[0], pose: 0, shown: data.methods.map(() => true), timer: null };
+  const state = { lap: data.laps[0], pose: 0, shown: data.methods.map((_, i) => i === 0), timer: null };
   const trackFrames = new Map(); // of each track, what its map shows
 
   const frame = () => data.frames[state.lap.scenes[state.pose]];
@@ -34,8 +34,8 @@
   const fit = (width, height) => {
     const reach = 100 * state.lap.range;
     const scale = Math.min(width / (2.04 * reach), height / (1.1 * reach));
-    return { scale, x: (ahead, left) => width / 2 - left * scale,
-             y: (ahead) => height - 0.05 * reach * scale - ahead * scale };
+    const below = Math.max(0.05 * reach * scale, 18); // room for the car and the distances
+    return { scale, x: (ahead, left) => width / 2 - left * scale, y: (ahead) => height - below - ahead * scale };
   };
 
   const positions = (flat, view) =>
@@ -180,7 +180,12 @@
       context.strokeStyle = color("--m" + data.methods[i].color);
       context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
       const sides = answer.slice(0, 2).map(side), trusted = answer[10];
-      for (const points of sides) strokeSide(context, points, answer[2], data.longest_gap * view.scale);
+      const isLine = sides[1].length === 0 && !Array.isArray(answer[0]); // a centre line alone
+      sides.forEach((points, which) => {
+        if (visible.length === 1 && !isLine) context.strokeStyle = color(which === 0 ? "--left" : "--right");
+        strokeSide(context, points, answer[2], data.longest_gap * view.scale);
+      });
+      context.strokeStyle = color("--m" + data.methods[i].color);
       const known = sides.findIndex((points) => points.length > 1);
       if (known >= 0 && sides[1 - known].length === 0)
         strokeInferred(context, sides[known], known, data.usual_width * view.scale);
@@ -245,10 +250,11 @@
     const row = element("methods").insertRow();
     const head = document.createElement("th");
     head.scope = "row";
-    head.innerHTML = '<label><input type="checkbox" checked><span class="swatch"></span><span></span></label>';
+    head.innerHTML = '<label><input type="checkbox"><span class="swatch"></span><span></span></label>';
     head.querySelector(".swatch").style.background = `var(--m${method.color})`;
     head.querySelector("label > :last-child").textContent = method.label;
     const toggle = head.querySelector("input");
+    toggle.checked = state.shown[i];
     toggle.addEventListener("change", () => { state.shown[i] = toggle.checked; drawScene(); });
     row.append(head);
     const cells = ["usable", "outcome", "number", "accurate", "number", "number", "number"].map((kind) => {

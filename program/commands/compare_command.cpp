@@ -90,7 +90,8 @@ void compare_and_print(Options& options) {
     const bool is_whole = comparison.shard.count == 1;  // merge makes the page of all shards
     if (is_whole) require_own_page(options.directory);
     const ComparisonOutcome outcome = compare(comparison, options.directory);
-    fmt::print("{}\n", outcome.table);
+    fmt::print("{}", outcome.summary);
+    say_wide_table(options.directory);
     if (is_whole) write_page(options.directory);
     report_errors(outcome.errors);
 }
@@ -166,7 +167,8 @@ void add_merge_command(CLI::App& program) {
     command.callback([shards, directory, overwrite] {
         require_own_page(*directory);
         const ComparisonOutcome outcome = merge(*shards, *directory, *overwrite);
-        fmt::print("{}\n", outcome.table);
+        fmt::print("{}", outcome.summary);
+        say_wide_table(*directory);
         write_page(*directory);
         report_errors(outcome.errors);
     });

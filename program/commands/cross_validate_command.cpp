@@ -63,7 +63,8 @@ void run(Options& options) {
     run.comparison.run.threads = options.threads;
     require_own_page(options.directory);
     const ComparisonOutcome outcome = cross_validate(run, options.directory);
-    fmt::print("{}\n", outcome.table);
+    fmt::print("{}", outcome.summary);
+    say_wide_table(options.directory);
     write_page(options.directory);
     report_errors(outcome.errors);
 }

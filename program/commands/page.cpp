@@ -37,6 +37,10 @@ void require_own_page(const fs::path& directory) {
                      "is not a page of conelane and would be replaced; move it, or name another directory");
 }
 
+void say_wide_table(const fs::path& directory) {
+    fmt::print("wide table: {}\n", (directory / "table.txt").string());
+}
+
 void write_page(const fs::path& directory) {
     const fs::path page = page_in(directory);
     try {

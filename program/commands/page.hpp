@@ -8,6 +8,9 @@ namespace conelane::experiments {
 /// lost.
 void require_own_page(const std::filesystem::path& directory);
 
+/// Prints where the wide table of a comparison is.
+void say_wide_table(const std::filesystem::path& directory);
+
 /// Writes report.html beside the results of a comparison and prints where they are. The results are complete
 /// without the page, which needs Python and matplotlib: if these are missing, it prints so. Throws if another
 /// failure prevents the page, such as a full disk.

@@ -5,6 +5,7 @@
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
@@ -117,6 +118,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
     std::exception_ptr failure;
+    Progress progress("races", heats.size());
     const auto work = [&] {
         try {
             for (std::size_t i = next++; i < heats.size(); i = next++) {
@@ -132,6 +134,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
                 }
+                progress.advance();
             }
         } catch (...) {
             const std::scoped_lock lock(mutex);

@@ -2,10 +2,13 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -25,7 +28,11 @@ struct Options {
 
 void make_scenes(const Options& options) {
     LeftOutScenes left_out;
-    const SceneSet set = make_scene_set(options.tracks, options.scenes, {}, left_out);
+    std::optional<Progress> progress(std::in_place, "scenes", 1);
+    const SceneSet set =
+        make_scene_set(options.tracks, options.scenes, {}, left_out,
+                       [&](std::size_t done, std::size_t total) { progress->set(done, total); });
+    progress.reset();
     write_scene_set(options.out, set, left_out);
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));
     fmt::print("{} scenes of {} tracks in {}, boundaries in {}\n", set.scenes.size(), set.tracks.size(),

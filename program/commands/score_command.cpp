@@ -9,6 +9,7 @@
 #include "evaluation/scenes/scene_file.hpp"
 #include "evaluation/scoring/score_table.hpp"
 #include "experiments/comparison/results.hpp"
+#include "experiments/comparison/summary.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "program/commands/commands.hpp"
 
@@ -35,6 +36,7 @@ struct Options {
     std::vector<std::string> lanes;
     std::vector<std::string> detectors;
     std::string json;
+    bool wide = false;
 };
 
 /// A file and what it holds; of a detector from outside where it was named as one.
@@ -102,21 +104,28 @@ void score_all(const Options& options) {
         write_results(output.stream(), rows, scored, outside, run.dump());
         output.commit();
     }
-    fmt::print("{}{}{}", score_table(rows), outside_notes(scored, outside), table_note_on(left_out));
+    if (options.wide) {
+        fmt::print("{}{}{}", score_table(rows), outside_notes(scored, outside), table_note_on(left_out));
+    } else {
+        fmt::print("{}all measures: conelane score --wide\n",
+                   summary(scored, summary_notes(outside, left_out)));
+    }
     if (tracks.empty()) fmt::print(stderr, "no {}: divergence is unknown\n", companion.string());
 }
 
 }  // namespace
 
 void add_score_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("score", "every measure of both papers, a table of all methods");
+    CLI::App& command = *program.add_subcommand(
+        "score", "usable lanes, latency and failures of methods; every measure of both papers");
     auto options = std::make_shared<Options>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more");
     command.add_option("--methods", options->detectors,
                        "lanes:NAME=FILE: answers of another program, scored under that name "
                        "(docs/methods-from-outside.md)");
+    command.add_flag("--wide", options->wide,
+                     "the table of every measure, with the papers' figures below; some 270 columns");
     add_output_option(command, "--json", options->json, "write the rows as JSON lines too");
     command.callback([options] { score_all(*options); });
 }

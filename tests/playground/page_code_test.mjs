@@ -120,7 +120,7 @@ const tests = {
 tests["what a file of the page imports is exported by the file that it names"] = () => {
   const files = readdirSync(page).filter((name) => name.endsWith(".mjs"));
   const textOf = Object.fromEntries(files.map((name) => [name, readFileSync(new URL(name, page), "utf8")]));
-  const exported = (text) => [...text.matchAll(/^export (?:async )?(?:function|class|const) (.+)$/gm)].join("\n");
+  const exported = (text) => [...text.matchAll(/^export (?:async )?(?:function|class|const|let) (.+)$/gm)].join("\n");
   for (const [name, text] of Object.entries(textOf)) {
     for (const [, names, from] of text.matchAll(/^import \{([^}]*)\} from "\.\/([^"]+)";$/gm)) {
       if (!(from in textOf)) continue; // the module, for the worker

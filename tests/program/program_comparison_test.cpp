@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,18 +41,34 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
-    EXPECT_THAT(outcome.output, HasSubstr("CLC paper"));
+    EXPECT_THAT(text_of(path("results") / "table.txt"), HasSubstr("CLC paper"));
+    // What a terminal shows: the same methods, in its columns and lines, and where the rest is.
+    std::istringstream lines(outcome.output);
+    std::size_t count = 0;
+    for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100U) << line;
+    EXPECT_LE(count, 30U) << outcome.output;
+    for (const char* words : {"paper", "car", "median", "p99", "wide table: results/table.txt",
+                              "results/report.html", "Not usable, in % of the scenes, and why"})
+        EXPECT_THAT(outcome.output, HasSubstr(words));
     for (const char* file : {"scenes.scenes.jsonl", "scenes.tracks.json", "rld-cbc.lanes.jsonl",
                              "clc.lanes.jsonl", "results.jsonl", "table.txt"}) {
         EXPECT_TRUE(std::filesystem::exists(path("results") / file)) << file;
     }
     // Scoring the stored lanes again gives the same table.
     const Outcome again =
-        run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
+        run("score --wide --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
             "results/clc.lanes.jsonl "
             "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
+    // And without --wide the same summary.
+    const Outcome summary =
+        run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
+            "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
+            "results/clc.lanes.jsonl results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl "
+            "results/astar-lane.lanes.jsonl");
+    EXPECT_EQ(summary.output.substr(0, summary.output.find("all measures: conelane score --wide\n")),
+              outcome.output.substr(0, outcome.output.find("wide table: ")));
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
@@ -202,14 +219,16 @@ TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
                   .at("tight_hairpins")
                   .at("left_out"),
               track.at("left_out"));
-    const Outcome scored = run("score --scenes merged/scenes.scenes.jsonl --lanes merged/clc.lanes.jsonl");
+    const Outcome scored =
+        run("score --wide --scenes merged/scenes.scenes.jsonl --lanes merged/clc.lanes.jsonl");
     EXPECT_EQ(scored.output, text_of(path("merged") / "table.txt"));
 }
 
 TEST_F(Program, SweepComparesConeSetSizes) {
     const Outcome outcome = run("sweep --tracks generated:circle --sizes 8,12 --every 30 --out sweep");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
-    EXPECT_THAT(outcome.output, HasSubstr("clc n=8"));
+    EXPECT_THAT(outcome.output, HasSubstr("  n=8  n=12"));
+    EXPECT_THAT(text_of(path("sweep") / "table.txt"), HasSubstr("clc n=8"));
     for (const LaneRecord& record : read_lanes(path("sweep") / "rld-cbc.n008.lanes.jsonl")) {
         EXPECT_EQ(record.nearest, 8U);
         EXPECT_LE(record.answer.lane.left.size() + record.answer.lane.right.size(), 8U);

@@ -4,7 +4,12 @@
 #include "evaluation/files/json_node.hpp"
 #include "tests/support/program_on_scenes.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -59,6 +64,51 @@ TEST_F(Words, HelpOfTrainSaysWhatItTrains) {
     const Outcome help = run("train --help");
     EXPECT_THAT(help.output.substr(0, help.output.find("Usage")), HasSubstr("train front"));
     EXPECT_THAT(run("--help").output, HasSubstr("train front"));
+}
+
+/// The commands that a help lists, each as the words that call it.
+std::vector<std::string> commands_in(const std::string& help, const std::string& before) {
+    std::vector<std::string> commands;
+    std::istringstream lines(help.substr(std::min(help.find("Subcommands:"), help.size())));
+    for (std::string line; std::getline(lines, line);) {
+        if (line.size() < 3 || !line.starts_with("  ") || line[2] == ' ') continue;
+        commands.push_back(before + line.substr(2, line.find(' ', 2) - 2) + ' ');
+    }
+    return commands;
+}
+
+TEST_F(Words, HelpOfEveryCommandFitsAHundredColumns) {
+    std::vector<std::string> commands{""};
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+        const Outcome help = run(commands[i] + "--help");
+        ASSERT_EQ(help.exit_code, 0) << commands[i];
+        std::istringstream lines(help.output);
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_LE(line.size(), 100U) << commands[i] << "--help: " << line;
+            EXPECT_FALSE(line.ends_with(' ')) << commands[i] << "--help: " << line;
+        }
+        for (const std::string& below : commands_in(help.output, commands[i])) commands.push_back(below);
+    }
+    EXPECT_GT(commands.size(), 35U) << "the commands, the studies and train front";
+    EXPECT_THAT(commands, testing::IsSupersetOf({"compare ", "study optimality ", "train front "}));
+}
+
+/// A terminal on stderr is told how far the work is; files, pipes and standard output are not.
+TEST_F(Words, LongWorkSaysOnATerminalHowMuchTimeIsLeft) {
+    if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no program `script`";
+    const std::string scenes = "scenes --tracks generated:long_lap --fp 0,0.5 --every 0.1 --out ";
+    const std::string within = "cd " + path("").string() + " && ";
+    const std::string on_terminal = within + "script -qec '" + conelane_program() + " " + scenes +
+                                    "a.scenes.jsonl >said' typescript >/dev/null </dev/null";
+    ASSERT_EQ(std::system(on_terminal.c_str()), 0);
+    const std::string drawn = text_of(path("typescript"));
+    EXPECT_THAT(drawn, HasSubstr("scenes ["));
+    EXPECT_THAT(drawn, HasSubstr(" s left"));
+    const Outcome quiet = run(scenes + "b.scenes.jsonl");
+    EXPECT_EQ(quiet.exit_code, 0);
+    EXPECT_EQ(quiet.errors, "");
+    EXPECT_EQ(text_of(path("said")), quiet.output);
+    EXPECT_EQ(text_of(path("a.scenes.jsonl")), text_of(path("b.scenes.jsonl")));
 }
 
 TEST_F(Words, AKeyThatIsThereTwiceIsNamedWithItsLine) {

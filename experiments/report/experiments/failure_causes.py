@@ -32,7 +32,7 @@ def html(results, published):
             unusable = int(np.sum(part.usable == 0.0))
             under = [text(condition)] if results.conditions != [""] else []
             cells = [method_cell(results.methods, sample.method, sample.label)] + under + [
-                Cell(str(unusable), unusable), percent(unusable / len(part), measure="not_usable")]
+                Cell(str(len(part)), len(part)), Cell(str(unusable), unusable), percent(unusable / len(part), measure="not_usable")]
             for cause in seen:
                 count = int(np.sum(part.cause == cause))
                 share = percent(count / unusable if unusable else None, measure=cause)
@@ -40,6 +40,6 @@ def html(results, published):
             rows.append(cells)
             attributes.append({"method": sample.label, "condition": condition})
     columns = [Column("method", "text")] + ([Column("condition", "text")] if results.conditions != [""] else []) + [
-        Column("not usable"), Column("of all scenes %")] + [Column(f"{CAUSES[cause]} %") for cause in seen]
+        Column("scenes"), Column("not usable"), Column("of all scenes %")] + [Column(f"{CAUSES[cause]} %") for cause in seen]
     return table("failure-causes", "", columns, rows, row_attributes=attributes,
                  note="Causes in per cent of the scenes that are not usable; small: their number.")

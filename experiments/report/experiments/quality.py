@@ -15,10 +15,10 @@ Command: conelane compare --out RESULTS
 import numpy as np
 
 from .. import measures
-from ..figures import drawn, group, in_condition, percent_label, variants
+from ..figures import counts_of_points, drawn, group, in_condition, method_key, percent_label, variants
 from ..rows import attributes, key_cells, keys, note_on_training, part
 from ..tables import Column, percent, table
-from ..theme import legend, method_style, new_figure, percent_axis
+from ..theme import leaders_axis, method_legend, method_style, new_figure
 
 
 def quality_table(results):
@@ -62,9 +62,9 @@ def _by_rate(results, what, values_of):
                           **method_style(results.methods, sample.method, variant))
     axes.set_xlabel("false positives [% of all points]")
     axes.set_ylabel(what)
-    percent_axis(axes)
+    leaders_axis(axes)
     axes.set_xticks([100 * rate for rate in results.rates], [percent_label(rate) for rate in results.rates])
-    legend(axes)
+    method_legend(axes)
     return figure
 
 
@@ -92,7 +92,8 @@ def accurate_figure(results):
 
 
 def html(results, published):
-    bars = "Error bars: 95 % intervals, tracks resampled."
+    bars = ("Error bars: 95 % intervals, tracks resampled. The axis is stretched towards 100 %. "
+            + counts_of_points(results.under(results.main_condition), results.under(results.main_condition).samples))
     figures = []
     for condition in results.conditions:
         under = results.under(condition)
@@ -112,4 +113,4 @@ def html(results, published):
     if any(sample.has("accurate") for sample in under.samples):
         figures.append(drawn("accurate-by-rate", "High is good: all four checks of the RLD paper hold, against the ground "
                              f"truth of the method's own cone set. {bars}{alone}", accurate_figure(under), "Accurate lanes"))
-    return group(figures) + quality_table(results)
+    return group(figures, method_key(results, results.samples)) + quality_table(results)

@@ -38,6 +38,15 @@ std::vector<std::string> ids(const std::vector<AnnotatedScene>& scenes) {
     return all;
 }
 
+TEST(SceneSet, SaysHowManyLapsAreMade) {
+    LeftOutScenes left_out;
+    std::vector<std::pair<std::size_t, std::size_t>> told;
+    (void)make_scene_set(kTracks, options_of({20.0, 40.0}), {}, left_out,
+                         [&](std::size_t done, std::size_t total) { told.emplace_back(done, total); });
+    ASSERT_EQ(told.size(), 12U);  // two tracks, three rates, two ranges
+    for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], std::pair(i, std::size_t{12}));
+}
+
 TEST(SceneSet, ShardsHoldEveryCountThLap) {
     // Nobody sees two cones of both sides within 2 m: six of the eighteen laps have no scene.
     const SceneOptions options = options_of({20.0, 2.0, 40.0});

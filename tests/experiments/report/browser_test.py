@@ -26,7 +26,7 @@ observe("beginPath", () => { strokes.points = []; });
 observe("moveTo", (x, y) => strokes.points.push([x, y]));
 observe("lineTo", (x, y) => strokes.points.push([x, y]));
 observe("stroke", function () {
-  strokes.lines.push({ canvas: this.canvas.id, dash: this.getLineDash().join(), width: this.lineWidth, points: strokes.points });
+  strokes.lines.push({ canvas: this.canvas.id, dash: this.getLineDash().join(), width: this.lineWidth, style: this.strokeStyle, points: strokes.points });
 });
 </script>"""
 
@@ -47,6 +47,9 @@ addEventListener("load", async () => {
         .filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.parentElement.id);
       check(cut.length === 0, "no main table is cut off at the side: " + cut);
     }
+    const narrow = [...document.querySelectorAll("#methods figure")].filter((one) => one.getBoundingClientRect().width < 150);
+    check(narrow.length === 0, "the pictures of the methods have room");
+    check(document.querySelector("#cone-lane svg").getBoundingClientRect().height > 80, "what a cone lane is, is shown");
     const sorter = document.querySelector("#headline thead button");
     sorter.focus();
     check(document.activeElement === sorter, "a column's title takes the focus of the keyboard");
@@ -56,6 +59,26 @@ addEventListener("load", async () => {
       check(document.querySelector(link.getAttribute("href")), "the link leads to " + link.textContent);
     box.focus();
     check(document.activeElement === box, "the viewer takes the keyboard");
+    const toggles = [...document.querySelectorAll("#view-methods input")];
+    check(toggles.length === 3, "every method has a toggle");
+    check(toggles.map((toggle) => toggle.checked).join() === "true,false,false", "the best method alone is on at first");
+    const redrawn = () => { strokes.lines = []; dispatchEvent(new Event("resize")); return strokes.lines; };
+    const hex = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    const drawnIn = (name) => redrawn().some((line) => line.canvas === "view-scene" && line.style === hex(name) && line.points.length > 2);
+    check(drawnIn("--left") && drawnIn("--right"), "its boundaries have two colours");
+    for (const toggle of toggles.slice(1)) toggle.click();
+    check(!drawnIn("--left") && !drawnIn("--right"), "with several on each has that of its method");
+
+    const rowsOf = document.querySelector("#quality .scroll"), cue = rowsOf.querySelector(".cue");
+    rowsOf.style.maxHeight = "12rem"; // a table of this small comparison fits otherwise
+    dispatchEvent(new Event("resize"));
+    check(/↓ \d+ more row/.test(cue.textContent) && !cue.hidden, "that a table goes on below is said: " + cue.textContent);
+    rowsOf.scrollTop = rowsOf.scrollHeight;
+    await wait(100);
+    check(!cue.textContent.includes("↓"), "until its end is seen");
+    rowsOf.scrollTop = 0;
+    rowsOf.style.maxHeight = "";
+    await wait(100);
 
     const track = document.getElementById("view-track");
     track.value = "circle";
@@ -84,8 +107,6 @@ addEventListener("load", async () => {
     key("ArrowLeft");
     check(pose() === 0 && pixels() === before, "the arrow goes back");
 
-    const toggles = [...document.querySelectorAll("#view-methods input")];
-    check(toggles.length === 3, "every method has a toggle");
     for (const toggle of toggles) toggle.click();
     const bare = pixels();
     check(bare !== before, "lanes can be turned off");

@@ -53,5 +53,17 @@ class Colours(unittest.TestCase):
                     self.assertGreater(np.linalg.norm(seen[one] - seen[other]), LEAST_DISTANCE, (vision, one, other))
 
 
+    def test_left_and_right_can_be_told_apart(self):
+        with open(STYLE, encoding="utf-8") as stream:
+            blocks = [dict(re.findall(r"--(\w+): (#[0-9a-f]{6})", block))
+                      for block in re.findall(r"\{([^{}]*--m0[^{}]*)\}", stream.read())]
+        for block in blocks:
+            for side in ("left", "right"):
+                self.assertGreaterEqual(contrast(block[side], block["raised"]), LEAST_CONTRAST, side)
+            for vision, matrix in VISION.items():
+                seen = [lab(matrix @ linear(block[side])) for side in ("left", "right")]
+                self.assertGreater(np.linalg.norm(seen[0] - seen[1]), LEAST_DISTANCE, vision)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

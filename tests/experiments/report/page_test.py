@@ -159,8 +159,14 @@ class ReportPage(unittest.TestCase):
     def test_the_first_screen_says_what_to_run(self):
         first = re.search(r'<section id="verdict">(.*?)</section>', self.text, flags=re.S)[1]
         self.assertLess(self.text.index('<section id="verdict">'), self.text.index('<section id="comparison">'))
-        self.assertEqual(first.count('class="headline"'), 1)
-        self.assertEqual(first.count("<table"), 1)  # one headline, one table
+        intro = self.text[self.text.index("<main>"):self.text.index('<section id="verdict">')]
+        self.assertEqual(intro.count('class="headline"'), 1)  # what a cone lane is, what is compared, the answer
+        self.assertIn("A <b>cone lane</b> is", intro)
+        self.assertRegex(intro, r"Compared: 3 methods on the same \d+ scenes of 2 tracks")
+        self.assertIn('<path class="lane left"', re.search(r'<figure id="cone-lane".*?</figure>', intro, flags=re.S)[0])
+        for hint in ("nothing disturbed, n\u00a0=\u00a0", "cones off by 0.1 m, pose by 0.3 m and 5°, 5 % missed, n\u00a0=\u00a0"):
+            self.assertIn(f'<small class="hint">{hint}', first)  # the conditions beside their columns
+        self.assertEqual(first.count("<table"), 1)  # one table
         rows = re.findall(r'<tr data-method="([^"]*)">', first)
         self.assertEqual(sorted(rows), ["clc", "rld-cbc n=12", "rld-pair"])
         scores = lines("scores.jsonl")
@@ -178,8 +184,50 @@ class ReportPage(unittest.TestCase):
         for name, card in cards:
             self.assertIn("<svg", card)
             self.assertRegex(card, rf"<b>{name}</b> [A-Z]")
+            self.assertRegex(card, r"<br>Here: [a-z]")
+        self.assertEqual(len(set(re.findall(r'viewBox="([^"]*)"', first))), 1)  # one scene at one zoom
         self.assertIn("Robust Lane Detection with Binary Integer Optimization", first)
         self.assertIn("Lane Detection using Graph Search and Geometric Constraints for Formula Student Driverless", first)
+
+    def test_tables_have_the_best_method_first(self):
+        best = re.findall(r'<tr data-method="([^"]*)">', re.search(r'<div class="table" id="headline">.*?</table>', self.text,
+                                                                   flags=re.S)[0])
+        for table in ("quality", "steering", "latencies", "categories", "failure-causes"):
+            of_table = [key[1] for key in self.page.cells if key[0] == table]
+            self.assertEqual(list(dict.fromkeys(of_table)), best, table)
+
+    def test_one_legend_serves_the_figures_of_a_group(self):
+        for name in ("usable-by-rate-paper", "success-by-rate", "iou-by-rate", "latency-by-rate"):
+            figure = re.search(rf'<figure id="{name}".*?</figure>', self.text, flags=re.S)[0]
+            self.assertNotIn(f'id="{name}-legend_1"', figure)
+        keys = re.findall(r'<p class="method-key">(.*?)</p>', self.text, flags=re.S)
+        self.assertEqual(len(keys), 2)  # of quality and latency; no method here says how sure it is
+        for key in keys:
+            self.assertEqual(sorted(re.findall(r"</svg>([^<]*)</span>", key)), ["clc", "rld-cbc n=12", "rld-pair"])
+
+    def test_every_share_says_of_how_many(self):
+        for table in ("headline", "by-rate", "by-track", "failure-causes", "quality", "categories"):
+            head = re.search(rf'<div class="table" id="{table}">.*?</thead>', self.text, flags=re.S)[0]
+            self.assertIn(">scenes</button>", head, table)
+        for name in ("usable-by-rate-car", "success-by-rate", "latency-by-rate"):
+            figure = re.search(rf'<figure id="{name}".*?</figure>', self.text, flags=re.S)[0]
+            self.assertRegex(figure, r"n = \d+ scenes a point\.")
+
+    def test_a_time_that_the_limit_ended_is_named_a_limit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
+            shutil.copytree(RESULTS, copy)
+            with open(os.path.join(copy, "run.json"), encoding="utf-8") as stream:
+                run = json.load(stream)
+            longest = max(line["latency_ms"] for line in lines("scores.jsonl"))
+            for limit_ms in (longest, 2 * longest):
+                with open(os.path.join(copy, "run.json"), "w", encoding="utf-8") as stream:
+                    json.dump(run | {"time_limit_ms": limit_ms}, stream)
+                self.assertEqual(report(copy, page).returncode, 0)
+                with open(page, encoding="utf-8") as stream:
+                    text = stream.read()
+                self.assertEqual("<small>limit</small>" in text, limit_ms == longest)
+                self.assertEqual(" ended the search, which would have taken longer." in text, limit_ms == longest)
 
     def test_every_method_of_the_program_is_explained(self):
         listed = subprocess.run([PROGRAM, "methods", "--all"], capture_output=True, text=True, check=True).stdout
@@ -389,16 +437,20 @@ class ReportPage(unittest.TestCase):
         scores = {(line["method"], line["scene"]): line for line in lines("scores.jsonl")}
         found = re.findall(r'<details class="worst" open data-method="([^"]*)" data-condition="([^"]*)">(.*?)</details>',
                            self.text, flags=re.S)
-        self.assertEqual(len(found), 6)  # three methods, two conditions
+        self.assertEqual({(label.partition(" n=")[0], condition) for label, condition, _ in found},
+                         {(line["method"], line["condition"]) for line in scores.values() if not line["usable"]})
         for label, condition, content in found:
             method = label.partition(" n=")[0]
             shown = re.findall(r'data-open="([^"]*)"', content)
             tracks = [scores[method, scene]["track"] for scene in shown]
             self.assertTrue(0 < len(shown) <= 10 and all(tracks.count(track) <= 2 for track in tracks))
-            ranks = [(scores[method, scene]["usable"], scores[method, scene]["iou"]) for scene in shown]
+            self.assertFalse(any(scores[method, scene]["usable"] for scene in shown))  # it holds what is wrong
+            ranks = [scores[method, scene]["iou"] for scene in shown]
             self.assertEqual(ranks, sorted(ranks))
-            of_condition = [line for line in scores.values() if (line["method"], line["condition"]) == (method, condition)]
-            self.assertEqual(ranks[0], min((line["usable"], line["iou"]) for line in of_condition))
+            wrong = [line for line in scores.values() if (line["method"], line["condition"]) == (method, condition)
+                     and not line["usable"]]
+            self.assertEqual(ranks[0], min(line["iou"] for line in wrong))
+            self.assertRegex(content, rf"<small>(\d+ of )?{len(wrong)} lane")
             self.assertEqual(content.count("<svg"), len(shown))
 
     def test_experiments_take_other_comparisons_from_beside(self):
@@ -441,11 +493,13 @@ class ReportPage(unittest.TestCase):
                                                     trained_on={"points": ("one",)}))
             run = next(lap for lap in data["laps"] if lap["track"] == "run")
             frame = data["frames"][run["scenes"][1]]
+            slots = [method["label"] for method in data["methods"]]  # best first
+            points, line = (frame["a"][slots.index(name)] for name in ("points", "line"))
             self.assertEqual(frame["g"], [[], [], 0])
             self.assertEqual(data["tracks"]["run"]["driven"][:4], [-500, 20, -400, 20])
-            self.assertEqual(frame["a"][1][:2], [{"p": [0, 140, 800, 140, 1600, 140]},
+            self.assertEqual(points[:2], [{"p": [0, 140, 800, 140, 1600, 140]},
                                                  {"p": [0, -140, 800, -140, 1600, -140]}])
-            self.assertEqual(frame["a"][2][:2], [{"p": [0, 10, 800, 10, 1600, 10]}, []])
+            self.assertEqual(line[:2], [{"p": [0, 10, 800, 10, 1600, 10]}, []])
             self.assertEqual([answer[4] for answer in frame["a"]], [None] * 3)
             seen = next(lap for lap in data["laps"] if (lap["track"], lap["condition"]) == ("one", "car"))
             self.assertEqual(data["frames"][seen["scenes"][0]]["m"], [600, 150])
@@ -454,6 +508,11 @@ class ReportPage(unittest.TestCase):
             self.assertIn("IoU unknown", text)
             for condition in ("paper", "car"):
                 self.assertIn(f'id="calibration-{condition}"', text)
+            bins = re.search(r'<div class="table" id="calibration-bins">.*?</table>', text, flags=re.S)[0]
+            lanes = sum(int(value) for value in re.findall(r'data-value="(\d+)">\d+</td></tr>', bins))
+            stored = [json.loads(row) for row in open(os.path.join(folder, "results", "results.jsonl"), encoding="utf-8")]
+            self.assertEqual(lanes, sum(one[0] for row in stored for one in row["calibration"].get("bins", ())))
+            self.assertGreater(lanes, 0)
             said = re.search(r'<div class="table" id="calibration-table">.*?</table>', text, flags=re.S)[0]
             self.assertEqual(said.count(">99.50<"), 12)  # right where trusted: three methods, conditions and rates
             by_track = re.search(r'<div class="table" id="by-track">.*?</table>', text, flags=re.S)[0]

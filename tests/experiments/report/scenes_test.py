@@ -27,11 +27,13 @@ class Worst(unittest.TestCase):
     def of(self, rows, places):
         return scenes._worst(results_of(rows), places).get(("clc", "paper"), [])
 
-    def test_what_is_not_usable_comes_first_then_the_lowest_overlap(self):
+    def test_only_what_is_not_usable_the_lowest_overlap_first(self):
         rows = [("a", "one", 0.3, 1, 0.1), ("b", "two", 0.3, 0, 0.9), ("c", "three", 0.3, 0, 0.2),
                 ("d", "four", 0.3, 0, np.nan)]
         places = {scene: (100.0 * i, 0.0) for i, scene in enumerate("abcd")}
-        self.assertEqual(self.of(rows, places), ["c", "b", "d", "a"])
+        self.assertEqual(self.of(rows, places), ["c", "b", "d"])
+        self.assertEqual(self.of(rows[:1], places), [])
+        self.assertEqual(scenes._wrong(results_of(rows)), {("clc", "paper"): 3})
 
     def test_ties_go_by_name(self):
         rows = [("b", "one", 0.3, 0, 0.0), ("a", "two", 0.3, 0, 0.0)]
@@ -45,6 +47,32 @@ class Worst(unittest.TestCase):
     def test_ten_are_enough(self):
         rows = [(f"s{i:02}", f"track {i}", 0.3, 0, 0.0) for i in range(20)]
         self.assertEqual(self.of(rows, {f"s{i:02}": (0.0, 0.0) for i in range(20)}), [f"s{i:02}" for i in range(10)])
+
+
+def frame(turns, usable):
+    """A frame whose left boundary turns by each of `turns` [rad], and whether each method's lane is usable."""
+    heading, points = 0.0, [(0.0, 0.0)]
+    for turn in [0.0, *turns]:
+        heading += turn
+        points.append((points[-1][0] + 400 * np.cos(heading), points[-1][1] + 400 * np.sin(heading)))
+    return {"c": [value for point in points for value in point], "g": [list(range(len(points))), [], 0],
+            "a": [[[], [], 0, 1.0, 0.9, 0, 1, one, None, None, None] for one in usable]}
+
+
+class Start(unittest.TestCase):
+    def of(self, frames, rate=0.3):
+        results = results_of([(name, "one", rate, 1, 1.0) for name in frames], methods=("clc", "front", "rld"))
+        return scenes._start(results, frames, [{"condition": "paper", "rate": rate, "scenes": list(frames)}])
+
+    def test_turns_ahead_that_most_methods_get_right_but_not_all(self):
+        straight, bend = [0.0, 0.0], [0.5, -0.9]
+        self.assertAlmostEqual(scenes._turning_rad(frame(bend, [])), 1.4)
+        self.assertEqual(self.of({"a": frame(straight, [1, 1, 0]), "b": frame(bend, [1, 1, 0])}), "b")
+        self.assertEqual(self.of({"a": frame(bend, [1, 0, 0]), "b": frame(straight, [1, 1, 0])}), "b")  # too hard
+        self.assertEqual(self.of({"a": frame(bend, [1, 1, 1]), "b": frame(straight, [1, 1, 0])}), "b")  # all the same
+        self.assertEqual(self.of({"a": frame(bend, [0, 1, 1]), "b": frame(straight, [1, 1, 1])}), "b")  # not the best
+        self.assertEqual(self.of({"a": frame(bend, [1, 1, 0]), "b": frame(bend, [1, 1, 0])}), "a")  # the first
+        self.assertEqual(self.of({"a": frame(straight, [0, 0, 0])}), "a")  # whatever there is
 
 
 class Laps(unittest.TestCase):

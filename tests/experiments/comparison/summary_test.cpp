@@ -1,0 +1,197 @@
+#include "experiments/comparison/summary.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+struct Place {
+    std::string condition = "paper";
+    std::optional<double> rate = 0.0;
+    std::optional<double> range_m = 30.0;
+};
+
+/// Scored records, and the scenes and answers that they refer to.
+class Summaries : public testing::Test {
+  protected:
+    void add(const std::string& method, const Place& place, std::optional<LaneFailure> failure,
+             double latency_ms = 1.0, std::optional<std::size_t> nearest = {}, bool is_trained = false) {
+        AnnotatedScene& scene = scenes_.emplace_back();
+        scene.condition = place.condition;
+        scene.false_positive_rate = place.rate;
+        scene.range_m = place.range_m;
+        LaneRecord& record = records_.emplace_back();
+        record.detector = method;
+        record.nearest = nearest;
+        SceneScore score;
+        score.divergence_known = true;
+        score.latency_ms = latency_ms;
+        score.trained_on = is_trained;
+        score.lane_length_m = 25.0;
+        score.ground_truth_length_m = 25.0;
+        score.category = failure ? Category::none : Category::near_ground_truth;
+        scored_.push_back({&scene, &record, score, failure});
+    }
+    void add_unknown(const std::string& method) {
+        add(method, {}, {});
+        scored_.back().score.divergence_known = false;
+    }
+    [[nodiscard]] std::string text(const std::vector<std::string>& notes = {}) const {
+        return summary(scored_, notes);
+    }
+    [[nodiscard]] static std::vector<std::string> lines(const std::string& text) {
+        std::vector<std::string> all;
+        std::istringstream stream(text);
+        for (std::string line; std::getline(stream, line);) all.push_back(line);
+        return all;
+    }
+    static void expect_to_fit(const std::string& text) {
+        const std::vector<std::string> all = lines(text);
+        EXPECT_LE(all.size() + kLinesBelowSummary, kSummaryLines) << text;
+        for (const std::string& line : all) EXPECT_LE(line.size(), kSummaryColumns) << line;
+    }
+
+    std::deque<AnnotatedScene> scenes_;
+    std::deque<LaneRecord> records_;
+    std::vector<ScoredRecord> scored_;
+};
+
+TEST_F(Summaries, OfNothingAreEmpty) {
+    EXPECT_EQ(text(), "");
+}
+
+TEST_F(Summaries, SayUsableLanesByConditionAndRateLatencyAndWhatWentWrong) {
+    for (const char* condition : {"paper", "car"}) {
+        for (const double rate : {0.0, 0.166}) {
+            const bool is_hard = rate > 0.0 && std::string(condition) == "car";
+            for (int i = 0; i < 4; ++i) {
+                add("worse", {condition, rate},
+                    is_hard ? std::optional(LaneFailure::wrong_leg) : std::nullopt, 5.0 + i);
+                add("better", {condition, rate},
+                    is_hard && i == 0 ? std::optional(LaneFailure::false_cone) : std::nullopt);
+            }
+        }
+    }
+    scored_.front().failure = LaneFailure::nothing_found;  // of the clean paper scenes one
+    scored_.front().score.category = Category::none;
+    EXPECT_THAT(
+        lines(text()),
+        ElementsAre("Usable lanes in %, by share of false positives in %; 16 scenes a method; range 30 m",
+                    "               paper           car     latency in ms",
+                    "method       0  16.6       0  16.6   median      p99",
+                    "better   100.0 100.0   100.0  75.0     1.00     1.00",
+                    "worse     75.0 100.0   100.0   0.0     6.50     8.00", "",
+                    "Not usable, in % of the scenes, and why", "better    6.2  false cone 6.2",
+                    "worse    31.2  wrong leg 25.0, nothing found 6.2", ""));
+}
+
+TEST_F(Summaries, WhatIsUnknownIsNoShareAndStandsLast) {
+    add_unknown("unknown");
+    add("bad", {}, LaneFailure::error);
+    const std::vector<std::string> all = lines(text());
+    EXPECT_THAT(all[3], HasSubstr("bad"));
+    EXPECT_THAT(all[4], testing::StartsWith("unknown       -"));
+    EXPECT_THAT(text(), HasSubstr("bad      100.0  error 100.0\n"));
+}
+
+TEST_F(Summaries, AMethodThatHasLearnedFromACourseIsMarked) {
+    add("clc", {}, {}, 1.0, {}, true);
+    add("front", {}, {});
+    EXPECT_THAT(text(), HasSubstr("clc* "));
+    EXPECT_THAT(text(), Not(HasSubstr("front*")));
+    EXPECT_THAT(text(), HasSubstr("* with courses that the method has learned from"));
+}
+
+TEST_F(Summaries, ConeSetSizesAreColumns) {
+    for (const std::size_t size : {12U, 8U}) {
+        add("clc", {}, size == 8 ? std::optional(LaneFailure::stopped_early) : std::nullopt,
+            static_cast<double>(size), size);
+        add("rld", {}, {}, 0.5, size);
+    }
+    EXPECT_THAT(lines(text()),
+                testing::IsSupersetOf({"method     n=8  n=12", "rld      100.0 100.0", "clc        0.0 100.0",
+                                       "rld       0.50  0.50", "clc       8.00 12.00"}))
+        << text();
+    expect_to_fit(text());
+}
+
+TEST_F(Summaries, FitWhateverIsCompared) {
+    for (const std::size_t methods : {1U, 8U, 40U}) {
+        for (const std::size_t conditions : {1U, 2U, 4U}) {
+            for (const std::size_t rates : {1U, 4U, 30U}) {
+                for (const std::size_t ranges : {1U, 3U}) {
+                    for (const std::size_t sizes : {1U, 12U}) {
+                        scored_.clear();
+                        scenes_.clear();
+                        records_.clear();
+                        for (std::size_t m = 0; m < methods; ++m) {
+                            const std::string name = "a-method-of-a-long-name-" + std::to_string(m);
+                            for (std::size_t c = 0; c < conditions; ++c) {
+                                for (std::size_t r = 0; r < rates; ++r) {
+                                    for (std::size_t g = 0; g < ranges; ++g) {
+                                        const std::size_t s = (m + c + r + g) % sizes;
+                                        add(name,
+                                            {"condition" + std::to_string(c), 0.01 * static_cast<double>(r),
+                                             20.0 + 10.0 * static_cast<double>(g)},
+                                            static_cast<LaneFailure>((m + r) % kLaneFailureCount), 12345.678,
+                                            sizes > 1 ? std::optional(s) : std::nullopt, m == 0);
+                                    }
+                                }
+                            }
+                        }
+                        SCOPED_TRACE(testing::Message() << methods << ' ' << conditions << ' ' << rates << ' '
+                                                        << ranges << ' ' << sizes);
+                        const std::string all = text({"a note", std::string(300, 'x')});
+                        expect_to_fit(all);
+                        if (methods == 40U) {
+                            EXPECT_THAT(all, HasSubstr(" more method"));
+                        }
+                        if (methods == 1U) {
+                            EXPECT_THAT(all, Not(HasSubstr(" more method")));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_F(Summaries, WhatHasNoRoomIsCounted) {
+    for (int method = 0; method < 20; ++method) {
+        for (int rate = 0; rate < 40; ++rate) add("m" + std::to_string(method), {"", 0.01 * rate}, {});
+    }
+    EXPECT_THAT(text(), HasSubstr("15 more methods and 13 more columns: see the wide table\n"));
+}
+
+TEST_F(Summaries, RangesAreTakenTogether) {
+    for (const double range_m : {30.0, 50.0}) add("clc", {"paper", 0.0, range_m}, {});
+    EXPECT_THAT(lines(text())[0], HasSubstr("; 2 scenes a method; range 30, 50 m together"));
+    EXPECT_THAT(text(), HasSubstr("\nclc      100.0     1.00"));
+}
+
+TEST_F(Summaries, ManyCausesEndWithTheirRest) {
+    for (std::size_t i = 0; i < kLaneFailureCount; ++i) {
+        for (std::size_t times = 0; times <= i; ++times) add("clc", {}, static_cast<LaneFailure>(i));
+    }
+    const std::string line = lines(text())[6];
+    EXPECT_THAT(line, testing::StartsWith(
+                          "clc     100.0  leaves path 18.2, stopped early 16.4, gap not bridged 14.5, "));
+    EXPECT_THAT(line, HasSubstr(", other "));
+    EXPECT_LE(line.size(), kSummaryColumns);
+}
+
+}  // namespace
+}  // namespace conelane::experiments
