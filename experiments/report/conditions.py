@@ -28,5 +28,5 @@ def whole(conditions, name):
             f"{math.degrees(known['pose_yaw_rad']):.0f}° off (one sigma each), "
             f"{100 * known['miss_rate']:g} % of the cones missed" if disturbed else "nothing disturbed")
     strays = ("false positives stay where they are along a lap" if known["persistent"] else
-              "false positives are drawn anew at every pose")
+              "false positives are drawn again at every pose")
     return f"{what}; {strays}"
