@@ -20,10 +20,9 @@ struct FrontSceneOptions {
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// Another course beside it, whose cones are false ones: better among parallel legs, worse elsewhere.
     bool other_course = false;
-    /// Half of the draws show colors, which are wrong or not seen at any rate. Else none does.
-    bool colors = true;
-    bool noise_scenes = true;   ///< a fifth of the draws has a scene of false cones alone, for the judge
-    double highest_rate = 0.7;  ///< some views have so many where false positives stay at a rate of 0.5
+    double colored_share = 0.5;  ///< of the draws that show colors, wrong and not seen at any rate
+    bool noise_scenes = true;    ///< a fifth of the draws has a scene of false cones alone, for the judge
+    double highest_rate = 0.7;   ///< some views have so many where false positives stay at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses on the fly. Each draw takes a course, drives it either way,
