@@ -45,8 +45,7 @@ constexpr double kMaxMissed = 0.1;
 constexpr double kMaxLateral_m = 0.5;
 constexpr double kMaxYaw_rad = 8.0 * kDegree_rad;
 constexpr double kShortSightShare = 0.15;
-// How often colors are seen, and how well.
-constexpr double kColoredShare = 0.5;
+// How well colors are seen.
 constexpr double kAllRightShare = 0.25;  ///< of the coloured ones: no color is wrong
 constexpr double kMaxWrong = 0.35;       ///< share of the cones that show the other side's color
 constexpr double kAllSeenShare = 0.35;   ///< no color is missing
@@ -231,7 +230,8 @@ class ColorSight {
         if (one_in(random_, unseen)) cone.color = ConeColor::unknown;
         if (cone.color == ConeColor::unknown) return;
         // A softened color is wrong as often as it says.
-        const double wrong = soft_ ? uniform(random_, 0.0, std::min(1.0, 2.0 * wrong_)) : wrong_;
+        const bool is_drawn = soft_ && wrong_ > 0.0;
+        const double wrong = is_drawn ? uniform(random_, 0.0, std::min(0.5, 2.0 * wrong_)) : wrong_;
         const bool is_orange = cone.color == ConeColor::orange;
         if (!is_false && !is_orange && one_in(random_, wrong))
             cone.color = cone.color == ConeColor::blue ? ConeColor::yellow : ConeColor::blue;
@@ -311,7 +311,7 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         add_other_course(track, poses, courses_[any_below(random, courses_.size())].track, random);
     }
     Random color_random = generator_of(name + "/colors", seed_);
-    const bool colored = options_.colors && one_in(color_random, kColoredShare);
+    const bool colored = one_in(color_random, options_.colored_share);
     Drawn drawn;
     drawn.boundaries = boundaries(track);
     for (std::size_t i = 0; i < options_.scenes_per_draw; ++i) {

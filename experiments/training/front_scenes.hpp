@@ -20,11 +20,9 @@ struct FrontSceneOptions {
     bool short_sight = true;  ///< true cones seen to a shorter radius than false ones
     /// A second course beside it, whose cones are false: better among parallel legs, worse elsewhere.
     bool other_course = false;
-    /// Half of the draws show colors, which are wrong or not seen at any rate. Without it no draw shows
-    /// colors.
-    bool colors = true;
-    bool noise_scenes = true;   ///< a fifth of the draws has a scene of false cones alone, for the judge
-    double highest_rate = 0.7;  ///< some views reach it if false positives persist at a rate of 0.5
+    double colored_share = 0.5;  ///< of the draws that show colors, at any rates of wrong and unknown ones
+    bool noise_scenes = true;    ///< a fifth of the draws has a scene of false cones alone, for the judge
+    double highest_rate = 0.7;   ///< some views reach it if false positives persist at a rate of 0.5
 };
 
 /// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in either direction,

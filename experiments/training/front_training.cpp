@@ -7,6 +7,7 @@
 #include "experiments/training/front_checkpoint.hpp"
 #include "experiments/training/front_gradient.hpp"
 #include "graph_search/front/front_detector.hpp"
+#include "graph_search/front/front_judge_features.hpp"
 
 #include <algorithm>
 #include <array>
@@ -74,6 +75,32 @@ void leave_out(const std::vector<std::string>& names, FrontWeights& weights) {
     }
 }
 
+/// 1 for each weight of an input of colors, 0 for all others.
+FrontWeights weights_of_colors() {
+    FrontWeights result = FrontWeights::zero();
+    const auto mark = [](FrontNetworkWeights& network, const std::vector<std::string_view>& lists) {
+        std::size_t first = 0;
+        for (const std::string_view key : lists) {
+            const auto all = front_feature_lists();
+            const auto list = std::ranges::find(all, key, &FrontFeatureList::key);
+            const std::size_t end = first + list->features.size();
+            for (std::size_t input = end - list->colors; input < end; ++input) {
+                network.linear[input] = 1.0F;
+                std::fill_n(network.hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
+                            kFrontUnits, 1.0F);
+            }
+            first = end;
+        }
+    };
+    mark(result.extend, {"state", "extend"});
+    mark(result.stop, {"state", "stop"});
+    mark(result.start, {"start"});
+    mark(result.rank, {"lane"});
+    mark(result.usable, {"lane"});
+    mark(result.right, {"cone", "state", "extend"});
+    return result;
+}
+
 /// What one draw of a step gives.
 struct Slot {
     FrontLearner learner;
@@ -108,6 +135,7 @@ class Training {
           slots_(options.draws_per_step) {
         leave_out(options.without, weights_);
         values_ = flat(weights_);
+        if (options.only_colors) learned_ = flat(weights_of_colors());
     }
 
     [[nodiscard]] std::size_t steps() const { return first_judging() + options_.judge_steps; }
@@ -134,6 +162,7 @@ class Training {
         if (scenes == 0) return;
         leave_out(options_.without, sum);
         Eigen::ArrayXd derivatives = flat(sum) / static_cast<double>(scenes);
+        if (learned_.size() > 0) derivatives *= learned_;
         const double length = std::sqrt(derivatives.square().sum());
         if (length > kMaxGradient) derivatives *= kMaxGradient / length;
         adam_.add(derivatives);
@@ -144,6 +173,7 @@ class Training {
     /// Sets least_trust so that on scenes drawn after all those learned from, the share of lanes asked for is
     /// right up to their trusted length.
     void choose_least_trust() {
+        if (options_.only_colors) return;
         std::vector<std::vector<double>> wrong(options_.trust_draws);
         std::vector<std::size_t> scenes(options_.trust_draws);
         oneapi::tbb::parallel_for(std::size_t{0}, options_.trust_draws, [&](std::size_t i) {
@@ -267,7 +297,8 @@ class Training {
     FrontTrainingOptions options_;
     FrontScenes scenes_;
     FrontWeights weights_;
-    Eigen::ArrayXd values_;  ///< of the weights, before they are rounded to float
+    Eigen::ArrayXd values_;   ///< of the weights, before they are rounded to float
+    Eigen::ArrayXd learned_;  ///< 1 for each that is learned, else 0; empty where all are
     Adam adam_;
     std::vector<Slot> slots_;
 };
@@ -280,6 +311,9 @@ void validate(const FrontTrainingOptions& options) {
     };
     validate(options.loss.search);
     if (options.initial) validate(*options.initial);
+    require(!options.only_colors || options.initial, "only_colors", "needs weights to begin with");
+    require(options.scenes.colored_share >= 0.0 && options.scenes.colored_share <= 1.0, "colored_share",
+            "must be in [0, 1]");
     for (const std::string& name : options.without) {
         const auto all = cost_inputs();
         const bool known = std::ranges::any_of(

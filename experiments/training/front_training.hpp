@@ -21,6 +21,9 @@ struct FrontTrainingOptions {
     /// Weights that the training begins with, instead of drawn ones, and what a record calls them.
     std::optional<FrontWeights> initial;
     std::string initial_name;
+    /// Only the weights of inputs of colors are learned: where no cone has a color, nothing changes. Needs
+    /// `initial`, whose least_trust stays.
+    bool only_colors = false;
     /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
     std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam

@@ -133,10 +133,15 @@ void add_train_front_command(CLI::App& train_command) {
     command.add_flag("!--no-disturbance", training.scenes.disturb, "no noise, missed cones and pose error");
     command.add_flag("--other-course", training.scenes.other_course,
                      "a second course lies beside the first in a third of the draws");
-    command.add_flag("!--no-colors", training.scenes.colors,
-                     "no cone has a colour; else in half of the draws");
-    command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
-                     "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
+    add_number_option(command, "--colored-share", training.scenes.colored_share,
+                      "share of the draws whose cones have colours");
+    command.add_flag(
+        "--only-colors", training.only_colors,
+        "with --from: only the weights of inputs of colours are learned, so that without colours nothing "
+        "changes");
+    else in half of the draws ");
+        command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
+                         "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
     command

@@ -8,6 +8,7 @@
 #include "evaluation/scoring/score.hpp"
 #include "evaluation/tracks/centre_line.hpp"
 #include "evaluation/tracks/generated_tracks.hpp"
+#include "experiments/training/front_checkpoint.hpp"
 #include "experiments/training/front_gradient.hpp"
 #include "experiments/training/front_training_run.hpp"
 #include "graph_search/weights/shipped_weights.hpp"
@@ -168,6 +169,7 @@ TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
 
 TEST(FrontTraining, TrustsNoFartherThanItsShareOfScenesAllows) {
     FrontTrainingOptions options = quick();
+    options.trust_draws = 20;
     const auto least_trust = [&](double trusted) {
         options.trusted = trusted;
         return train_front(courses(), {}, options, {}).least_trust;
@@ -177,6 +179,139 @@ TEST(FrontTraining, TrustsNoFartherThanItsShareOfScenesAllows) {
     EXPECT_GT(strict, 0.0);
     EXPECT_LE(strict, 1.0);
     EXPECT_LE(least_trust(0.7), strict);
+}
+
+/// Half of the draws show colors, with every kind of fault; geometry is as without.
+TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
+    const FrontScenes colored(courses(), {}, 3);
+    FrontSceneOptions without;
+    without.colored_share = 0.0;
+    const FrontScenes plain(courses(), without, 3);
+    std::size_t draws = 0;
+    std::size_t with_color = 0;
+    double own = 0.0;
+    double wrong = 0.0;
+    double unseen = 0.0;
+    double soft = 0.0;
+    for (std::uint64_t number = 0; number < 200; ++number) {
+        const FrontScenes::Drawn drawn = colored.draw(number);
+        const FrontScenes::Drawn bare = plain.draw(number);
+        ASSERT_EQ(drawn.scenes.size(), bare.scenes.size());
+        if (drawn.scenes.empty()) continue;
+        ++draws;
+        bool any = false;
+        for (std::size_t i = 0; i < drawn.scenes.size(); ++i) {
+            const std::vector<Cone>& cones = drawn.scenes[i].scene.cones;
+            ASSERT_NO_THROW(validate(drawn.scenes[i].scene));
+            const Lane& truth = *drawn.scenes[i].ground_truth;
+            for (std::size_t k = 0; k < cones.size(); ++k) {
+                ASSERT_EQ(cones[k].position, bare.scenes[i].scene.cones[k].position);
+                ASSERT_EQ(bare.scenes[i].scene.cones[k].color, ConeColor::unknown);
+                any = any || cones[k].color != ConeColor::unknown;
+                const bool on_left = std::ranges::find(truth.left, cones[k].id) != truth.left.end();
+                if (!on_left) continue;
+                own += cones[k].color == ConeColor::blue ? 1.0 : 0.0;
+                wrong += cones[k].color == ConeColor::yellow ? 1.0 : 0.0;
+                unseen += cones[k].color == ConeColor::unknown ? 1.0 : 0.0;
+                soft += cones[k].color_probabilities ? 1.0 : 0.0;
+            }
+        }
+        with_color += any ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(with_color) / static_cast<double>(draws), 0.5, 0.12);
+    const double seen = own + wrong;
+    EXPECT_NEAR(wrong / seen, 0.75 * 0.35 / 2.0, 0.06);
+    EXPECT_GT(unseen, seen);  // half of the draws, and a fifth of the others
+    EXPECT_NEAR(soft / seen, 0.3, 0.12);
+}
+
+/// A fifth of the draws has a scene in which no cone belongs to a course.
+TEST(FrontScenes, SomeDrawsHaveASceneOfFalseConesAlone) {
+    const FrontScenes scenes(courses(), {}, 3);
+    std::size_t noisy = 0;
+    for (std::uint64_t number = 0; number < 200; ++number) {
+        const FrontScenes::Drawn drawn = scenes.draw(number);
+        noisy += drawn.noise.size();
+        for (const Scene& scene : drawn.noise) {
+            EXPECT_NO_THROW(validate(scene));
+            EXPECT_GE(scene.cones.size(), 4U);
+            EXPECT_LE(scene.cones.size(), 60U);
+        }
+    }
+    EXPECT_NEAR(static_cast<double>(noisy) / 200.0, 0.2, 0.08);
+}
+
+/// The judge learns that what it finds there is no lane.
+TEST(FrontJudgeLearner, TakesNoLaneOfNoiseForUsable) {
+    const FrontScenes scenes(courses(), {}, 3);
+    FrontWeights weights = random_front_weights(2);
+    weights.usable = random_network(kWholeLaneFeatures, 7);
+    weights.right = random_network(kRightInputs, 8);
+    FrontJudgeLearner learner;
+    const auto loss_of = [&](const FrontWeights& at, const Scene& scene, FrontWeights& derivatives) {
+        FrontCost cost(at);
+        FrontJudge judge(at);
+        return learner.judge_noise(scene, at, cost, judge, {}, derivatives);
+    };
+    std::size_t found = 0;
+    for (std::uint64_t number = 0; number < 200 && found < 3; ++number) {
+        for (const Scene& scene : scenes.draw(number).noise) {
+            FrontWeights derivatives = FrontWeights::zero();
+            const double loss = loss_of(weights, scene, derivatives);
+            if (loss == 0.0) continue;
+            ++found;
+            FrontWeights better = weights;
+            better.usable.output_bias -= 1e-2F * derivatives.usable.output_bias;
+            better.right.output_bias -= 1e-2F * derivatives.right.output_bias;
+            EXPECT_GT(derivatives.usable.output_bias, 0.0F);
+            EXPECT_GT(derivatives.right.output_bias, 0.0F);
+            FrontWeights ignored = FrontWeights::zero();
+            EXPECT_LT(loss_of(better, scene, ignored), loss);
+        }
+    }
+    EXPECT_EQ(found, 3U);
+}
+
+/// A training that begins with weights and takes no step but of the judge keeps their cost.
+TEST(FrontTraining, BeginsWithTheWeightsThatAreGiven) {
+    FrontTrainingOptions options = quick();
+    options.imitation_steps = 0;
+    options.search_steps = 0;
+    options.judge_steps = 2;
+    options.initial = random_front_weights(4);
+    options.initial_name = "0123456789abcdef";
+    const FrontWeights weights = train_front(courses(), {}, options, {});
+    EXPECT_EQ(weights.extend, options.initial->extend);
+    EXPECT_NE(weights.usable, options.initial->usable);
+    EXPECT_THAT(describe_training(courses(), options),
+                testing::HasSubstr(R"("begins_with":"0123456789abcdef")"));
+    // Of inputs of colors alone: nothing else changes, nor does what is made of scenes without colors.
+    options.only_colors = true;
+    options.search_steps = 2;
+    options.scenes.colored_share = 1.0;
+    const FrontWeights colored = train_front(courses(), {}, options, {});
+    EXPECT_NE(colored.extend, options.initial->extend);
+    EXPECT_EQ(colored.least_trust, options.initial->least_trust);
+    EXPECT_EQ(colored.extend.hidden_bias, options.initial->extend.hidden_bias);
+    EXPECT_EQ(colored.right.output, options.initial->right.output);
+    for (std::size_t input = 0; input < kExtendInputs; ++input) {
+        const bool of_state = input < kStateFeatures;
+        const std::string_view name = of_state ? state_feature_table()[input].name
+                                               : extend_feature_table()[input - kStateFeatures].name;
+        if (name.starts_with("color_")) continue;
+        EXPECT_EQ(colored.extend.linear[input], options.initial->extend.linear[input]) << name;
+        const auto row = [&](const FrontNetworkWeights& network) {
+            return std::vector<float>(
+                network.hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
+                network.hidden.begin() + static_cast<std::ptrdiff_t>((input + 1) * kFrontUnits));
+        };
+        EXPECT_EQ(row(colored.extend), row(options.initial->extend)) << name;
+    }
+    FrontTrainingOptions drawn = options;
+    drawn.initial.reset();
+    EXPECT_THROW((void)train_front(courses(), {}, drawn, {}), InvalidInput);
+    options.initial->stop.linear.pop_back();
+    EXPECT_THROW((void)train_front(courses(), {}, options, {}), InvalidInput);
 }
 
 TEST(FrontScenes, DrawTheSameForTheSameNumber) {

@@ -147,9 +147,9 @@ TEST(FrontFeatures, OfColorsSpeakForAndAgainstTheSideThatMoves) {
     EXPECT_FLOAT_EQ(of_state("color_agreement"), (3.0F - 1.0F) / 5.0F);
     EXPECT_EQ(of_state("color_end"), -1.0F);
     EXPECT_EQ(of_state("color_other_end"), 1.0F);
-    // The nearest one to each within 5.8 m that is blue or yellow: 0-3 differ, both ways; 1-6 (3.83 m off)
-    // are farther apart than 1-4 (3.6 m), alike, both ways; 2-6 alike, both ways; 6 has 2 and 1 to choose.
-    EXPECT_FLOAT_EQ(of_state("color_consistency"), (-2.0F + 2.0F + 2.0F) / 6.0F);
+    // Each one and the nearest other one that is blue or yellow: 0 and 3, 3 and 0, 1 and 6 differ, 6 and 1
+    // too (2 is as near, but stands later); 2 and 6, 4 and 1 are alike.
+    EXPECT_FLOAT_EQ(of_state("color_consistency"), (2.0F - 4.0F) / 6.0F);
 
     const ExtendFeatures left = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 2), measures);
     const auto of_left = [&](std::string_view name) { return named(extend_feature_table(), left, name); };
@@ -204,7 +204,8 @@ TEST(FrontFeatures, OfColorsAreNothingWithoutColorsAndCountNothingThen) {
     const StateMeasures measures = measure(lane.map, lane.state, kLeft);
     const auto require_none = [](const auto& table, const auto& values) {
         for (std::size_t i = 0; i < table.size(); ++i) {
-            if (table[i].name.starts_with("color_")) EXPECT_EQ(values[i], 0.0F) << table[i].name;
+            if (!table[i].name.starts_with("color_")) continue;
+            EXPECT_EQ(values[i], 0.0F) << table[i].name;
         }
     };
     const ExtendFeatures extend = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 2), measures);
@@ -434,11 +435,11 @@ TEST(FrontMap, TheViewReachesToTheFarthestConeThatIsNotAlone) {
 }
 
 /// A score is the network's of what is seen, of a start the sum over both boundaries.
-TEST(FrontCost, ScoresAreOfWhatIsSeen) {
+void require_scores_of_what_is_seen(const Scene& scene) {
     const FrontWeights weights = tests::random_front_weights(4);
     FrontCost cost(weights);
     FrontMap map;
-    map.build(tests::straight_front_scene(3));
+    map.build(scene);
     FrontStarts starts;
     starts.list(map, {});
     const std::span<const float> pair_scores = cost.score_starts(map, starts);
@@ -485,6 +486,13 @@ TEST(FrontCost, ScoresAreOfWhatIsSeen) {
     }
     const StopFeatures stop = stop_features(map, state, kLeft, all);
     EXPECT_NEAR(scores.back(), FrontNetwork(weights.stop).score(with_state(stop)), kRounding);
+}
+
+TEST(FrontCost, ScoresAreOfWhatIsSeen) {
+    Scene scene = tests::straight_front_scene(3);
+    require_scores_of_what_is_seen(scene);
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) scene.cones[i].color = i % 3 == 0 ? kBlue : kYellow;
+    require_scores_of_what_is_seen(scene);
 }
 
 }  // namespace

@@ -221,7 +221,7 @@ TEST(FrontJudge, RankLiftsALaneOverBetterScores) {
 
 /// Each cone is right with probability 0.8, the lane surely usable, so three steps keep 0.512 and four 0.41.
 TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
-    FrontWeights weights = random_front_weights(4);
+    FrontWeights weights = random_front_weights(6);
     weights.right.output_bias = static_cast<float>(std::log(0.8 / 0.2));
     weights.usable.output_bias = 50.0F;
     const auto trusted_m = [&](double least_trust) {
