@@ -122,10 +122,10 @@ DetectorFigure evaluate(const TunableDetector& detector, std::span<const double>
         oneapi::tbb::parallel_for(std::size_t{0}, set.scenes.size(), [&](std::size_t i) {
             const AnnotatedScene& scene = set.scenes[i];
             if (!counts(scene)) return;
-            LaneDetector& detector = *detectors.local();
-            detector.reset();
+            LaneDetector& made = *detectors.local();
+            made.reset();
             const LaneAnswer answer =
-                detector.detect(scene.scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});
+                made.detect(scene.scene, {.time_limit_ms = std::numeric_limits<double>::infinity()});
             scores[i] = score(scene, answer, 0.0, std::nullopt, &set.tracks.at(scene.track));
         });
     });
