@@ -41,8 +41,16 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     return drive;
 }
 
-Entrant detector_entrant(const std::string& name) {
-    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_method(name)))](const Frame& frame) {
+/// Those of the library, and weights of the race where the method takes them.
+DetectorOptions options_of(const RaceMethod& method, const std::optional<WeightsBytes>& weights) {
+    DetectorOptions options;
+    if (method.takes_weights && weights) options.weights = *weights;
+    return options;
+}
+
+Entrant detector_entrant(const std::string& name, const DetectorOptions& options) {
+    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_method(name), options))](
+               const Frame& frame) {
         const Scene scene = scene_of(frame);
         return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
     };
@@ -83,8 +91,10 @@ Entrant outside_entrant(const std::shared_ptr<OutsideProgramPool>& programs) {
     };
 }
 
-Entrant planner_entrant(const std::string& detector, const RaceCourse& course, const RaceOptions& options) {
-    PlannerOptions wanted{.mission = course.mission, .detector = detector};
+Entrant planner_entrant(const std::string& detector, const DetectorOptions& detector_options,
+                        const RaceCourse& course, const RaceOptions& options) {
+    PlannerOptions wanted{
+        .mission = course.mission, .detector = detector, .detector_options = detector_options};
     if (course.mission == Mission::trackdrive) wanted.laps = options.laps;
     return [planner = std::shared_ptr<Planner>(make_planner(wanted))](const Frame& frame) {
         Drive drive;
@@ -127,17 +137,17 @@ std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, With
             if (with_planner == WithPlanner::only) {
                 throw InvalidInput("--planner", "a program from outside has none: '" + outside->name + "'");
             }
-            all.push_back({outside->name, outside->source, false,
+            all.push_back({outside->name, outside->source, false, false,
                            std::make_shared<OutsideProgramPool>(outside->name, outside->source)});
             continue;
         }
-        static_cast<void>(find_method(text));
-        if (with_planner != WithPlanner::only) all.push_back({text, text});
+        const bool takes_weights = find_method(text).takes_weights();
+        if (with_planner != WithPlanner::only) all.push_back({text, text, false, takes_weights});
         if (with_planner != WithPlanner::no) {
             if (!is_of_library(text)) {
                 throw InvalidInput("--planner", "'" + text + "' is no detector of the library");
             }
-            all.push_back({text + "+planner", text, true});
+            all.push_back({text + "+planner", text, true, takes_weights});
         }
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -150,12 +160,14 @@ std::vector<RaceMethod> race_methods(const std::vector<std::string>& texts, With
     return all;
 }
 
-Entrant make_entrant(const RaceMethod& method, const RaceCourse& course, const RaceOptions& options) {
+Entrant make_entrant(const RaceMethod& method, const RaceCourse& course, const RaceOptions& options,
+                     const std::optional<WeightsBytes>& weights) {
     if (method.programs) return outside_entrant(method.programs);
     if (method.method == "truth") return truth_entrant(course, options.laps);
     if (method.method == "none") return [](const Frame& /*frame*/) { return Drive{}; };
-    if (method.has_planner) return planner_entrant(method.method, course, options);
-    return detector_entrant(method.method);
+    const DetectorOptions detector_options = options_of(method, weights);
+    if (method.has_planner) return planner_entrant(method.method, detector_options, course, options);
+    return detector_entrant(method.method, detector_options);
 }
 
 }  // namespace conelane::experiments
