@@ -28,7 +28,8 @@ struct LaneFoot {
 [[nodiscard]] double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m);
 
 /// The lane with a beginning at the car where it begins ahead: along `before`, the lane driven so far, where
-/// that leads to it, else in one bend from the car. Nothing where it is too far ahead or aside to be joined.
+/// that leads to it, else in one bend from the car. Nothing where it is more than 12 m away, or for a bend
+/// too far aside: more than 2.5 m and three tenths of the way ahead.
 [[nodiscard]] std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
                                                        const DrivableLane* before, double step_m);
 

@@ -31,13 +31,26 @@ struct ShiftSettings {
     double min_share = 0.6;  ///< of the cones compared
 };
 
+/// The constants of the votes on cones.
+struct ConeVoteSettings {
+    double fading = 0.1;      ///< share of the votes before that a vote of weight 1 replaces
+    double prior = 0.5;       ///< votes that each answer has before any frame
+    double min_votes = 0.05;  ///< a cone with fewer is forgotten
+    double near_m = 12.0;     ///< from the car: up to here a cone counts in full, from far_m on nothing
+    double far_m = 20.0;
+    double max_objection = 6.0;  ///< of all cones of a lane [log odds]
+};
+
 /// The constants of the choice between a new lane and the last one.
 struct LaneChoiceSettings {
     double near_m = 8.0;         ///< a jump within this arc length ahead of the car needs a second opinion
     double jump_m = 0.9;         ///< between the lines of two frames: half the narrowest lane, less the noise
-    double max_support = 6.0;    ///< weights of frames that speak for a lane: so much replaces it
+    double max_support = 6.0;    ///< weights of frames that speak for a lane: no more are counted
+    double kept_support = 0.92;  ///< of what spoke for a lane, with each frame
     double unsure_weight = 0.4;  ///< of a frame whose detector gives no probability
     double min_kept_weight = 0.02;  ///< a candidate that is less probable says nothing
+    double second_odds = 0.5;       ///< log odds that a candidate which the detector ranks lower lacks
+    double second_vote = 0.4;       ///< the weight of its votes on cones, of its probability
     double course_weight = 0.3;     ///< of the lap before, in each frame
     double course_ahead_m = 20.0;   ///< of it that is looked at
     double min_left_m = 3.0;        ///< a lane of which less is left holds nothing back
