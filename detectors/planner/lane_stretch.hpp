@@ -29,7 +29,8 @@ struct LaneFoot {
 
 /// The lane with a beginning at the car where it begins ahead: along `before`, the lane driven so far, where
 /// that leads to it, else in one bend from the car. Nothing where it is more than 12 m away, or for a bend
-/// too far aside: more than 2.5 m and three tenths of the way ahead.
+/// too far aside: more than 2.5 m and three tenths of the way ahead. Nothing either where it begins at the
+/// car and runs across its heading, by more than 0.9 rad.
 [[nodiscard]] std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
                                                        const DrivableLane* before, double step_m);
 
