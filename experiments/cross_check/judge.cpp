@@ -129,7 +129,7 @@ class Judgement {
         all.push_back({"an answer without its last edge", std::move(shorter)});
         LaneGraph with_gone = *known;
         with_gone.edges.push_back({cones - 1, cones});
-        all.push_back({"an answer with a cone that the scene does not have", std::move(with_gone)});
+        all.push_back({"an answer with a cone that is gone", std::move(with_gone)});
         return all;
     }
 

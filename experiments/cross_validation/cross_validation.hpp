@@ -1,6 +1,7 @@
 #pragma once
 
 #include "experiments/comparison/comparison.hpp"
+#include "experiments/cross_validation/course_family.hpp"
 #include "experiments/cross_validation/learners.hpp"
 
 #include <filesystem>
@@ -8,13 +9,6 @@
 #include <vector>
 
 namespace conelane::experiments {
-
-/// Courses of one place or one designer, so alike that a detector which has seen one of them knows the
-/// others.
-struct CourseFamily {
-    std::string name;                 ///< of its folder
-    std::vector<std::string> tracks;  ///< SPECs of load_tracks
-};
 
 struct CrossValidationOptions {
     std::vector<CourseFamily> families;  ///< at least two; each is held out once

@@ -36,7 +36,6 @@ constexpr const char* kPaperNet = "rank_net_paper.json";
 constexpr const char* kDelaunayBeam = "delaunay-beam.json";
 constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
-constexpr const char* kFront = "front.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 
 void write(const fs::path& file, const std::string& text) {
@@ -203,7 +202,7 @@ DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
 // The weights of front. It draws its scenes itself, so that of the options only seed and threads count.
 
 void learn_front(const LearningOptions& options, const fs::path& folder) {
-    if (fs::exists(folder / kFront)) return;
+    if (fs::exists(folder / kFrontFoldFile)) return;
     FrontTrainingRunOptions run;
     run.tracks = options.tracks;
     FrontTrainingOptions& training = run.training;
@@ -214,13 +213,13 @@ void learn_front(const LearningOptions& options, const fs::path& folder) {
     training.threads = options.scenes.threads;
     training.checkpoint = folder / kFrontCheckpoint;
     const FrontTrainingRun result = run_front_training(run, {});
-    write(folder / kFront, front_weights_json(result.weights, result.record));
+    write(folder / kFrontFoldFile, front_weights_json(result.weights, result.record));
     fs::remove(training.checkpoint);
 }
 
 FrontOptions front_options(const fs::path& folder) {
     FrontOptions front = shipped_front_options();
-    front.weights = parsed_file(folder / kFront, [](auto text) { return parse_front_weights(text); });
+    front.weights = parsed_file(folder / kFrontFoldFile, [](auto text) { return parse_front_weights(text); });
     return front;
 }
 

@@ -21,6 +21,9 @@ struct LearningOptions {
     double front_steps = 1.0;  ///< of the training of `front`, as a share of those of the shipped weights
 };
 
+/// The file of the weights of front in the folder of a fold.
+inline constexpr std::string_view kFrontFoldFile = "front.json";
+
 /// A detector whose weights or parameters come from courses, by the recipe of those that are shipped.
 struct Learner {
     std::string_view detector;

@@ -41,12 +41,19 @@ Drive drive_by(const LaneAnswer& answer, const Scene& scene) {
     return drive;
 }
 
-Driver detector_driver(const std::string& name) {
-    return
-        [detector = std::shared_ptr<LaneDetector>(make_detector(find_detector(name)))](const Frame& frame) {
-            const Scene scene = scene_of(frame);
-            return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
-        };
+/// The default options, with the weights of the race if the detector takes weights.
+DetectorOptions options_of(const RaceDetector& detector, const std::optional<WeightsBytes>& weights) {
+    DetectorOptions options;
+    if (detector.takes_weights && weights) options.weights = *weights;
+    return options;
+}
+
+Driver detector_driver(const std::string& name, const DetectorOptions& options) {
+    return [detector = std::shared_ptr<LaneDetector>(make_detector(find_detector(name), options))](
+               const Frame& frame) {
+        const Scene scene = scene_of(frame);
+        return drive_by(detector->detect(scene, {.time_limit_ms = kNoLimit_ms}), scene);
+    };
 }
 
 /// Boundaries that are positions become cones of a scene of their own.
@@ -84,8 +91,10 @@ Driver outside_driver(const std::shared_ptr<OutsideProgramPool>& programs) {
     };
 }
 
-Driver planner_driver(const std::string& detector, const RaceCourse& course, const RaceOptions& options) {
-    PlannerOptions wanted{.mission = course.mission, .detector = detector};
+Driver planner_driver(const std::string& detector, const DetectorOptions& detector_options,
+                      const RaceCourse& course, const RaceOptions& options) {
+    PlannerOptions wanted{
+        .mission = course.mission, .detector = detector, .detector_options = detector_options};
     if (course.mission == Mission::trackdrive) wanted.laps = options.laps;
     return [planner = std::shared_ptr<Planner>(make_planner(wanted))](const Frame& frame) {
         Drive drive;
@@ -128,17 +137,17 @@ std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, 
             if (with_planner == WithPlanner::only) {
                 throw InvalidInput("--planner", "a program from outside has none: '" + outside->name + "'");
             }
-            all.push_back({outside->name, outside->source, false,
+            all.push_back({outside->name, outside->source, false, false,
                            std::make_shared<OutsideProgramPool>(outside->name, outside->source)});
             continue;
         }
-        static_cast<void>(find_detector(text));
-        if (with_planner != WithPlanner::only) all.push_back({text, text});
+        const bool takes_weights = find_detector(text).takes_weights();
+        if (with_planner != WithPlanner::only) all.push_back({text, text, false, takes_weights});
         if (with_planner != WithPlanner::no) {
             if (!is_of_library(text)) {
                 throw InvalidInput("--planner", "'" + text + "' is not a detector of the library");
             }
-            all.push_back({text + "+planner", text, true});
+            all.push_back({text + "+planner", text, true, takes_weights});
         }
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -151,12 +160,14 @@ std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, 
     return all;
 }
 
-Driver make_driver(const RaceDetector& detector, const RaceCourse& course, const RaceOptions& options) {
+Driver make_driver(const RaceDetector& detector, const RaceCourse& course, const RaceOptions& options,
+                   const std::optional<WeightsBytes>& weights) {
     if (detector.programs) return outside_driver(detector.programs);
     if (detector.detector == "truth") return truth_driver(course, options.laps);
     if (detector.detector == "none") return [](const Frame& /*frame*/) { return Drive{}; };
-    if (detector.has_planner) return planner_driver(detector.detector, course, options);
-    return detector_driver(detector.detector);
+    const DetectorOptions detector_options = options_of(detector, weights);
+    if (detector.has_planner) return planner_driver(detector.detector, detector_options, course, options);
+    return detector_driver(detector.detector, detector_options);
 }
 
 }  // namespace conelane::experiments

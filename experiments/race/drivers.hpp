@@ -1,10 +1,12 @@
 #pragma once
 
+#include "conelane/detectors.hpp"
 #include "evaluation/outside/outside_program.hpp"
 #include "experiments/race/race.hpp"
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ struct RaceDetector {
     std::string name;      ///< `front`, or `front+planner`
     std::string detector;  ///< truth, none, a detector, or a command of a program from outside
     bool has_planner = false;
+    bool takes_weights = false;                         ///< see DetectorOptions
     std::shared_ptr<OutsideProgramPool> programs = {};  ///< of a program from outside
 };
 
@@ -25,8 +28,9 @@ enum class WithPlanner { no, only, both };
 [[nodiscard]] std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts,
                                                        WithPlanner with_planner);
 
-/// A new driver for one race. `course` must outlive it.
+/// A new driver for one race. `course` must outlive it. `weights`: instead of the shipped weights, if the
+/// detector takes weights. Throws InvalidInput naming `weights` if they cannot be read.
 [[nodiscard]] Driver make_driver(const RaceDetector& detector, const RaceCourse& course,
-                                 const RaceOptions& options);
+                                 const RaceOptions& options, const std::optional<WeightsBytes>& weights = {});
 
 }  // namespace conelane::experiments

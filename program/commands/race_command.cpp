@@ -1,14 +1,18 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
+#include "evaluation/files/file_text.hpp"
+#include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/track_spec.hpp"
+#include "experiments/cross_validation/learners.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/race/drivers.hpp"
 #include "experiments/race/race_record.hpp"
 #include "program/commands/commands.hpp"
+#include "program/commands/course_families.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -36,6 +40,9 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 
 struct Options {
     std::vector<std::string> tracks;
+    std::vector<std::string> families;  ///< NAME=SPEC
+    std::string folds;                  ///< folder of the weights of each family; empty: none
+    std::string weights;                ///< file for all courses; empty: the shipped ones
     std::vector<std::string> detectors{"front"};
     bool planner = false;
     bool both = false;
@@ -73,36 +80,63 @@ bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
 }
 
+/// A course and the weights that methods drive it by; absent: the shipped ones.
+struct WeightedCourse {
+    RaceCourse course;
+    std::shared_ptr<const WeightsBytes> weights = {};
+};
+
+std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
+    // Read once, and before the work: what is wrong with them is said at once.
+    return std::make_shared<const WeightsBytes>(parsed_file(file, [](std::string text) {
+        (void)parse_front_weights(text);
+        return WeightsBytes{std::move(text)};
+    }));
+}
+
+void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
+                  std::optional<Mission> mission, const std::shared_ptr<const WeightsBytes>& weights) {
+    for (const Track& track : load_tracks(spec)) {
+        if (!track.closed || !track.driven.empty()) {
+            fmt::print(stderr, "conelane: {} is no closed course with boundaries: left out\n", track.name);
+            continue;
+        }
+        courses.push_back({circuit(track), weights});
+        if (mission) courses.back().course.mission = *mission;
+    }
+}
+
 /// With --vary one for each seed, in their order.
-std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission> mission) {
-    std::vector<RaceCourse> courses;
+std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mission> mission) {
+    std::vector<WeightedCourse> courses;
+    std::shared_ptr<const WeightsBytes> weights;
+    if (!options.weights.empty()) weights = read_weights(options.weights);
     if (has_known_course(mission)) {
+        if (!options.families.empty()) throw InvalidInput("--family", "is for circuits");
         if (options.vary) {
             if (!options.tracks.empty()) {
                 throw InvalidInput("--vary", "is for the courses that missions have of their own");
             }
             for (const std::uint64_t seed : options.seeds) {
-                courses.push_back(varied_mission_course(*mission, seed));
+                courses.push_back({varied_mission_course(*mission, seed), weights});
             }
             return courses;
         }
-        if (options.tracks.empty()) courses.push_back(mission_course(*mission));
+        if (options.tracks.empty()) courses.push_back({mission_course(*mission), weights});
         for (const std::string& spec : options.tracks) {
-            for (const Track& track : load_tracks(spec)) courses.push_back(mission_course(*mission, track));
+            for (const Track& track : load_tracks(spec)) {
+                courses.push_back({mission_course(*mission, track), weights});
+            }
         }
         return courses;
     }
     if (options.vary) throw InvalidInput("--vary", "is for the missions acceleration and skidpad");
-    for (const std::string& spec : options.tracks) {
-        for (const Track& track : load_tracks(spec)) {
-            if (!track.closed || !track.driven.empty()) {
-                fmt::print(stderr, "conelane: {} is not a closed course with boundaries: left out\n",
-                           track.name);
-                continue;
-            }
-            courses.push_back(circuit(track));
-            if (mission) courses.back().mission = *mission;
+    for (const std::string& spec : options.tracks) add_circuits(courses, spec, mission, weights);
+    for (const CourseFamily& family : parse_families(options.families)) {
+        if (!options.folds.empty()) {
+            weights = read_weights(std::filesystem::path(options.folds) / family.name / kFrontFoldFile);
         }
+        for (const std::string& spec : family.tracks) add_circuits(courses, spec, mission, weights);
     }
     if (courses.empty()) throw InvalidInput("--tracks", "hold no closed course with boundaries");
     return courses;
@@ -110,7 +144,7 @@ std::vector<RaceCourse> courses_of(const Options& options, std::optional<Mission
 
 /// A heat and what it needs to be driven.
 struct Entry {
-    const RaceCourse* course;
+    const WeightedCourse* course;
     const RaceDetector* detector;
 };
 
@@ -127,9 +161,11 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 race_options.sight.false_positive_rate = heat.false_positive_rate;
                 race_options.sight.seed = heat.seed;
                 race_options.keep_replay = options.replay != "none";
-                race_options.with_any_map = !entries[i].course->closed && heat.detector != "truth";
-                heat.result = race(*entries[i].course, race_options,
-                                   make_driver(*entries[i].detector, *entries[i].course, race_options));
+                const auto& [course, weights] = *entries[i].course;
+                race_options.with_any_map = !course.closed && heat.detector != "truth";
+                heat.result = race(course, race_options,
+                                   make_driver(*entries[i].detector, course, race_options,
+                                               weights ? std::optional(*weights) : std::nullopt));
                 // What was not lost is not kept; the first race is, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
@@ -157,6 +193,9 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"compiler", origin.compiler},
             {"machine", origin.machine},
             {"tracks", options.tracks},
+            {"families", options.families},
+            {"folds", options.folds},
+            {"weights", options.weights},
             {"methods", names},
             {"mission", options.mission},
             {"condition", options.condition},
@@ -193,7 +232,7 @@ class Outputs {
         for (std::size_t i = 0; i < heats.size(); ++i) {
             json["races"].push_back(heat_json(heats[i]));
             if (heats[i].result.replay.empty()) continue;
-            replay_.stream() << replay_json(heats[i], *entries[i].course).dump() << "\n";
+            replay_.stream() << replay_json(heats[i], entries[i].course->course).dump() << "\n";
         }
         const std::string table = race_table(heats, options.race.laps);
         const std::string times = answer_time_table(heats);
@@ -246,7 +285,12 @@ void run_races(Options& options) {
         race_detectors(options.detectors, options.both      ? WithPlanner::both
                                           : options.planner ? WithPlanner::only
                                                             : WithPlanner::no);
-    const std::vector<RaceCourse> courses = courses_of(options, mission);
+    const bool any_weights = !options.weights.empty() || !options.folds.empty();
+    if (any_weights && std::ranges::none_of(detectors, &RaceDetector::takes_weights)) {
+        throw InvalidInput(options.weights.empty() ? "--folds" : "--weights",
+                           "none of the methods takes weights: only front and front-warm do");
+    }
+    const std::vector<WeightedCourse> courses = courses_of(options, mission);
     std::vector<Heat> heats;
     std::vector<Entry> entries;
     const std::size_t distinct_courses = options.vary ? 1 : courses.size();
@@ -254,8 +298,8 @@ void run_races(Options& options) {
         for (const RaceDetector& detector : detectors) {
             for (const double rate : options.rates) {
                 for (std::size_t i = 0; i < options.seeds.size(); ++i) {
-                    const RaceCourse& course = courses[options.vary ? i : first];
-                    heats.push_back({course.name, detector.name, rate, options.seeds[i]});
+                    const WeightedCourse& course = courses[options.vary ? i : first];
+                    heats.push_back({course.course.name, detector.name, rate, options.seeds[i]});
                     entries.push_back({&course, &detector});
                 }
             }
@@ -275,6 +319,18 @@ void add_race_command(CLI::App& program) {
     auto options = std::make_shared<Options>();
     command.add_option("--tracks", options->tracks,
                        "closed courses, as for `scenes`. Acceleration and skidpad have a course by default");
+    CLI::Option* const families = command.add_option(
+        "--family", options->families, "NAME=SPEC: more courses, and the fold that held them out");
+    command
+        .add_option(
+            "--folds", options->folds,
+            "FOLDER/NAME/front.json, as `cross-validate` leaves them in OUT/folds, are the weights for "
+            "the courses of --family NAME")
+        ->needs(families);
+    command
+        .add_option("--weights", options->weights,
+                    "weights of front and front-warm: a file that `conelane train front` wrote")
+        ->excludes("--folds");
     command.add_option(
         "--methods", options->detectors,
         "names of `conelane methods`; exec:NAME=COMMAND; truth: the true centre line; none: no path");

@@ -1,5 +1,8 @@
 // `conelane race` as a user or a script calls it.
 
+#include "evaluation/files/front_weights_file.hpp"
+#include "graph_search/front/front_detector.hpp"
+#include "tests/support/front_fixture.hpp"
 #include "tests/support/program_fixture.hpp"
 
 #include <string>
@@ -40,6 +43,47 @@ TEST_F(RaceCommand, MissionsNeedNoTracks) {
         const nlohmann::json json = nlohmann::json::parse(text_of(path("out") / "race.json"));
         EXPECT_EQ(json.at("races").at(0).at("end"), "finished");
     }
+}
+
+// Weights of zeros find other lanes than the shipped ones: where they are used shows in what was driven.
+TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
+    std::filesystem::create_directories(path("folds") / "a");
+    std::filesystem::create_directories(path("folds") / "b");
+    const std::string shipped = front_weights_json(shipped_front_options().weights, "{}");
+    const std::string other = front_weights_json(tests::random_front_weights(7), "{}");
+    file_with(shipped, "folds/a/front.json");
+    file_with(other, "folds/b/front.json");
+    const auto races = [&](const std::string& options, const std::string& out) {
+        const Outcome outcome =
+            run("race " + options + " --methods front --both --fp 0.3 --condition car --out " + out);
+        EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+        return nlohmann::json::parse(text_of(path(out) / "race.json")).at("races");
+    };
+    const nlohmann::json by_shipped = races("--tracks generated:kidney,circle", "shipped");
+    const nlohmann::json by_other =
+        races("--tracks generated:kidney,circle --weights folds/b/front.json", "other");
+    const nlohmann::json by_folds =
+        races("--family a=generated:kidney --family b=generated:circle --folds folds", "folded");
+    ASSERT_EQ(by_shipped.size(), 4U);
+    ASSERT_EQ(by_folds.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_NE(by_shipped.at(i), by_other.at(i)) << i;
+        EXPECT_EQ(by_folds.at(i), i < 2 ? by_shipped.at(i) : by_other.at(i)) << i;
+    }
+}
+
+TEST_F(RaceCommand, WeightsThatNobodyTakesOrThatAreNoneAreRefused) {
+    file_with(front_weights_json(shipped_front_options().weights, "{}"), "front.json");
+    file_with("{}", "wrong.json");
+    const std::string kidney = "race --tracks generated:kidney --out out ";
+    expect_refused(kidney + "--methods truth,clc --weights front.json", {"--weights", "front-warm"});
+    expect_refused(kidney + "--methods front --weights nowhere.json", {"nowhere.json"});
+    expect_refused(kidney + "--methods front --weights wrong.json", {"wrong.json"});
+    expect_refused(kidney + "--methods front --folds .", {"--family"});
+    expect_refused("race --family a=generated:kidney --folds . --methods front --out out", {"a/front.json"});
+    expect_refused("race --family generated:kidney --methods front --out out", {"--family", "NAME=SPEC"});
+    expect_refused("race --mission skidpad --family a=generated:kidney --methods front --out out",
+                   {"--family"});
 }
 
 TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
