@@ -139,9 +139,8 @@ void add_train_front_command(CLI::App& train_command) {
         "--only-colors", training.only_colors,
         "with --from: only the weights of inputs of colours are learned, so that without colours nothing "
         "changes");
-    else in half of the draws ");
-        command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
-                         "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
+    command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
+                     "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,
                      "true cones are seen as far as false ones");
     command
