@@ -127,10 +127,14 @@ ComparisonOutcome compare(const ComparisonOptions& options, const fs::path& dire
     }
     const std::string record = run_record(options);
     LeftOutScenes left_out;
-    std::optional<Progress> progress(std::in_place, "scenes", 1);
-    const SceneSet set =
-        make_scene_set(options.tracks, options.scenes, options.shard, left_out,
-                       [&](std::size_t done, std::size_t total) { progress->set(done, total); });
+    std::optional<Progress> progress;
+    const SceneSet set = make_scene_set(options.tracks, options.scenes, options.shard, left_out,
+                                        [&](std::size_t, std::size_t total) {
+                                            if (progress)
+                                                progress->advance();
+                                            else
+                                                progress.emplace("scenes", total);
+                                        });
     progress.reset();
     if (set.scenes.empty())
         throw InputError("", 0, "--shard", "has no scene: there are fewer laps than shards");

@@ -26,13 +26,9 @@ Progress::~Progress() {
     if (shown_) fmt::print(stderr, "\r\033[K");
 }
 
-void Progress::set(std::size_t done, std::size_t total) {
-    total_ = total;
-    show(done_ = done);
-}
-
-void Progress::show(std::size_t done) {
-    if (!shown_ || done == 0) return;
+void Progress::advance() {
+    const std::size_t done = ++done_;
+    if (!shown_) return;
     const Clock::time_point now = Clock::now();
     const std::unique_lock lock(drawing_, std::try_to_lock);
     if (!lock.owns_lock() || now < next_draw_) return;

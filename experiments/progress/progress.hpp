@@ -18,13 +18,10 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     /// Counts a step. May be called from any thread.
-    void advance() { show(++done_); }
-    /// `done` of `total` steps are done. From one thread.
-    void set(std::size_t done, std::size_t total);
+    void advance();
 
   private:
     using Clock = std::chrono::steady_clock;
-    void show(std::size_t done);
     void draw(std::size_t done, Clock::time_point now);
 
     std::string what_;

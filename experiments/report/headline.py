@@ -212,7 +212,7 @@ def picture(results, data):
     svg = gallery.drawing(results, frame, slot, track, data.longest_gap_m, gallery.view_of(frame))
     label = escape(results.samples[slot].label)
     return (f'<figure id="cone-lane" class="scene"><div role="img" aria-label="A cone lane: cones, false positives and the '
-            f'left and right boundary that {label} found">{svg}</div><figcaption><b>A cone lane</b>, found by {label}. '
+            f'left and right boundary that {label} found">{svg}</div><figcaption>A cone lane in a scene of these results, as {label} found it. '
             f"{gallery.short_legend()}</figcaption></figure>")
 
 

@@ -177,18 +177,21 @@
     const wider = Math.min(marks.lane.wider, (marks.lane.widest - marks.lane.width) / Math.max(1, visible.length - 1));
     visible.forEach((i, place) => {
       const answer = current.a[i];
-      context.strokeStyle = color("--m" + data.methods[i].color);
       context.lineWidth = marks.lane.width + wider * (visible.length - 1 - place);
       const sides = answer.slice(0, 2).map(side), trusted = answer[10];
       const isLine = sides[1].length === 0 && !Array.isArray(answer[0]); // a centre line alone
+      const own = color("--m" + data.methods[i].color);
+      const ofSide = (which) => (visible.length > 1 || isLine ? own : color(which === 0 ? "--left" : "--right"));
       sides.forEach((points, which) => {
-        if (visible.length === 1 && !isLine) context.strokeStyle = color(which === 0 ? "--left" : "--right");
+        context.strokeStyle = ofSide(which);
         strokeSide(context, points, answer[2], data.longest_gap * view.scale);
       });
-      context.strokeStyle = color("--m" + data.methods[i].color);
       const known = sides.findIndex((points) => points.length > 1);
-      if (known >= 0 && sides[1 - known].length === 0)
+      if (known >= 0 && sides[1 - known].length === 0) {
+        context.strokeStyle = ofSide(1 - known);
         strokeInferred(context, sides[known], known, data.usual_width * view.scale);
+      }
+      context.strokeStyle = own;
       if (trusted !== null && sides.every((points) => points.length > 1))
         strokeTrusted(context, sides, 100 * trusted * view.scale);
     });

@@ -28,10 +28,14 @@ struct Options {
 
 void make_scenes(const Options& options) {
     LeftOutScenes left_out;
-    std::optional<Progress> progress(std::in_place, "scenes", 1);
+    std::optional<Progress> progress;
     const SceneSet set =
-        make_scene_set(options.tracks, options.scenes, {}, left_out,
-                       [&](std::size_t done, std::size_t total) { progress->set(done, total); });
+        make_scene_set(options.tracks, options.scenes, {}, left_out, [&](std::size_t, std::size_t total) {
+            if (progress)
+                progress->advance();
+            else
+                progress.emplace("scenes", total);
+        });
     progress.reset();
     write_scene_set(options.out, set, left_out);
     if (!left_out.empty()) fmt::print(stderr, "conelane: {}\n", note_on(left_out));

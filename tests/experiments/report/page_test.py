@@ -510,7 +510,8 @@ class ReportPage(unittest.TestCase):
                 self.assertIn(f'id="calibration-{condition}"', text)
             bins = re.search(r'<div class="table" id="calibration-bins">.*?</table>', text, flags=re.S)[0]
             lanes = sum(int(value) for value in re.findall(r'data-value="(\d+)">\d+</td></tr>', bins))
-            stored = [json.loads(row) for row in open(os.path.join(folder, "results", "results.jsonl"), encoding="utf-8")]
+            with open(os.path.join(folder, "results", "results.jsonl"), encoding="utf-8") as rows:
+                stored = [json.loads(row) for row in rows]
             self.assertEqual(lanes, sum(one[0] for row in stored for one in row["calibration"].get("bins", ())))
             self.assertGreater(lanes, 0)
             said = re.search(r'<div class="table" id="calibration-table">.*?</table>', text, flags=re.S)[0]
