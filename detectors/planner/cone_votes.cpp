@@ -82,7 +82,7 @@ void ConeVotes::vote(const Scene& scene, std::span<const VotedLane> lanes) {
         cone.inside *= weight;
         while (known != cones_.end() && known->id < cone.id) ++known;
         if (known != cones_.end() && known->id == cone.id) {
-            // Frames that are little sure replace little of what surer ones have said.
+            // Frames that are uncertain replace little of what surer ones have said.
             const double kept = 1.0 - settings_.fading * std::max({cone.left, cone.right, cone.inside});
             cone.left += kept * known->left;
             cone.right += kept * known->right;

@@ -59,7 +59,7 @@ TEST_F(SureChoice, IsLeftAlsoWhereCandidatesSpeakForIt) {
     EXPECT_LE(frames_until_left(other_, 0.5, 0.3), 20);
 }
 
-// Frames that are little sure carry the lane on over new ground: what was sure lies behind.
+// Frames that are uncertain carry the lane on over new ground: what was sure lies behind.
 TEST_F(SureChoice, FadesWhereTheFramesAreNoLongerSure) {
     for (int i = 0; i < 15; ++i) EXPECT_TRUE(choice_.take(lane_, lane_, 0.15));
     EXPECT_LE(frames_until_left(other_, 0.5, 0.1), 7);

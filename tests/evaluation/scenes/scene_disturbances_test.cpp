@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <set>
 #include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
