@@ -73,10 +73,10 @@ constexpr std::array kRecipes{
     DetectorRecipe{"front",
                    "both boundaries grow as one front under a learned cost, searched by a beam; steps over "
                    "missed cones, answers with one boundary where it sees one alone",
-                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::ignored,
+                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::used,
                    FrontRecipe{shipped_front_options}},
     DetectorRecipe{"front-warm", "front that favours the cones of its last lane along a lap",
-                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::ignored,
+                   LearnedFrom(kFrontWeights), ClosedLanes::never, ColorUse::used,
                    FrontRecipe{warm_front_options}},
     DetectorRecipe{"clc",
                    "CLC led by a beam search; steps over missed cones, NVD weighs distances, a second "
