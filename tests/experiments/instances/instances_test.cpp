@@ -140,16 +140,16 @@ TEST_F(Instances, EverySolverFindsTheStoredOptima) {
     InstanceOptions options = slice_of_stored();
     int compared = 0;
     for (const InstanceScene& set : instance_scenes(options)) {
-        for (const tests::CheckedSolver& solver : tests::solvers()) {
-            const RldSolverEntry& entry = *solver.entry;
+        for (const tests::SolverCase& solver_case : tests::solver_cases()) {
+            const RldSolverEntry& entry = *solver_case.entry;
             if (!entry.exact || entry.max_cones.value_or(12) < 12) continue;
             SCOPED_TRACE(set.name + " " + std::string(entry.name));
             // The printed program takes seconds without CBC's full machinery.
-            if (solver.formulation == Formulation::paper && entry.name != "cbc-main") continue;
-            const auto solver = entry.make(solver.formulation);
+            if (solver_case.formulation == Formulation::paper && entry.name != "cbc-main") continue;
+            const auto solver = entry.make(solver_case.formulation);
             const RldReport report = solve_scene(*solver, set.scene, options.parameters, {}).report;
             ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
-            const std::string name = set.name + std::string(ending_of(solver.formulation));
+            const std::string name = set.name + std::string(ending_of(solver_case.formulation));
             EXPECT_NEAR(*report.objective, stored[name].value, kSameObjective);
             ++compared;
         }
