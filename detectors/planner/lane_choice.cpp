@@ -19,17 +19,14 @@ bool LaneChoice::is_spent(const DrivableLane& left) const {
 }
 
 bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) const {
-    if (is_spent(left)) return true;
-    const double said_m = std::min(settings_.near_m, left.length_m - settings_.min_left_m);
-    return lane.length_m >= said_m && jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
+    return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
 }
 
 bool LaneChoice::take(const DrivableLane& fresh, const DrivableLane& left, double weight,
                       double kept_weight) {
-    support_ *= settings_.kept_support;
-    challenger_support_ *= settings_.kept_support;
     if (agrees(fresh, left)) {
         support_ = is_spent(left) ? weight : std::min(settings_.max_support, support_ + weight);
+        challenger_.reset();
         return true;
     }
     const bool again = challenger_ && jump_m(fresh, *challenger_, settings_.near_m) <= settings_.jump_m;

@@ -11,16 +11,14 @@ namespace conelane {
 /// Decides between the lane driven so far and a new one that jumps away from it near the car.
 ///
 /// Each frame supports a lane with a weight, the probability that its detector gives. The support of a new
-/// lane, from at least two frames, has to exceed that of the lane driven so far. The support of each fades
-/// from frame to frame: certainty about a stretch behind the car says little of the stretch ahead. So
-/// uncertain frames do not replace a certain lane, and a wrong lane is left after some frames.
+/// lane, from at least two frames, has to exceed that of the lane driven so far, which is at most
+/// settings.max_support. So uncertain frames change nothing, and a wrong lane is left after some frames.
 class LaneChoice {
   public:
     explicit LaneChoice(const LaneChoiceSettings& settings) : settings_(settings) {}
 
-    /// Whether a lane continues the one driven so far, or too little of that one is left. A lane that ends
-    /// where the one driven so far continues does not. `left`: the rest of the lane driven so far; without
-    /// points there is none.
+    /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
+    /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
     /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
     /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.

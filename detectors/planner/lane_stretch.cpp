@@ -18,10 +18,8 @@ constexpr double kRight_rad = std::numbers::pi / 2.0;
 constexpr double kAtCar_m = 0.5;
 constexpr double kBesideCar_m = 2.5;  ///< and no farther aside
 constexpr double kMaxJoin_m = 12.0;
-/// A lane that begins at the car and turns farther away from its heading runs across it.
-constexpr double kAcross_rad = 0.9;
-/// A lane that begins ahead is joined in one bend where it is no farther aside than kBesideCar_m and this
-/// share of the way ahead.
+/// A lane that begins ahead is joined in one bend if it is no farther aside than kBesideCar_m plus this share
+/// of the distance ahead.
 constexpr double kAsideShare = 0.3;
 constexpr double kJoinOffset_m = 1.2;  ///< of the lane's beginning from the lane that leads to it
 constexpr double kJoinTurn_rad = 0.8;
@@ -189,10 +187,7 @@ std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& p
     const DrivablePoint& first = lane.points.front();
     const Point offset = first.position - pose.position;
     const double ahead_m = offset.dot(direction(first.heading_rad));
-    if (ahead_m <= kAtCar_m && offset.norm() <= kBesideCar_m) {
-        if (std::abs(turn_rad(pose.yaw_rad, first.heading_rad)) > kAcross_rad) return std::nullopt;
-        return lane;
-    }
+    if (ahead_m <= kAtCar_m && offset.norm() <= kBesideCar_m) return lane;
     if (offset.norm() > kMaxJoin_m || pose.ahead_m(first.position) < -kBesideCar_m) return std::nullopt;
     std::vector<DrivablePoint> points;
     if (before != nullptr && before->points.size() > 1) {

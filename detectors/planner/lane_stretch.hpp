@@ -29,8 +29,7 @@ struct LaneFoot {
 
 /// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
 /// leads to it, else in one bend from the car. Nothing if it is more than 12 m away, or, for a bend, too far
-/// aside: more than 2.5 m and three tenths of the distance ahead. Nothing either if it begins at the car and
-/// crosses the car's heading by more than 0.9 rad.
+/// aside: more than 2.5 m and three tenths of the distance ahead.
 [[nodiscard]] std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,
                                                        const DrivableLane* before, double step_m);
 

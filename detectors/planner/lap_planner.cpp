@@ -2,7 +2,6 @@
 
 #include "conelane/invalid_input.hpp"
 #include "detectors/planner/cone_memory.hpp"
-#include "detectors/planner/cone_votes.hpp"
 #include "detectors/planner/course_memory.hpp"
 #include "detectors/planner/frame.hpp"
 #include "detectors/planner/lane_choice.hpp"
@@ -12,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,13 +22,6 @@ namespace {
 void validate(const PlannerOptions& options) {
     if (options.laps && *options.laps < 1) throw InvalidInput("laps", "is not at least 1");
     validate_shared(options);
-}
-
-/// A probability after evidence, given as log odds.
-double by_odds(double probability, double log_odds) {
-    constexpr double kMin = 1e-4;
-    const double p = std::clamp(probability, kMin, 1.0 - kMin);
-    return 1.0 / (1.0 + (1.0 - p) / p * std::exp(-log_odds));
 }
 
 class LapPlanner final : public Planner {
@@ -54,16 +45,6 @@ class LapPlanner final : public Planner {
                                                          const DrivableLane& left) const;
     [[nodiscard]] std::optional<DrivableLane> chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                           const DrivableLane& left);
-    /// A lane that a frame speaks for.
-    struct Proposal {
-        const Lane* lane;
-        bool is_answer;  ///< of the detector; else one of its candidates
-        double probability;
-    };
-    [[nodiscard]] std::vector<Proposal> proposals(const LaneAnswer& answer, const Scene& scene);
-    [[nodiscard]] std::optional<DrivableLane> proposed_lane(const Proposal& proposal,
-                                                            const LaneAnswer& answer, const Scene& scene,
-                                                            const DrivableLane& left) const;
     [[nodiscard]] LaneAnswer named_as_given(LaneAnswer answer) const;
     void finish(Plan& plan) const;
 
@@ -73,7 +54,6 @@ class LapPlanner final : public Planner {
     int laps_;
     std::unique_ptr<LaneDetector> detector_;
     ConeMemory cones_;
-    ConeVotes votes_;
     PathMemory path_;
     LaneChoice choice_;
     LapCounter counter_;
@@ -88,7 +68,6 @@ class LapPlanner final : public Planner {
 void LapPlanner::reset() {
     detector_->reset();
     cones_.clear();
-    votes_.clear();
     path_.forget();
     choice_.clear();
     counter_.clear();
@@ -161,70 +140,39 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
         lane = stretch(lane, 0.0, lane.length_m, step_m);
         lane.trusted_m = trusted_m;
     }
-    std::optional<DrivableLane> begun =
-        begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
-    if (!begun || begun->length_m >= choice_settings_.near_m) return begun;
-    return extended(*begun, left, step_m);
+    return begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
 }
 
-/// What of a frame may be driven: the detector's answer first, then its candidates, the one that cones speak
-/// least against first. Their votes count from this frame on.
-std::vector<LapPlanner::Proposal> LapPlanner::proposals(const LaneAnswer& answer, const Scene& scene) {
-    if (answer.status != LaneStatus::found) return {};
-    const double sure = answer.confidence.value_or(choice_settings_.unsure_weight);
-    std::vector<Proposal> all{{&answer.lane, true, sure}};
-    if (answer.enumeration) {
-        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
-            const double probability = std::min(sure, candidate.confidence.value_or(0.0));
-            if (candidate.lane == answer.lane || probability < choice_settings_.min_kept_weight) continue;
-            all.push_back({&candidate.lane, false, by_odds(probability, -choice_settings_.second_odds)});
-        }
-    }
-    std::vector<VotedLane> voted;
-    for (const Proposal& proposal : all) {
-        const double share = proposal.is_answer ? 1.0 : choice_settings_.second_vote;
-        voted.push_back({proposal.lane, share * proposal.probability});
-    }
-    for (Proposal& proposal : all) {
-        proposal.probability = by_odds(proposal.probability, -votes_.objection(scene, *proposal.lane));
-    }
-    votes_.vote(scene, voted);
-    std::ranges::stable_sort(all, std::ranges::greater{}, &Proposal::probability);
-    return all;
-}
-
-std::optional<DrivableLane> LapPlanner::proposed_lane(const Proposal& proposal, const LaneAnswer& answer,
-                                                      const Scene& scene, const DrivableLane& left) const {
-    if (proposal.is_answer) return fresh_lane(answer, scene, left);
-    LaneAnswer other;
-    other.status = LaneStatus::found;
-    other.lane = *proposal.lane;
-    return fresh_lane(other, scene, left);
-}
-
-/// The lane of a frame: the most probable one where it goes on with the lane driven by or outweighs it, else
-/// the most probable one that goes on with it. Nothing where there is none. In later laps the course known
-/// from the lap before stands for the lane driven by, until it is outweighed.
+/// The lane of a frame: that of the detector's answer where it goes on with the lane driven by or outweighs
+/// it, else that of the most probable candidate that goes on with it. Nothing where there is none. In later
+/// laps the course known from the lap before stands for the lane driven by, until it is outweighed.
 std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                     const DrivableLane& left) {
-    const std::vector<Proposal> all = proposals(answer, scene);
-    std::optional<DrivableLane> fresh;
-    auto next = all.begin();
-    for (; next != all.end() && !fresh; ++next) fresh = proposed_lane(*next, answer, scene, left);
+    std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);
     if (!fresh) return std::nullopt;
-    const double weight = (next - 1)->probability;
     const DrivableLane course = course_.ahead(scene.pose, choice_settings_.course_ahead_m);
     if (off_course_ && choice_.agrees(*fresh, course)) off_course_ = false;
     const bool by_course = !off_course_ && !left.points.empty() && !course.points.empty();
     const DrivableLane& before = by_course ? course : left;
-    const bool agrees = choice_.agrees(*fresh, before);
+    const double weight = answer.confidence.value_or(choice_settings_.unsure_weight);
     std::optional<DrivableLane> kept;
     double kept_weight = by_course ? choice_settings_.course_weight : 0.0;
-    for (; !agrees && !kept && next != all.end(); ++next) {
-        kept = proposed_lane(*next, answer, scene, left);
-        if (kept && !choice_.agrees(*kept, before)) kept.reset();
-        if (kept) kept_weight += next->probability;
+    if (answer.enumeration && !choice_.agrees(*fresh, before)) {
+        double best = choice_settings_.min_kept_weight;
+        for (const LaneCandidate& candidate : answer.enumeration->candidates) {
+            const double probability = candidate.confidence.value_or(0.0);
+            if (probability < best) continue;
+            LaneAnswer other;
+            other.status = LaneStatus::found;
+            other.lane = candidate.lane;
+            std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
+            if (!lane || !choice_.agrees(*lane, before)) continue;
+            kept = std::move(lane);
+            best = probability;
+        }
+        if (kept) kept_weight += best;
     }
+    const bool agrees = choice_.agrees(*fresh, before);
     if (!choice_.take(*fresh, before, weight, kept_weight)) return kept;
     if (by_course && !agrees) off_course_ = true;
     return fresh;

@@ -32,26 +32,13 @@ struct ShiftSettings {
     double min_share = 0.6;  ///< share of the compared cones
 };
 
-/// The constants of the votes on cones.
-struct ConeVoteSettings {
-    double fading = 0.1;      ///< share of the votes before that a vote of weight 1 replaces
-    double prior = 0.5;       ///< votes that each answer has before any frame
-    double min_votes = 0.05;  ///< a cone with fewer is forgotten
-    double near_m = 12.0;     ///< from the car: up to here a cone counts in full, from far_m on nothing
-    double far_m = 20.0;
-    double max_objection = 6.0;  ///< of all cones of a lane [log odds]
-};
-
 /// The constants of the choice between a new lane and the last one.
 struct LaneChoiceSettings {
     double near_m = 8.0;  ///< a jump within this arc length ahead of the car has to be confirmed
     double jump_m = 0.9;  ///< distance of the lines of two frames: half the narrowest lane, less the noise
     double max_support = 6.0;       ///< largest support of a lane, in weights of frames
-    double kept_support = 0.92;     ///< share of the support of a lane that is left after each frame
     double unsure_weight = 0.4;     ///< weight of a frame whose detector gives no probability
     double min_kept_weight = 0.02;  ///< a less probable candidate does not count
-    double second_odds = 0.5;       ///< log odds that a candidate lacks if the detector ranks it lower
-    double second_vote = 0.4;       ///< weight of its votes on cones, per probability
     double course_weight = 0.3;     ///< weight of the lap before, in each frame
     double course_ahead_m = 20.0;   ///< length of the lap before that is compared
     double min_left_m = 3.0;        ///< a lane with a shorter rest does not resist a new one

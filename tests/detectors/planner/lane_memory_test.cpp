@@ -77,13 +77,6 @@ TEST(BegunAtCar, ALaneThatLiesAsideIsNotJoined) {
         << "in a bend it begins a little aside";
 }
 
-TEST(BegunAtCar, ALaneAcrossTheCarIsNone) {
-    const Pose car{{0.0, 0.0}, 0.0};
-    EXPECT_FALSE(begun_at_car(straight_line({1.2, 0.0}, 1.4, 10.0), car, nullptr, 0.5));
-    EXPECT_TRUE(begun_at_car(straight_line({0.2, 0.0}, 0.5, 10.0), car, nullptr, 0.5))
-        << "the car stands askew";
-}
-
 TEST(BegunAtCar, AlongTheLaneThatLeadsThere) {
     // The lane so far bends to where the new one begins; straight from the car would cut the bend.
     const DrivableLane before = tests::circle(8.0, 1.0, 2.0, 2.5, false).driven();

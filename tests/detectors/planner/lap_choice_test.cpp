@@ -59,31 +59,6 @@ TEST_F(SureChoice, IsLeftAlsoWhereCandidatesSpeakForIt) {
     EXPECT_LE(frames_until_left(other_, 0.5, 0.3), 20);
 }
 
-// Frames that are uncertain carry the lane on over new ground: what was sure lies behind.
-TEST_F(SureChoice, FadesWhereTheFramesAreNoLongerSure) {
-    for (int i = 0; i < 15; ++i) EXPECT_TRUE(choice_.take(lane_, lane_, 0.15));
-    EXPECT_LE(frames_until_left(other_, 0.5, 0.1), 7);
-}
-
-TEST_F(SureChoice, IsLeftAlsoWhereSomeFramesStillAgreeWithIt) {
-    int frames = 0;
-    for (; frames < 1000; ++frames) {
-        if (frames % 3 == 2) {
-            EXPECT_TRUE(choice_.take(lane_, lane_, 0.12));
-        } else if (choice_.take(other_, lane_, 0.6, 0.0)) {
-            break;
-        }
-    }
-    EXPECT_LE(frames, 15);
-}
-
-TEST_F(SureChoice, DoesNotGiveWayToALaneThatEndsAtOnce) {
-    const DrivableLane shorter = stretch(lane_, 0.0, 4.0, 0.5);
-    EXPECT_TRUE(choice_.agrees(lane_, lane_));
-    EXPECT_FALSE(choice_.agrees(shorter, lane_)) << "the lane driven by goes on for 20 m";
-    EXPECT_TRUE(choice_.agrees(shorter, stretch(lane_, 0.0, 6.0, 0.5))) << "it ends as well";
-}
-
 TEST_F(SureChoice, IsNotLeftForFramesThatContradictEachOther) {
     const DrivableLane third = line(-0.5);
     for (int i = 0; i < 50; ++i) EXPECT_FALSE(choice_.take(i % 2 == 0 ? other_ : third, lane_, 1.0));
