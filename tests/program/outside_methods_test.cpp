@@ -229,7 +229,7 @@ TEST_F(OutsideDetectors, AProgramThatIsNotThereGivesErrorsAtOnce) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome outcome = run(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
     EXPECT_EQ(outcome.exit_code, 1) << "nothing was answered";
-    const std::string& table = outcome.output;
+    const std::string table = text_of(path("r/table.txt"));
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
     for (const LaneRecord& record : lanes("r/none")) EXPECT_EQ(record.answer.status, LaneStatus::error);
     const std::string count = std::to_string(lanes("r/none").size());
@@ -286,7 +286,8 @@ TEST_F(OutsideDetectors, ShardsAndThreadsGiveTheAnswersOfOneRun) {
     run_well(kLaps + std::string("whole") + detectors);
     for (const char* shard : {"0", "1"})
         run_well(kLaps + std::string("part") + shard + detectors + " --shard " + shard + "/2");
-    const std::string table = run_well("merge part1 part0 --out merged");
+    run_well("merge part1 part0 --out merged");
+    const std::string table = text_of(path("merged/table.txt"));
     EXPECT_THAT(table, HasSubstr("A stranger; licence MIT; no colour"));
     EXPECT_THAT(table, HasSubstr("that of an echo program is "));
     run_well(kLaps + std::string("threads --threads 4") + detectors);
@@ -316,8 +317,7 @@ class FinishedLanes : public OutsideDetectors {
     std::vector<json> rows() {
         table_ = run_well(
             "score --scenes s.scenes.jsonl --lanes clc.lanes.jsonl --methods lanes:them=theirs.lanes.jsonl "
-            "--json "
-            "rows");
+            "--json rows --wide");
         return lines("rows");
     }
 
@@ -407,7 +407,7 @@ TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
     const Outcome outcome =
         run(std::string(kCompare) + "r --methods 'exec:silent=sh ./silent.sh </dev/null'");
     EXPECT_EQ(outcome.exit_code, 1) << "it answers nothing";
-    EXPECT_THAT(outcome.output,
+    EXPECT_THAT(text_of(path("r/table.txt")),
                 HasSubstr("Silence; licence MIT; uses colour; no history; trained on fsd_1, fsg; "
                           "https://example.org"));
     const json card = json::parse(text_of(path("silent.method.json")));
@@ -458,11 +458,11 @@ TEST_F(OutsideDetectors, TheExampleInCppAnswersAsClc) {
 
 TEST_F(OutsideDetectors, TheExampleInPythonFindsStraightLanes) {
     if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
-    const std::string table = run_well(
+    run_well(
         "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
         "'exec:pairs=python3 " +
         source_directory().string() + "/experiments/examples/nearest_pairs.py'");
-    EXPECT_THAT(table, HasSubstr("nearest pairs, an example; "));
+    EXPECT_THAT(text_of(path("r/table.txt")), HasSubstr("nearest pairs, an example; "));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
         EXPECT_EQ(row["usable_share"], 1.0);
@@ -512,11 +512,12 @@ TEST_F(OutsideDetectors, TheAdapterOfFtFsdSpeaksForAPlannerOfThatInterface) {
     file_with(kStandIn, "fsd_path_planning/__init__.py");
     const std::string adapter = "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=. " + python + " " +
                                 source_directory().string() + "/experiments/examples/ft_fsd_adapter.py";
-    const std::string table = run_well(
+    run_well(
         "compare --tracks generated:straight --condition paper --every 15 --fp 0 --out r --methods "
         "'exec:ft-fsd=" +
         adapter + "' 'exec:ft-fsd-path=" + adapter + " --path'");
-    EXPECT_THAT(table, HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
+    EXPECT_THAT(text_of(path("r/table.txt")),
+                HasSubstr("ft-fsd-path-planning, cone sorting; licence MIT; no colour; no history"));
     for (const json& row : lines("r/results.jsonl")) {
         EXPECT_EQ(row["errors"], 0);
         EXPECT_EQ(row["usable_share"], 1.0);

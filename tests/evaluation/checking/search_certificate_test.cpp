@@ -238,7 +238,7 @@ TEST(SearchCertificate, CannotBeForged) {
          [](auto& c) {
              c.lane_graph->edges.back() = {4, 6};
          },
-         "no cone"},
+         "a cone that the scene does not have"},
         {"no lane graph at all",
          [](auto& c) {
              c.lane_graph.reset();
@@ -257,7 +257,8 @@ TEST(SearchCertificate, CannotBeForged) {
         {"a multiplier that overflows",
          [](auto& c) { c.parts[0].stages[0].cone[2] = std::numeric_limits<SearchCertificate::Units>::max(); },
          "out of range"},
-        {"too few multipliers", [](auto& c) { c.parts[0].stages[0].cone.pop_back(); }, "each cone"},
+        {"too few multipliers", [](auto& c) { c.parts[0].stages[0].cone.pop_back(); },
+         "number of multipliers"},
         {"no multipliers", [](auto& c) { c.parts[0].stages.clear(); }, "missing"},
         {"no part", [](auto& c) { c.parts.clear(); }, "missing"},
         {"another part", [](auto& c) { c.parts[0].far_start = 2; }, "missing"},
@@ -275,7 +276,7 @@ TEST(SearchCertificate, CannotBeForged) {
          [](auto& c) {
              c.parts[0].cliques = {{{0, 2}}};
          },
-         "no edge"},
+         "an invalid edge"},
         {"a multiplier of no clique",
          [](auto& c) {
              c.parts[0].stages[0].clique = {{0, 1}};
