@@ -23,7 +23,7 @@ PHRASES = [
     (r"and of a start with error", "also the warm start, if status is error"),
     (r"takes? the time and the memory that", "no time or memory limit"),
     (r"the limit that its making ran into", "why construction stopped"),
-    (r"once it has struck", "expiry is sticky"),
+    (r"once (?:it|the clock) has struck", "once the time has ended; expiry is sticky"),
     (r"(?:limit|deadline)(?: was| had| has| is)? (?:struck|strikes)", "the limit ended it"),
     (r"what of an? \w+ (?:lies|is|are|they)", "the ... restricted to"),
     (r"(?:right )?all but surely", "with calibrated probability; nearly always"),

@@ -20,8 +20,8 @@ namespace conelane::path_pair {
 /// adds the empty set to the intersection. Both are the largest sets that fulfil this.
 class DominatedEdges {
   public:
-    /// With `propagate` false, only the arc itself counts: before is lost_after, after is empty. Of no use
-    /// once the clock has struck.
+    /// With `propagate` false, only the arc itself counts: before is lost_after, after is empty. If the
+    /// time ends within the call, the sets are incomplete and must not be used.
     void find(const ResidualGraph& residual, const PairRelaxation& relaxation, const EdgeSets& edges,
               bool propagate, SearchClock& clock);
 

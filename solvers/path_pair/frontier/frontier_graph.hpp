@@ -40,18 +40,17 @@ class FrontierGraph {
         double turn;  ///< cost of the turn into it
     };
 
-    /// Once the clock has struck, everything below ends early and what it found is of no use; where the
-    /// frontiers were being renumbered, none is left.
+    /// If the clock's time ends, every function below returns early and its result must not be used. If that
+    /// happens while the frontiers are renumbered, no frontier is left.
     void bind(PairRelaxation& relaxation, SearchClock& clock) {
         relaxation_ = &relaxation;
         clock_ = &clock;
     }
 
     /// All frontiers that a pair below `limit` may pass, by forward costs and cheapest single legs on, with
-    /// forward(f). With `edges`, steps by edges that every walk up to their frontier has lost are left out on
-    /// the way. False where there are more than `max_frontiers`, or no
-    /// time is left. Precondition: the relaxation was
-    /// evaluated on the residual graph. `limit`: with offset, here and below.
+    /// forward(f). With `edges`, steps by edges that every walk up to their frontier has lost are left out.
+    /// Returns false if there are more than `max_frontiers`, or if no time is left. Precondition: the
+    /// relaxation was evaluated on the residual graph. `limit`: with offset, here and below.
     bool build(const ResidualGraph& residual, const DominatedEdges& dominated, double limit,
                std::size_t max_frontiers, const EdgeSets* edges = nullptr);
 

@@ -25,8 +25,8 @@ inline constexpr Quanta kTooMany = 127;  ///< more than the gap
 /// excludes; the detours of a beginning's arcs can.
 class OnwardTables {
   public:
-    /// Precondition: the onward costs of the frontiers are found. `limit`: with offset. Of no use once the
-    /// clock has struck.
+    /// Precondition: the onward costs of the frontiers are found. `limit`: with offset. If the
+    /// time ends within the call, the tables are incomplete and must not be used.
     void find(const FrontierGraph& frontiers, const EdgeSets& edges, double limit, bool with_detours,
               SearchClock& clock);
 

@@ -31,7 +31,7 @@ std::unique_ptr<Planner> planner_of(Mission mission) {
     return make_known_course_planner({.mission = mission, .detector = "front"});
 }
 
-/// No wall clock decides what a busy machine finds.
+/// No time limit, so that the result does not depend on the machine's load.
 constexpr DetectionLimits kNoLimit{.time_limit_ms = std::numeric_limits<double>::infinity()};
 
 Pose acceleration_route(double s_m) {
