@@ -9,6 +9,7 @@
 #include <iterator>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,6 +22,7 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kProgram = "exec:";
 constexpr std::string_view kLanes = "lanes:";
+constexpr std::string_view kSolver = "solver:";
 constexpr std::size_t kMaxName = 64;
 
 /// It becomes part of a file name.
@@ -44,6 +46,50 @@ fs::path card_beside(const fs::path& file) {
     name = name.ends_with(kLanesEnding) ? name.substr(0, name.size() - kLanesEnding.size())
                                         : file.stem().string();
     return file.parent_path() / (name + ".method.json");
+}
+
+/// Key of the source in a record.
+const char* source_key(OutsideDetector::Kind kind) {
+    switch (kind) {
+        case OutsideDetector::Kind::program:
+            return "exec";
+        case OutsideDetector::Kind::lanes:
+            return "lanes";
+        case OutsideDetector::Kind::solver:
+            return "solver";
+    }
+    return "exec";
+}
+
+Formulation formulation_of(std::string_view name) {
+    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
+        if (to_string(formulation) == name) return formulation;
+    }
+    throw InvalidInput("solver", fmt::format("there is no formulation '{}': tight or paper", name));
+}
+
+/// NAME=SOURCE, of a solver also NAME/FORMULATION=SOURCE, behind a prefix that the message of an error shows.
+OutsideDetector parse_named_source(std::string_view text, OutsideDetector::Kind kind,
+                                   std::string_view prefix) {
+    OutsideDetector detector;
+    detector.kind = kind;
+    const std::string form = fmt::format("{}NAME={}", prefix, detector.is_lanes_file() ? "FILE" : "COMMAND");
+    const std::size_t equals = text.find('=');
+    if (equals == std::string_view::npos || equals + 1 == text.size())
+        throw InvalidInput("method", fmt::format("'{}' is not of the form {}", text, form));
+    detector.name = text.substr(0, equals);
+    detector.source = text.substr(equals + 1);
+    const std::size_t slash = detector.name.find('/');
+    if (detector.is_solver() && slash != std::string::npos) {
+        detector.formulation = formulation_of(std::string_view(detector.name).substr(slash + 1));
+        detector.name.resize(slash);
+    }
+    if (!is_name(detector.name)) {
+        throw InvalidInput("method",
+                           fmt::format("'{}' is not a name for {}: letters, digits and ._+- only, at most {}",
+                                       detector.name, form, kMaxName));
+    }
+    return detector;
 }
 
 std::optional<std::string> find_string(const JsonNode& json, std::string_view key) {
@@ -105,35 +151,28 @@ std::string DetectorCard::summary() const {
 }
 
 std::optional<OutsideDetector> parse_outside_detector(std::string_view text) {
-    OutsideDetector detector;
-    if (text.starts_with(kProgram)) {
-        text.remove_prefix(kProgram.size());
-    } else if (text.starts_with(kLanes)) {
-        text.remove_prefix(kLanes.size());
-        detector.kind = OutsideDetector::Kind::lanes;
-    } else {
-        return std::nullopt;
+    using Kind = OutsideDetector::Kind;
+    for (const auto& [prefix, kind] :
+         {std::pair{kProgram, Kind::program}, {kLanes, Kind::lanes}, {kSolver, Kind::solver}}) {
+        if (!text.starts_with(prefix)) continue;
+        OutsideDetector detector = parse_named_source(text.substr(prefix.size()), kind, prefix);
+        if (const auto card = card_path(detector)) detector.card = read_detector_card(*card);
+        return detector;
     }
-    const std::size_t equals = text.find('=');
-    const std::string form = detector.is_program() ? "exec:NAME=COMMAND" : "lanes:NAME=FILE";
-    if (equals == std::string_view::npos || equals + 1 == text.size())
-        throw InvalidInput("method", fmt::format("'{}' is not of the form {}", text, form));
-    detector.name = text.substr(0, equals);
-    detector.source = text.substr(equals + 1);
-    if (!is_name(detector.name)) {
-        throw InvalidInput("method",
-                           fmt::format("'{}' is not a name for {}: letters, digits and ._+- only, at most {}",
-                                       detector.name, form, kMaxName));
-    }
-    if (const auto card = card_path(detector)) detector.card = read_detector_card(*card);
-    return detector;
+    return std::nullopt;
+}
+
+std::optional<OutsideDetector> parse_outside_solver(std::string_view text) {
+    if (!text.starts_with(kProgram)) return std::nullopt;
+    return parse_named_source(text.substr(kProgram.size()), OutsideDetector::Kind::solver, kProgram);
 }
 
 std::vector<std::string> split_detectors(const std::vector<std::string>& texts) {
     std::vector<std::string> split;
     for (const std::string& text : texts) {
         for (std::size_t begin = 0; begin <= text.size();) {
-            const bool takes_the_rest = std::string_view(text).substr(begin).starts_with(kProgram);
+            const std::string_view rest = std::string_view(text).substr(begin);
+            const bool takes_the_rest = rest.starts_with(kProgram) || rest.starts_with(kSolver);
             const std::size_t end =
                 takes_the_rest ? text.size() : std::min(text.find(',', begin), text.size());
             split.push_back(text.substr(begin, end - begin));
@@ -146,12 +185,12 @@ std::vector<std::string> split_detectors(const std::vector<std::string>& texts) 
 std::optional<fs::path> card_path(const OutsideDetector& detector) {
     // A lanes file may lie in a path with blanks; a word of a command is taken without its quotes.
     std::vector<std::string> files{detector.source};
-    if (detector.is_program()) {
+    if (!detector.is_lanes_file()) {
         std::istringstream words(detector.source);
         files.assign(std::istream_iterator<std::string>(words), {});
     }
     for (std::string& file : files) {
-        if (detector.is_program()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
+        if (!detector.is_lanes_file()) std::erase_if(file, [](char c) { return c == '\'' || c == '"'; });
         if (is_file(file) && is_file(card_beside(file))) return card_beside(file);
     }
     return std::nullopt;
@@ -164,7 +203,8 @@ DetectorCard read_detector_card(const fs::path& file) {
 }
 
 std::string outside_detector_json(const OutsideDetector& detector) {
-    ordered_json json{{"name", detector.name}, {detector.is_program() ? "exec" : "lanes", detector.source}};
+    ordered_json json{{"name", detector.name}, {source_key(detector.kind), detector.source}};
+    if (detector.formulation) json["formulation"] = to_string(*detector.formulation);
     if (detector.card) json["card"] = to_json(*detector.card);
     return to_line(json);
 }
@@ -176,13 +216,18 @@ std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_
         const std::size_t size = all ? all->array_size() : 0;
         for (std::size_t i = 0; i < size; ++i) {
             const JsonNode detector = all->element(i);
-            const auto command = detector.find("exec");
-            const auto file = detector.find("lanes");
-            if (!command && !file) continue;
-            OutsideDetector outside{command ? OutsideDetector::Kind::program : OutsideDetector::Kind::lanes,
-                                    detector.member("name").string(),
-                                    (command ? command : file)->string(),
-                                    {}};
+            OutsideDetector outside;
+            for (const auto kind : {OutsideDetector::Kind::program, OutsideDetector::Kind::lanes,
+                                    OutsideDetector::Kind::solver}) {
+                const auto source = detector.find(source_key(kind));
+                if (!source) continue;
+                outside.kind = kind;
+                outside.source = source->string();
+            }
+            if (outside.source.empty()) continue;
+            outside.name = detector.member("name").string();
+            if (const auto formulation = detector.find("formulation"))
+                outside.formulation = formulation_of(formulation->string());
             if (const auto card = detector.find("card")) outside.card = read_card(*card);
             // A sweep has the same detector once for each size.
             if (std::ranges::find(found, outside.name, &OutsideDetector::name) == found.end())

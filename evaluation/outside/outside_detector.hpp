@@ -1,5 +1,7 @@
 #pragma once
 
+#include "conelane/formulation.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,22 +28,32 @@ struct OutsideDetector {
     enum class Kind {
         program,  ///< exec:NAME=COMMAND, asked scene by scene
         lanes,    ///< lanes:NAME=FILE, answers of a run elsewhere
+        solver,   ///< solver:NAME=COMMAND, RLD by a program that solves MPS or LP files
     };
     Kind kind = Kind::program;
     std::string name;    ///< as tables show it
     std::string source;  ///< the command, or the file
     std::optional<DetectorCard> card;
+    /// Of a solver, where the text names one.
+    std::optional<Formulation> formulation = {};
 
     [[nodiscard]] bool is_program() const { return kind == Kind::program; }
+    [[nodiscard]] bool is_lanes_file() const { return kind == Kind::lanes; }
+    [[nodiscard]] bool is_solver() const { return kind == Kind::solver; }
 };
 
-/// The method that `exec:NAME=COMMAND` or `lanes:NAME=FILE` names, with its card; nothing for other texts.
-/// Throws InvalidInput if the name is missing or has characters that a file name may not have; InputError if
-/// the card is wrong.
+/// The method that `exec:NAME=COMMAND`, `lanes:NAME=FILE`, `solver:NAME=COMMAND` or
+/// `solver:NAME/FORMULATION=COMMAND` names, with its card; nothing for other texts. Throws InvalidInput if
+/// the name is missing or has characters that a file name may not have, or if there is no such formulation;
+/// InputError if the card is wrong.
 [[nodiscard]] std::optional<OutsideDetector> parse_outside_detector(std::string_view text);
 
-/// Methods as a user lists them: separated by commas, but `exec:` takes the rest of its text, so a command
-/// may contain commas.
+/// Where only solvers are listed: the solver that `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND`
+/// names; nothing for other texts. Throws as parse_outside_detector does.
+[[nodiscard]] std::optional<OutsideDetector> parse_outside_solver(std::string_view text);
+
+/// Methods as a user lists them: separated by commas, but `exec:` and `solver:` take the rest of their text,
+/// so a command may contain commas.
 [[nodiscard]] std::vector<std::string> split_detectors(const std::vector<std::string>& texts);
 
 /// The card of a method: X.method.json beside the lanes file X.lanes.jsonl, or beside the first file

@@ -1,6 +1,5 @@
 #include "evaluation/outside/outside_solver.hpp"
 
-#include "conelane/invalid_input.hpp"
 #include "evaluation/outside/connecting_flow.hpp"
 #include "evaluation/outside/permuted_program.hpp"
 #include "model/deadline.hpp"
@@ -175,22 +174,6 @@ void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryPr
         }
         return;
     }
-}
-
-std::optional<OutsideSolverText> parse_outside_solver(std::string_view text) {
-    constexpr std::string_view kProgram = "exec:";
-    if (!text.starts_with(kProgram)) return std::nullopt;
-    const std::size_t equals = std::min(text.find('='), text.size());
-    const std::size_t slash = text.substr(0, equals).find('/');
-    if (slash == std::string_view::npos)
-        return OutsideSolverText{*parse_outside_detector(text), std::nullopt};
-    const std::string_view name = text.substr(slash + 1, equals - slash - 1);
-    for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
-        if (to_string(formulation) != name) continue;
-        const std::string without = std::string(text.substr(0, slash)) + std::string(text.substr(equals));
-        return OutsideSolverText{*parse_outside_detector(without), formulation};
-    }
-    throw InvalidInput("solver", fmt::format("there is no formulation '{}': tight or paper", name));
 }
 
 }  // namespace conelane

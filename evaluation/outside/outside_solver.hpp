@@ -29,7 +29,7 @@ struct OutsideSolverOptions {
 /// refute, a wrong optimum, is for the comparison to find.
 class OutsideSolver : public RldSolver {
   public:
-    /// Precondition: the detector is a program. Throws as SolverProgram does.
+    /// Precondition: the detector has a command. Throws as SolverProgram does.
     OutsideSolver(const OutsideDetector& detector, const OutsideSolverOptions& options);
 
     [[nodiscard]] EdgeExtent extent() const override { return parts(options_.formulation).extent; }
@@ -60,14 +60,5 @@ class OutsideSolver : public RldSolver {
     std::optional<double> engine_ms_;
     LaneGraphModel model_;
 };
-
-/// The detector and the formulation that `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND` names;
-/// nothing where the text does not begin with `exec:`. Throws as parse_outside_detector does, InvalidInput
-/// too where there is no such formulation.
-struct OutsideSolverText {
-    OutsideDetector detector;
-    std::optional<Formulation> formulation;
-};
-[[nodiscard]] std::optional<OutsideSolverText> parse_outside_solver(std::string_view text);
 
 }  // namespace conelane

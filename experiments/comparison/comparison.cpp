@@ -34,6 +34,7 @@ constexpr const char* kScenesFile = "scenes.scenes.jsonl";
 
 DetectorMaker maker_of(const ComparedDetector& compared, const RunOptions& options) {
     if (compared.maker) return compared.maker(options);
+    if (compared.outside && compared.outside->is_solver()) return maker_of_solver(*compared.outside, options);
     if (compared.outside) return maker_of_program(compared.name, compared.outside->source, options);
     const KnownDetector& detector = find_detector(compared.name);
     RunOptions used = options;
@@ -64,7 +65,7 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
                                                               const fs::path& directory) {
     std::map<std::string, std::vector<LaneRecord>> lanes;
     for (const ComparedDetector& compared : options.detectors) {
-        if (!compared.outside || compared.outside->is_program()) continue;
+        if (!compared.outside || !compared.outside->is_lanes_file()) continue;
         const fs::path file = compared.outside->source;
         std::error_code ignored;
         if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))

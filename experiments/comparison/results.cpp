@@ -100,7 +100,8 @@ nlohmann::ordered_json median_and_p95(const std::vector<double>& times_ms) {
 
 nlohmann::ordered_json outside_part(const OutsideDetector& detector, const std::vector<double>& own_ms,
                                     const EchoFloor& echo) {
-    nlohmann::ordered_json part{{"outside", detector.is_program() ? "exec" : "lanes"}};
+    const char* const kind = detector.is_program() ? "exec" : detector.is_solver() ? "solver" : "lanes";
+    nlohmann::ordered_json part{{"outside", kind}};
     if (!own_ms.empty()) part["self_timed_ms"] = median_and_p95(own_ms);
     if (detector.is_program() && !echo.empty()) part["echo_floor_ms"] = median_and_p95(echo);
     const auto described = nlohmann::ordered_json::parse(outside_detector_json(detector));
@@ -298,6 +299,10 @@ std::string outside_notes(std::span<const ScoredRecord> scored, const OutsideDet
                 notes += fmt::format("; self-timed {:.2f} ms (median), {:.2f} (p95)", median(own_ms),
                                      quantile(own_ms, 0.95));
             }
+        } else if (detector.is_solver()) {
+            notes +=
+                fmt::format("RLD by a solver from outside, {} formulation; latency includes files and pipes",
+                            to_string(detector.formulation.value_or(Formulation::tight)));
         } else {
             notes += "latency is self-timed, as the lanes file says";
         }

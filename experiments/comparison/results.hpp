@@ -80,7 +80,7 @@ struct OutsideDetectors {
     [[nodiscard]] std::set<std::string> courses_of(const std::string& detector, bool cross_validated) const;
 };
 
-/// Writes a line per row: the summary, of a detector from outside also `outside` (exec or lanes),
+/// Writes a line per row: the summary, of a detector from outside also `outside` (exec, lanes or solver),
 /// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
 /// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
 /// seed).

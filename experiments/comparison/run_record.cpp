@@ -79,7 +79,7 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
 
 nlohmann::ordered_json to_json(const OutsideDetector& detector) {
     nlohmann::ordered_json json = nlohmann::ordered_json::parse(outside_detector_json(detector));
-    if (detector.is_program()) return json;
+    if (!detector.is_lanes_file()) return json;
     json["hash"] = file_hash(detector.source);
     if (json["hash"].empty()) throw InputError(detector.source, 0, "", "cannot be read");
     return json;
@@ -89,7 +89,7 @@ nlohmann::ordered_json to_json(const OutsideDetector& detector) {
 
 ComparedDetector parse_compared_detector(const std::string& text, std::optional<std::size_t> nearest) {
     if (auto outside = find_outside_detector(text)) {
-        if (nearest && !outside->is_program()) {
+        if (nearest && outside->is_lanes_file()) {
             throw InvalidInput(
                 "method", "'" + outside->name + "' is a finished lanes file, no cone-set size can be given");
         }
@@ -111,6 +111,8 @@ std::string run_record(const ComparisonOptions& options) {
         if (compared.outside) json = to_json(*compared.outside);
         if (compared.nearest) json["nearest"] = *compared.nearest;
         if (compared.outside) {
+            if (compared.outside->is_solver())
+                json["rld_parameters"] = to_json(solver_parameters(options.run.detector));
             detectors.push_back(json);
             continue;
         }

@@ -1,6 +1,8 @@
 #include "experiments/comparison/runner.hpp"
 
+#include "detectors/drivable/drivable_answers.hpp"
 #include "evaluation/outside/outside_program.hpp"
+#include "evaluation/outside/outside_solver.hpp"
 #include "experiments/comparison/answer_check.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/progress/progress.hpp"
@@ -149,6 +151,27 @@ DetectorMaker maker_of_program(const std::string& name, const std::string& comma
                                const RunOptions& options) {
     return [pool = std::make_shared<OutsideProgramPool>(name, command), nearest = options.detector.nearest](
                const std::string& /*track*/) { return std::make_unique<TimedProgram>(pool, nearest); };
+}
+
+RldParameters solver_parameters(const DetectorOptions& options) {
+    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
+    if (options.pairing) parameters.pairing = *options.pairing;
+    return parameters;
+}
+
+DetectorMaker maker_of_solver(const OutsideDetector& solver, const RunOptions& options) {
+    const RldDetectorOptions made{.parameters = solver_parameters(options.detector),
+                                  .cones = {options.detector.nearest, {}}};
+    validate(made.parameters);
+    const OutsideSolverOptions how{solver.formulation.value_or(Formulation::tight)};
+    (void)OutsideSolver(solver, how);  // what is wrong with the command is said at once
+    return [solver, options, made, how](const std::string& /*track*/) {
+        auto detector =
+            answer_drivable_lanes(make_rld_detector(std::make_unique<OutsideSolver>(solver, how), made));
+        return std::make_unique<TimedLaneDetector>(solver.name, std::move(detector), options,
+                                                   made.cones.nearest,
+                                                   CheckedRld{made.cones, made.parameters});
+    };
 }
 
 bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b) {

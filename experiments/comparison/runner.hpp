@@ -52,6 +52,14 @@ using DetectorMaker = std::function<std::unique_ptr<TimedDetector>(const std::st
 [[nodiscard]] DetectorMaker maker_of_program(const std::string& name, const std::string& command,
                                              const RunOptions& options);
 
+/// RLD by a solver from outside: on the cones and with the parameters of the options, otherwise on all cones
+/// with the default parameters. Timed and checked as a detector of this program: writing the files and
+/// reading the solution is inside the time. Each lap starts the program anew; its start is not timed.
+[[nodiscard]] DetectorMaker maker_of_solver(const OutsideDetector& solver, const RunOptions& options);
+
+/// The RLD parameters that a solver from outside gets.
+[[nodiscard]] RldParameters solver_parameters(const DetectorOptions& options);
+
 /// Whether two scenes are of one lap: the same track, condition, rate and range.
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
 

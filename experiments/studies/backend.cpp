@@ -52,9 +52,9 @@ std::vector<Backend> exact_backends() {
 
 Backend backend_of(std::string_view name) {
     if (const auto outside = parse_outside_solver(name)) {
-        return {.solver = outside->detector.name,
+        return {.solver = outside->name,
                 .formulation = outside->formulation.value_or(Formulation::tight),
-                .outside = outside->detector};
+                .outside = *outside};
     }
     const std::size_t slash = std::min(name.find('/'), name.size());
     Backend backend{std::string(name.substr(0, slash))};

@@ -55,7 +55,8 @@ void add_shared_options(CLI::App& command, Options& options) {
         .add_option("--methods", options.detectors,
                     "see `conelane methods`, separated by commas; exec:NAME=COMMAND asks any program and "
                     "takes the rest of its argument; lanes:NAME=FILE scores a finished lanes file "
-                    "(docs/methods-from-outside.md)")
+                    "(docs/methods-from-outside.md); solver:NAME=COMMAND is RLD by any solver of MPS or LP "
+                    "files and takes the rest, too (docs/solvers-from-outside.md)")
         ->capture_default_str();
     add_scene_options(command, comparison.scenes);
     comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
@@ -82,7 +83,7 @@ void compare_and_print(Options& options) {
             comparison.tracks.push_back("generated:" + name);
     }
     const bool any_rld = std::ranges::any_of(comparison.detectors, [](const ComparedDetector& compared) {
-        return !compared.outside && find_detector(compared.name).is_rld();
+        return compared.outside ? compared.outside->is_solver() : find_detector(compared.name).is_rld();
     });
     if (!any_rld) options.parameters.require_not_given("these methods have");
     options.parameters.apply_to(comparison.run.detector);

@@ -88,11 +88,12 @@ Answering detector_of(Options& options) {
         }
         return {std::string(detector.name), maker_of(detector, options.run)};
     }
-    if (!outside->is_program())
+    if (outside->is_lanes_file())
         throw InvalidInput("--method",
                            "'" + options.detector + "' holds lanes already, none can be detected");
-    options.parameters.require_not_given("the program '" + outside->name + "' has");
     refuse_weights("the program '" + outside->name + "'");
+    if (outside->is_solver()) return {outside->name, maker_of_solver(*outside, options.run)};
+    options.parameters.require_not_given("the program '" + outside->name + "' has");
     return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
 }
 

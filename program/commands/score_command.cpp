@@ -62,7 +62,7 @@ std::vector<LanesFile> read_all(const Options& options, std::span<const Annotate
     }
     for (const std::string& text : split_detectors(options.detectors)) {
         auto detector = find_outside_detector(text);
-        if (!detector || detector->is_program())
+        if (!detector || !detector->is_lanes_file())
             throw InvalidInput("--methods", "'" + text + "' is not of the form lanes:NAME=FILE");
         std::vector<LaneRecord> records = read_finished_lanes(*detector, scenes);
         all.push_back({detector->source, std::move(detector), std::move(records)});

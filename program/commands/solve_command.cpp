@@ -45,7 +45,7 @@ ChosenSolver choose(const Options& options) {
     const Formulation formulation = options.formulation == "paper" ? Formulation::paper : Formulation::tight;
     if (const auto outside = parse_outside_solver(options.solver)) {
         const OutsideSolverOptions how{outside->formulation.value_or(formulation), options.all_rows};
-        return {std::make_unique<OutsideSolver>(outside->detector, how), outside->detector.name,
+        return {std::make_unique<OutsideSolver>(*outside, how), outside->name,
                 std::string(to_string(how.formulation))};
     }
     if (options.all_rows)

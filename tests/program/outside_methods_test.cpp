@@ -450,6 +450,57 @@ TEST_F(OutsideDetectors, DetectAndSweepTakeThemToo) {
     }
 }
 
+std::vector<double> objectives(const std::vector<LaneRecord>& records) {
+    std::vector<double> all;
+    for (const LaneRecord& record : records)
+        all.push_back(record.answer.optimality ? record.answer.optimality->objective : 0.0);
+    return all;
+}
+
+/// The child solves what it is sent by CBC, so its optima are those of rld-pair.
+TEST_F(OutsideDetectors, ASolverFromOutsideIsRldAtEachConeSetSize) {
+    run_well(
+        "sweep --tracks generated:circle --condition paper --sizes 6,8 --every 30 --fp 0.2 --out r "
+        "--methods rld-pair 'solver:child=" +
+        solver_child() + "' 'solver:printed/paper=" + solver_child() + " once {mps} {sol}'");
+    for (const std::string size : {".n006", ".n008"}) {
+        const std::vector<LaneRecord> expected = lanes("r/rld-pair" + size);
+        for (const std::string solver : {"child", "printed"}) {
+            const std::vector<LaneRecord> found = lanes("r/" + solver + size);
+            ASSERT_EQ(found.size(), expected.size());
+            EXPECT_THAT(objectives(found),
+                        testing::Pointwise(testing::DoubleNear(1e-5), objectives(expected)));
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                EXPECT_EQ(found[i].answer.status, expected[i].answer.status) << found[i].answer.message;
+                EXPECT_EQ(found[i].nearest, expected[i].nearest);
+            }
+        }
+    }
+    EXPECT_THAT(
+        text_of(path("r/table.txt")),
+        HasSubstr("  printed: RLD by a solver from outside, paper formulation; latency includes files"));
+    const json record = json::parse(text_of(path("r/run.json")));
+    EXPECT_EQ(record["methods"][4]["formulation"], "paper");
+    EXPECT_EQ(record["methods"][4]["rld_parameters"], record["methods"][0]["rld_parameters"]);
+    EXPECT_EQ(record["methods"][2]["solver"], solver_child());
+    for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["errors"], 0) << row;
+}
+
+/// Its lanes are checked: what is not within the rows of the program becomes an answer of status error.
+TEST_F(OutsideDetectors, AWrongSolverIsAnErrorAndNeverALane) {
+    const Outcome outcome = run(
+        "compare --tracks generated:circle --condition paper --every 30 --fp 0 --nearest 8 --out r --methods "
+        "'solver:liar=" +
+        solver_child() + " half-a-point 2 marker'");
+    EXPECT_THAT(outcome.errors, HasSubstr("'liar"));
+    bool any_error = false;
+    for (const LaneRecord& record : lanes("r/liar.n008"))
+        any_error = any_error || record.answer.status == LaneStatus::error;
+    EXPECT_TRUE(any_error);
+    expect_refused("sweep --out r2 --methods 'solver:a/loose=x'", {"loose", "tight or paper"});
+    expect_refused("sweep --out r2 --methods 'solver:a=run {mps} {lp}'", {"{lp}"});
+}
+
 /// The two programs that stand in docs/methods-from-outside.md.
 TEST_F(OutsideDetectors, TheExampleInCppAnswersAsClc) {
     run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + clc_stream());

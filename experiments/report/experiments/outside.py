@@ -11,7 +11,7 @@ Command: conelane compare --methods exec:NAME=COMMAND,lanes:NAME=FILE --out RESU
 from ..experiment import Missing
 from ..tables import Cell, Column, method_cell, milliseconds, table, text
 
-_KINDS = {"exec": "program", "lanes": "lanes file"}
+_KINDS = {"exec": "program", "lanes": "lanes file", "solver": "RLD by a solver"}
 
 
 def _yes_or_no(value):

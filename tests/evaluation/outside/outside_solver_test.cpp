@@ -322,15 +322,21 @@ TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
 }
 
 TEST(OutsideSolverText, HasANameACommandAndPerhapsAFormulation) {
+    const auto method = parse_outside_detector("solver:a/paper=run {mps} {sol}");
+    ASSERT_TRUE(method);
+    EXPECT_TRUE(method->is_solver());
+    EXPECT_EQ(method->name, "a");
+    EXPECT_EQ(method->formulation, Formulation::paper);
+    EXPECT_THROW((void)parse_outside_detector("solver:a/loose=b"), InvalidInput);
     const auto plain = parse_outside_solver("exec:a=run --with b/c=d");
     ASSERT_TRUE(plain);
-    EXPECT_EQ(plain->detector.name, "a");
-    EXPECT_EQ(plain->detector.source, "run --with b/c=d");
+    EXPECT_EQ(plain->name, "a");
+    EXPECT_EQ(plain->source, "run --with b/c=d");
     EXPECT_FALSE(plain->formulation);
     const auto paper = parse_outside_solver("exec:a/paper=run {mps} {sol}");
     ASSERT_TRUE(paper);
-    EXPECT_EQ(paper->detector.name, "a");
-    EXPECT_EQ(paper->detector.source, "run {mps} {sol}");
+    EXPECT_EQ(paper->name, "a");
+    EXPECT_EQ(paper->source, "run {mps} {sol}");
     EXPECT_EQ(paper->formulation, Formulation::paper);
     EXPECT_FALSE(parse_outside_solver("path-pair"));
     for (const char* bad : {"exec:a", "exec:a=", "exec:=b", "exec:a/loose=b", "exec:a b=c"})
