@@ -46,6 +46,16 @@ function(conelane_compile_quickly target level)
     endif()
 endfunction()
 
+# `conelane_join_files(TARGET GROUP FILES...)`: with CONELANE_JOIN_FILES, these files are compiled as one. Functions that CLI11,
+# nlohmann-json and fmt define in headers take most of the time, and are then compiled once a group. Files of a group must not
+# share names in unnamed namespaces. Without it, as in the presets without precompiled headers, a missing include shows.
+function(conelane_join_files target group)
+    if(CONELANE_JOIN_FILES)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+        set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+    endif()
+endfunction()
+
 # `conelane_embed(SOURCE HEADER [NAME FILE]...)`: makes the source file SOURCE of the build, which defines each std::string_view
 # NAME that HEADER declares as the bytes of FILE. Nothing is read from them here: the library parses its own files.
 function(conelane_embed source header)

@@ -89,7 +89,8 @@ class AnytimeStudy : public Study {
         options_.parameters = input_.parameters.load();
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const std::vector<AnytimeRow> rows = anytime_rows(scenes, options_);
-        return study_result(anytime_table(rows, options_.limits_ms), rows, row_to_json);
+        return study_result(anytime_table(rows, options_.limits_ms), rows,
+                            [](const AnytimeRow& row) { return row_to_json(row); });
     }
 
   private:

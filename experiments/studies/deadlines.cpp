@@ -176,7 +176,8 @@ class DeadlinesStudy : public Study {
     StudyResult run() override {
         const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
         const std::vector<DeadlineRow> rows = deadline_rows(scenes, timed_calls(detectors_), options_);
-        return study_result(deadline_table(rows), rows, row_to_json);
+        return study_result(deadline_table(rows), rows,
+                            [](const DeadlineRow& row) { return row_to_json(row); });
     }
 
   private:

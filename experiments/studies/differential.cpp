@@ -118,7 +118,8 @@ class DifferentialStudy : public Study {
     StudyResult run() override {
         const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
         const std::vector<DifferentialRow> rows = differential_rows(scenes, options_);
-        return study_result(differential_outcome(rows, options_), rows, row_to_json);
+        return study_result(differential_outcome(rows, options_), rows,
+                            [](const DifferentialRow& row) { return row_to_json(row); });
     }
 
   private:

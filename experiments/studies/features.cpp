@@ -53,7 +53,7 @@ class FeaturesStudy : public Study {
         options_.parameters = input_.parameters.load();
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const std::vector<FeatureRow> rows = feature_rows(scenes, options_);
-        return study_result(feature_table(rows), rows, to_json);
+        return study_result(feature_table(rows), rows, [](const FeatureRow& row) { return to_json(row); });
     }
 
   private:

@@ -130,7 +130,8 @@ class FormulationsStudy : public Study {
     StudyResult run() override {
         options_.parameters = input_.parameters.load();
         const std::vector<FormulationRow> rows = formulation_rows(read_scenes(input_.scenes), options_);
-        return study_result(formulation_table(rows), rows, to_json);
+        return study_result(formulation_table(rows), rows,
+                            [](const FormulationRow& row) { return to_json(row); });
     }
 
   private:

@@ -190,7 +190,7 @@ class FrontBeamStudy : public Study {
         const std::filesystem::path boundaries = track_boundaries_path(scenes_);
         if (std::filesystem::exists(boundaries)) set.tracks = read_track_boundaries(boundaries);
         const std::vector<FrontBeamRow> rows = front_beam_rows(set, options_);
-        return study_result(table_of(rows), rows, to_json);
+        return study_result(table_of(rows), rows, [](const FrontBeamRow& row) { return to_json(row); });
     }
 
   private:

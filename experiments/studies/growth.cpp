@@ -130,7 +130,7 @@ class GrowthStudy : public Study {
         options_.parameters = input_.parameters.load();
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const std::vector<GrowthRow> rows = growth_rows(scenes, options_);
-        return study_result(growth_tables(rows), rows, row_to_json);
+        return study_result(growth_tables(rows), rows, [](const GrowthRow& row) { return row_to_json(row); });
     }
 
   private:

@@ -99,7 +99,7 @@ class MemoryStudy : public Study {
     StudyResult run() override {
         const std::vector<AnnotatedScene> scenes = read_scenes(scenes_);
         const std::vector<MemoryRow> rows = memory_rows(scenes, timed_calls(detectors_), options_);
-        return study_result(memory_table(rows), rows, row_to_json);
+        return study_result(memory_table(rows), rows, [](const MemoryRow& row) { return row_to_json(row); });
     }
 
   private:

@@ -123,7 +123,8 @@ class RelaxationsStudy : public Study {
         options_.parameters = input_.parameters.load();
         AnswerErrors errors;
         const std::vector<RelaxationRow> rows = relaxation_rows(read_scenes(input_.scenes), options_, errors);
-        StudyResult result = study_result(relaxation_table(rows), rows, to_json);
+        StudyResult result =
+            study_result(relaxation_table(rows), rows, [](const RelaxationRow& row) { return to_json(row); });
         result.errors = std::move(errors);
         return result;
     }

@@ -28,7 +28,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct CertificateOptions {
     std::string scenes;
     std::string out;
     std::string verify;
@@ -89,7 +89,8 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
 
 /// What `certify` makes of each scene of the file, with the name of what it is about.
 template <typename Certify>
-auto certificates(const Options& options, const RldParameters& parameters, const Certify& certify) {
+auto certificates(const CertificateOptions& options, const RldParameters& parameters,
+                  const Certify& certify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::vector<std::invoke_result_t<Certify, const Scene&>> records;
     records.reserve(scenes.size());
@@ -103,7 +104,7 @@ auto certificates(const Options& options, const RldParameters& parameters, const
     return records;
 }
 
-std::vector<SearchCertificateRecord> search_certificates(const Options& options,
+std::vector<SearchCertificateRecord> search_certificates(const CertificateOptions& options,
                                                          const RldParameters& parameters) {
     auto records = certificates(options, parameters, [&](const Scene& scene) {
         const SearchCertificate certificate =
@@ -113,7 +114,8 @@ std::vector<SearchCertificateRecord> search_certificates(const Options& options,
     return records;
 }
 
-std::vector<CertificateRecord> root_certificates(const Options& options, const RldParameters& parameters) {
+std::vector<CertificateRecord> root_certificates(const CertificateOptions& options,
+                                                 const RldParameters& parameters) {
     if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
         throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
     }
@@ -126,7 +128,7 @@ std::vector<CertificateRecord> root_certificates(const Options& options, const R
 /// or else the record itself. Throws before the first call where a record is about something else than the
 /// options say.
 template <typename Record, typename Verify>
-void for_each_record(const Options& options, const RldParameters& parameters,
+void for_each_record(const CertificateOptions& options, const RldParameters& parameters,
                      const std::vector<Record>& records, const Verify& verify) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     std::unordered_map<std::string, const Scene*> scene_of;
@@ -152,11 +154,11 @@ std::string no_cone(ConeId id) {
     return fmt::format("cone {} is not in the scene", id);
 }
 
-void report_none_verified(const Options& options, bool is_none) {
+void report_none_verified(const CertificateOptions& options, bool is_none) {
     if (is_none) fmt::print(stderr, "conelane: {}: no certificate is verified\n", options.verify);
 }
 
-void verify_bounds(const Options& options, const RldParameters& parameters) {
+void verify_bounds(const CertificateOptions& options, const RldParameters& parameters) {
     const std::vector<CertificateRecord> records = read_certificates(options.verify);
     std::size_t failed = 0;
     for_each_record(options, parameters, records, [&](const CertificateRecord& record, const Scene& scene) {
@@ -175,7 +177,7 @@ void verify_bounds(const Options& options, const RldParameters& parameters) {
     if (failed > 0) throw CLI::RuntimeError(1);
 }
 
-void verify_searches(const Options& options, const RldParameters& parameters) {
+void verify_searches(const CertificateOptions& options, const RldParameters& parameters) {
     using Kind = SearchVerdict::Kind;
     const std::vector<SearchCertificateRecord> records = read_search_certificates(options.verify);
     std::size_t optima = 0;
@@ -222,7 +224,7 @@ void report_unproven(const std::vector<Record>& records) {
     if (unproven > 0 && unproven == records.size()) throw CLI::RuntimeError(1);
 }
 
-void run(const Options& options, const RldParameters& parameters) {
+void run(const CertificateOptions& options, const RldParameters& parameters) {
     if (options.verify.empty()) {
         if (options.whole) {
             const auto records = search_certificates(options, parameters);
@@ -250,7 +252,7 @@ void add_certify_command(CLI::App& program) {
         "writes Lagrange multipliers that prove a lower bound of each scene's optimum; with --whole, a "
         "certificate from which the proof of the optimum can be repeated. --verify verifies either file "
         "independently of the solver; exit code 1 if not everything is verified");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CertificateOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     CLI::Option_group& what = *command.add_option_group("what to do");
     add_output_option(what, "--out", options->out, "*.certificates.jsonl to write");

@@ -29,7 +29,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct CheckOptions {
     std::string scenes;
     std::string solutions;
     ParameterSource parameters;
@@ -90,7 +90,7 @@ bool claims_nothing(const SolutionRecord& record) {
 
 class Check {
   public:
-    explicit Check(const Options& options)
+    explicit Check(const CheckOptions& options)
         : options_(options),
           parameters_(options.parameters.load()),
           scenes_(read_scenes(options.scenes)),
@@ -280,7 +280,7 @@ class Check {
         return missing;
     }
 
-    const Options& options_;
+    const CheckOptions& options_;
     const RldParameters parameters_;
     const std::vector<AnnotatedScene> scenes_;
     const std::vector<SolutionRecord> records_;
@@ -303,7 +303,7 @@ void add_check_command(CLI::App& program) {
         "truth is better; see `certify` for proofs of bounds. A scene without an answer fails; stopped and "
         "error "
         "claim nothing and are counted apart.");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();
     add_parameter_options(command, options->parameters, "the defaults");

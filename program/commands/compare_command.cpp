@@ -22,7 +22,7 @@ namespace conelane::experiments {
 namespace {
 
 /// What `compare` and `sweep` share.
-struct Options {
+struct CompareOptions {
     ComparisonOptions comparison;
     std::vector<std::string> detectors;
     ParameterSource parameters;
@@ -46,7 +46,7 @@ void add_overwrite_flag(CLI::App& command, bool& overwrite) {
                      "replace another comparison in that directory; without it, the command refuses to");
 }
 
-void add_shared_options(CLI::App& command, Options& options) {
+void add_shared_options(CLI::App& command, CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
     command.add_option("--tracks", comparison.tracks,
                        "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE; all generated "
@@ -76,7 +76,7 @@ void add_shared_options(CLI::App& command, Options& options) {
     add_overwrite_flag(command, comparison.overwrite);
 }
 
-void compare_and_print(Options& options) {
+void compare_and_print(CompareOptions& options) {
     ComparisonOptions& comparison = options.comparison;
     if (comparison.tracks.empty()) {
         for (const std::string& name : generated_track_names())
@@ -101,7 +101,7 @@ void compare_and_print(Options& options) {
 
 void add_compare_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("compare", "methods on the same scenes, scored and tabled");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareOptions>();
     auto nearest = std::make_shared<std::optional<std::size_t>>();
     auto full = std::make_shared<bool>(false);
     options->detectors = {"rld-cbc", "rld-pair",  "rld-shape",     "front",
@@ -135,7 +135,7 @@ void add_compare_command(CLI::App& program) {
 
 void add_sweep_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("sweep", "a comparison of methods over cone-set sizes");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareOptions>();
     auto sizes = std::make_shared<std::vector<std::size_t>>(
         std::vector<std::size_t>{6, 8, 10, 12, 14, 16, 20, 24, 30, 40, 50, 60});
     options->detectors = {"rld-cbc", "rld-pair", "rld-shape", "clc"};

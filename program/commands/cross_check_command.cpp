@@ -12,7 +12,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct CrossCheckCommandOptions {
     CrossCheckOptions cross_check;
     std::string directory;
     std::string replay;
@@ -20,7 +20,7 @@ struct Options {
 };
 
 /// How many cases differ.
-std::size_t run(const Options& options) {
+std::size_t run(const CrossCheckCommandOptions& options) {
     if (options.replay.empty()) {
         const CrossCheckSummary summary = cross_check(options.cross_check, options.directory);
         fmt::print("{}", to_text(summary));
@@ -42,7 +42,7 @@ void add_cross_check_command(CLI::App& program) {
         "parameters (also degenerate and extreme ones), under generous and tight time limits. A case on "
         "which they differ is shrunk and written to DIR/NAME.case.json with its scene, parameters and "
         "program; exit code 1 if there is one");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CrossCheckCommandOptions>();
     CrossCheckOptions& drawn = options->cross_check;
     CLI::Option_group& what = *command.add_option_group("what to do");
     what.add_option("--out", options->directory,

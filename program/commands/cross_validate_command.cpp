@@ -16,7 +16,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct CrossValidateOptions {
     CrossValidationOptions run;
     std::vector<std::string> families;
     std::vector<std::string> detectors;
@@ -26,7 +26,7 @@ struct Options {
     std::string directory;
 };
 
-void run(Options& options) {
+void run(CrossValidateOptions& options) {
     CrossValidationOptions& run = options.run;
     run.families = parse_families(options.families);
     for (const std::string& text : split_detectors(options.detectors))
@@ -54,7 +54,7 @@ void add_cross_validate_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "cross-validate",
         "compares methods on courses that none of them has learned from: a fold for each family of courses");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CrossValidateOptions>();
     options->detectors = {"front",     "rld-pair",      "rld-shape", "clc",
                           "clc-paper", "delaunay-beam", "astar-lane"};
     SceneOptions& scenes = options->run.comparison.scenes;

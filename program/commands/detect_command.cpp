@@ -31,7 +31,7 @@ namespace {
 /// Stands for standard input and standard output.
 constexpr const char* kStandardStream = "-";
 
-struct Options {
+struct DetectOptions {
     std::string detector;
     std::string scenes;
     std::string out;
@@ -69,7 +69,7 @@ struct Answering {
     std::string name;
     DetectorMaker make;
 };
-Answering detector_of(Options& options) {
+Answering detector_of(DetectOptions& options) {
     const auto outside = find_outside_detector(options.detector);
     const auto refuse_weights = [&options](const std::string& who) {
         if (options.weights.empty()) return;
@@ -98,7 +98,7 @@ Answering detector_of(Options& options) {
 }
 
 /// One scene after the other; nothing is answered untimed before, since no scene is known before.
-void detect_streamed(const Answering& detector, const Options& options) {
+void detect_streamed(const Answering& detector, const DetectOptions& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
     const std::unique_ptr<TimedDetector> timed = detector.make("");
     LaneSink sink(options.out);
@@ -125,7 +125,7 @@ void detect_streamed(const Answering& detector, const Options& options) {
     sink.commit();
 }
 
-void detect(Options& options) {
+void detect(DetectOptions& options) {
     options.parameters.apply_to(options.run.detector);
     const Answering detector = detector_of(options);
     if (options.scenes == kStandardStream || options.out == kStandardStream) {
@@ -163,7 +163,7 @@ void add_detect_command(CLI::App& program) {
         "lanes of scenes, by any method. With `--scenes - --out -` it is a stream: each scene line is "
         "answered at once by a lane line. A line {\"reset\": true} says that another lap begins; an invalid "
         "line gets an answer of status error");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<DetectOptions>();
     options->run.limits.time_limit_ms = kRealTimeLimit_ms;
     command
         .add_option(

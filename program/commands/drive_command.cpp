@@ -23,7 +23,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct DriveOptions {
     std::string lanes;
     std::string scenes;
     std::string format = "json";
@@ -34,7 +34,7 @@ struct Options {
     FollowOptions follow;  ///< what it shares with the others is set from those
 };
 
-std::vector<LaneRecord> chosen_lanes(const Options& options) {
+std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
     std::vector<LaneRecord> records = read_lanes(options.lanes);
     if (records.empty()) throw InputError(options.lanes, 0, "", "holds no lane");
     std::erase_if(records,
@@ -60,7 +60,7 @@ std::vector<LaneRecord> chosen_lanes(const Options& options) {
                          options.format + " holds one: see --method");
 }
 
-DrivableRecord drive(const LaneRecord& record, const Scene& scene, const Options& options) {
+DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOptions& options) {
     try {
         return {record.scene, record.detector, record.answer.status,
                 drivable(record.answer, scene, options.drivable)};
@@ -75,7 +75,7 @@ AnswerErrors errors_among(const std::vector<LaneRecord>& records) {
     return errors;
 }
 
-void follow(const Options& options) {
+void follow(const DriveOptions& options) {
     FollowOptions wanted = options.follow;
     if (options.detector) wanted.detector = *options.detector;
     wanted.format = options.format;
@@ -84,7 +84,7 @@ void follow(const Options& options) {
     follow_frames(wanted);
 }
 
-void drive_all(const Options& options) {
+void drive_all(const DriveOptions& options) {
     for (const auto& [name, value] : {std::pair("--lanes", &options.lanes), {"--scenes", &options.scenes}}) {
         if (value->empty()) throw InvalidInput(name, "is required, or --follow");
     }
@@ -153,7 +153,7 @@ void add_drive_command(CLI::App& program) {
         *program.add_subcommand("drive",
                                 "centre lines of lanes, with curvature and widths; with --follow "
                                 "the plans of a run, frame by frame");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<DriveOptions>();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl");
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl, the scenes of the lanes");
     command

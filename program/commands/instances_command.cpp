@@ -18,7 +18,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct InstancesOptions {
     std::string out;
     std::vector<std::string> sizes{"12", "18", "24", "36", "all"};
     InstanceOptions instances;
@@ -34,7 +34,7 @@ std::optional<std::size_t> size_of(const std::string& text) {
     return size;
 }
 
-void run(Options& options) {
+void run(InstancesOptions& options) {
     InstanceOptions& instances = options.instances;
     for (const std::string& size : options.sizes) {
         const std::optional<std::size_t> nearest = size_of(size);
@@ -63,7 +63,7 @@ void add_instances_command(CLI::App& program) {
         "instances",
         "a library of binary programs for other solvers: MPS files of the printed and the tight formulation, "
         "the list conelane.test, and conelane.solu with the optima that path-pair and CBC both proved");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InstancesOptions>();
     InstanceOptions& instances = options->instances;
     instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
     instances.scenes.false_positive_rates = {0.1667, 0.5};

@@ -21,7 +21,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct PlotOptions {
     std::string scenes;
     std::vector<std::string> lanes;
     std::string id;
@@ -33,7 +33,7 @@ struct Options {
     std::string python;
 };
 
-AnnotatedScene scene_named(const Options& options) {
+AnnotatedScene scene_named(const PlotOptions& options) {
     for (AnnotatedScene& scene : read_scenes(options.scenes)) {
         if (scene.scene.id == options.id) return std::move(scene);
     }
@@ -41,7 +41,7 @@ AnnotatedScene scene_named(const Options& options) {
 }
 
 /// The boundaries of the scene's track, where a companion of the scenes file holds them.
-TrackBoundariesByName track_of(const Options& options, const std::string& track) {
+TrackBoundariesByName track_of(const PlotOptions& options, const std::string& track) {
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     if (track.empty() || !std::filesystem::exists(companion)) return {};
     TrackBoundariesByName tracks = read_track_boundaries(companion);
@@ -50,7 +50,7 @@ TrackBoundariesByName track_of(const Options& options, const std::string& track)
 }
 
 /// The lanes of the scene in one file, in its order.
-void add_lanes(const std::string& file, const Options& options, Picture& picture) {
+void add_lanes(const std::string& file, const PlotOptions& options, Picture& picture) {
     const std::size_t before = picture.lanes.size();
     for (LaneRecord& record : read_lanes(file)) {
         if (record.scene != options.id) continue;
@@ -69,7 +69,7 @@ void add_lanes(const std::string& file, const Options& options, Picture& picture
         throw InputError(file, 0, "--id", "'" + options.id + "' is not a scene of it");
 }
 
-void plot(const Options& options) {
+void plot(const PlotOptions& options) {
     Picture picture;
     picture.scene = scene_named(options);
     picture.tracks = track_of(options, picture.scene.track);
@@ -97,7 +97,7 @@ void plot(const Options& options) {
 void add_plot_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("plot", "a scene and its lanes as a picture, drawn as in the page's viewer");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlotOptions>();
     command
         .add_option("--scenes", options->scenes,
                     "*.scenes.jsonl; with its companion *.tracks.json false cones are drawn as such")

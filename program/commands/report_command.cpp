@@ -13,7 +13,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct ReportOptions {
     std::string results;
     std::string page;
     std::string pictures;
@@ -21,7 +21,7 @@ struct Options {
     std::vector<std::string> viewer;
 };
 
-void make_report(const Options& options) {
+void make_report(const ReportOptions& options) {
     try {
         write_report(options.results, options.page, options.pictures, options.python,
                      fmt::format("{}", fmt::join(options.viewer, ",")));
@@ -35,7 +35,7 @@ void make_report(const Options& options) {
 
 void add_report_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("report", "one HTML page from stored results");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReportOptions>();
     command.add_option("--results", options->results, "directory that `conelane compare` wrote")->required();
     add_output_option(command, "--out", options->page, "PAGE.html")->required();
     command.add_option("--png", options->pictures, "folder for the main figures as PNG too");

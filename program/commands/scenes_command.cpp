@@ -16,8 +16,8 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
-    Options() {
+struct ScenesOptions {
+    ScenesOptions() {
         scenes.false_positive_rates = {0.0};
         scenes.ranges_m = {30.0};
     }
@@ -26,7 +26,7 @@ struct Options {
     std::string out;
 };
 
-void make_scenes(const Options& options) {
+void make_scenes(const ScenesOptions& options) {
     LeftOutScenes left_out;
     std::optional<Progress> progress;
     const SceneSet set =
@@ -47,7 +47,7 @@ void make_scenes(const Options& options) {
 
 void add_scenes_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand("scenes", "scenes from tracks, with their ground truth");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ScenesOptions>();
     command
         .add_option("--tracks", options->tracks,
                     "generated:NAME, fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE")

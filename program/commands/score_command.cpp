@@ -31,7 +31,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct ScoreOptions {
     std::string scenes;
     std::vector<std::string> lanes;
     std::vector<std::string> detectors;
@@ -46,7 +46,7 @@ struct LanesFile {
     std::vector<LaneRecord> records;
 };
 
-std::vector<LanesFile> read_all(const Options& options, std::span<const AnnotatedScene> scenes) {
+std::vector<LanesFile> read_all(const ScoreOptions& options, std::span<const AnnotatedScene> scenes) {
     if (options.lanes.empty() && options.detectors.empty())
         throw InvalidInput("--lanes", "is required, or --methods lanes:NAME=FILE");
     std::unordered_map<std::string, const Scene*> scene_of;
@@ -70,7 +70,7 @@ std::vector<LanesFile> read_all(const Options& options, std::span<const Annotate
     return all;
 }
 
-void score_all(const Options& options) {
+void score_all(const ScoreOptions& options) {
     const std::vector<AnnotatedScene> scenes = read_scenes(options.scenes);
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     TrackBoundariesByName tracks;
@@ -118,7 +118,7 @@ void score_all(const Options& options) {
 void add_score_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "score", "usable lanes, latency and failures of methods; every measure of both papers");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ScoreOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl; *.tracks.json beside it")->required();
     command.add_option("--lanes", options->lanes, "*.lanes.jsonl, one or more");
     command.add_option("--methods", options->detectors,

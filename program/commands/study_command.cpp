@@ -14,7 +14,7 @@
 namespace conelane::experiments {
 namespace {
 
-struct Options {
+struct StudyOptions {
     std::vector<std::unique_ptr<Study>> studies = make_studies();
     std::string out;
 };
@@ -42,7 +42,7 @@ void add_study_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("study", "measures one question; without a name it lists the questions");
     command.require_subcommand(0, 1);
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<StudyOptions>();
     for (const auto& study : options->studies) {
         const StudyDescription& description = study->description();
         const std::string name(description.name);

@@ -33,7 +33,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct TuneOptions {
     std::vector<std::string> tracks;
     SceneOptions scenes;
     EvaluationOptions evaluation;
@@ -46,7 +46,7 @@ struct Options {
 };
 
 /// All that the figures of parameters depend on, `start` for what tuning does not move.
-ordered_json conditions(const Options& options, const RldParameters& start) {
+ordered_json conditions(const TuneOptions& options, const RldParameters& start) {
     ordered_json json{{"commit", provenance().commit},
                       {"tracks", options.tracks},
                       {"objective", to_string(options.evaluation.objective)}};
@@ -146,7 +146,7 @@ void print_failures(const FailureCounts& failures) {
     }
 }
 
-ordered_json record_of(const Options& options, const RldParameters& start, const Tuned& tuned) {
+ordered_json record_of(const TuneOptions& options, const RldParameters& start, const Tuned& tuned) {
     ordered_json record = conditions(options, start);
     record["folds"] = options.tuner.folds;
     record["rounds"] = options.rounds;
@@ -174,7 +174,7 @@ std::filesystem::path record_path(std::filesystem::path parameters) {
     return parameters.replace_extension(".record.json");
 }
 
-void run(Options& options) {
+void run(TuneOptions& options) {
     if (!std::isfinite(options.evaluation.time_limit_ms)) {
         throw InvalidInput("--time-limit", "a tuning records one, inf is none");
     }
@@ -232,7 +232,7 @@ void run(Options& options) {
 void add_tune_command(CLI::App& program) {
     CLI::App& command =
         *program.add_subcommand("tune", "finds the RLD parameters that answer best on given tracks");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TuneOptions>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 6.6;

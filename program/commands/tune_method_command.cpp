@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Options {
+struct TuneMethodOptions {
     std::string detector;
     std::vector<std::string> tracks;
     SceneOptions scenes;
@@ -34,7 +34,7 @@ ordered_json describe(const DetectorFigure& figure) {
     return {{"scenes", figure.scenes}, {"usable", figure.usable}, {"iou", figure.iou}};
 }
 
-ordered_json record_of(const Options& options, const TunedDetector& tuned) {
+ordered_json record_of(const TuneMethodOptions& options, const TunedDetector& tuned) {
     const Provenance origin = provenance();
     ordered_json json{{"method", options.detector},
                       {"commit", origin.commit},
@@ -48,7 +48,7 @@ ordered_json record_of(const Options& options, const TunedDetector& tuned) {
     return json;
 }
 
-void run(Options& options) {
+void run(TuneMethodOptions& options) {
     const TunableDetector& detector = find_tunable_detector(options.detector);
     options.scenes.threads = options.tuning.threads;
     options.tuning.seed = options.scenes.seed;
@@ -77,7 +77,7 @@ void add_tune_method_command(CLI::App& program) {
         "tune-method",
         "finds the parameters of delaunay-beam or astar-lane whose lanes are usable most often on given "
         "tracks");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TuneMethodOptions>();
     options->scenes.false_positive_rates = {0.0, 0.1, 0.3, 0.5};
     options->scenes.ranges_m = {30.0};
     options->scenes.every_m = 8.8;
