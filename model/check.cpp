@@ -209,17 +209,23 @@ class Checker {
         return weight;
     }
 
-    /// Of an edge between a blue and a yellow cone, and of one near the car on the side that its color is
-    /// not.
-    [[nodiscard]] int color_faults(const Edge& edge, bool along_the_heading) const {
-        std::set<ConeColor> colors{scene_.cones[edge.i].color, scene_.cones[edge.j].color};
-        int faults = colors.contains(ConeColor::blue) && colors.contains(ConeColor::yellow) ? 1 : 0;
+    /// How many faults are expected: of an edge between a blue and a yellow cone, and of one near the car on
+    /// the side that its color is not. Sums over what both cones may be.
+    [[nodiscard]] Real color_faults(const Edge& edge, bool along_the_heading) const {
+        const std::array<ColorProbabilities, 2> colors{scene_.cones[edge.i].probabilities(),
+                                                       scene_.cones[edge.j].probabilities()};
+        const auto neither = [&](double ColorProbabilities::*color) {
+            return (1 - static_cast<Real>(colors[0].*color)) * (1 - static_cast<Real>(colors[1].*color));
+        };
+        Real faults = 0;
+        for (const std::size_t blue : {0, 1})
+            faults += static_cast<Real>(colors[blue].blue) * static_cast<Real>(colors[1 - blue].yellow);
         const Vector v = position(edge.j) - position(edge.i);
         if (!along_the_heading || std::abs(dot(v, heading_)) <= kTie) return faults;
         const Real of_axis = wedge(heading_, along(position(edge.i), position(edge.j), 0.5L) - car_);
         const Real of_car = wedge(v, position(edge.i) - car_) * (dot(v, heading_) > 0 ? 1 : -1);
-        if (of_axis < -kTie && of_car < -kTie && colors.contains(ConeColor::blue)) ++faults;
-        if (of_axis > kTie && of_car > kTie && colors.contains(ConeColor::yellow)) ++faults;
+        if (of_axis < -kTie && of_car < -kTie) faults += 1 - neither(&ColorProbabilities::blue);
+        if (of_axis > kTie && of_car > kTie) faults += 1 - neither(&ColorProbabilities::yellow);
         return faults;
     }
 
@@ -296,7 +302,7 @@ class Checker {
             const Real angle = std::atan2(across, std::abs(dot(v, heading_)));
             const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
             if (along_the_heading) ++report_.along_heading;
-            sum += static_cast<Real>(p_.w_color) * static_cast<Real>(color_faults(edge, along_the_heading));
+            sum += static_cast<Real>(p_.w_color) * color_faults(edge, along_the_heading);
             if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge, facing);
         }
         if (report_.along_heading < 2)

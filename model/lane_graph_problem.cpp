@@ -73,15 +73,15 @@ bool within(double value, double limit) {
     return value <= limit + kTieTolerance;
 }
 
-/// Blue cones bound the lane on its left, yellow ones on its right; orange ones stand on both sides.
+/// Blue cones bound the lane on its left, yellow ones on its right; orange ones stand on both sides. The
+/// colors of the two cones are independent.
 double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool along_heading) {
-    const auto either_is = [&](ConeColor color) {
-        return scene.cones[i].color == color || scene.cones[j].color == color;
-    };
-    const bool blue = either_is(ConeColor::blue);
-    const bool yellow = either_is(ConeColor::yellow);
-    double cost = blue && yellow ? 1.0 : 0.0;
-    if (along_heading && (blue || yellow)) {
+    const ColorProbabilities a = scene.cones[i].probabilities();
+    const ColorProbabilities b = scene.cones[j].probabilities();
+    const double blue = a.blue + b.blue - a.blue * b.blue;  // that either is
+    const double yellow = a.yellow + b.yellow - a.yellow * b.yellow;
+    double cost = a.blue * b.yellow + a.yellow * b.blue;
+    if (along_heading && (blue > 0.0 || yellow > 0.0)) {
         const Point& from = scene.cones[i].position;
         const Point v = scene.cones[j].position - from;
         const double ahead = v.dot(scene.pose.heading());
@@ -90,8 +90,7 @@ double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool alon
         const double car_left = std::copysign(1.0, ahead) * cross(v, scene.pose.position - from);
         const bool left_of_car = std::min(midpoint_left, -car_left) > kTieTolerance;
         const bool right_of_car = std::max(midpoint_left, -car_left) < -kTieTolerance;
-        if (std::abs(ahead) > kTieTolerance && ((blue && right_of_car) || (yellow && left_of_car)))
-            cost += 1.0;
+        if (std::abs(ahead) > kTieTolerance) cost += right_of_car ? blue : left_of_car ? yellow : 0.0;
     }
     return cost;
 }

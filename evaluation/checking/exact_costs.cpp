@@ -37,6 +37,15 @@ class Builder {
         without_costs_ = parameters;
         without_costs_.w_v = 0.0;
         without_costs_.w_color = 0.0;
+        if (p_.w_color == 0.0) return;
+        for (const ConeColor color : {ConeColor::blue, ConeColor::yellow}) {
+            Scene& painted = color == ConeColor::blue ? all_blue_ : all_yellow_;
+            painted = scene;
+            for (Cone& cone : painted.cones) {
+                cone.color = color;
+                cone.color_probabilities.reset();
+            }
+        }
     }
 
     ExactScene run() {
@@ -125,12 +134,24 @@ class Builder {
         return best;
     }
 
-    /// By the checker, of an objective that holds nothing else.
-    [[nodiscard]] int color_faults(const Edge& edge) const {
+    /// The checker says on which side the edge is: there it has a fault if all cones have the other side's
+    /// color.
+    [[nodiscard]] Real color_faults(const Edge& edge) const {
         RldParameters colors = p_;
         colors.w_s = colors.w_t = colors.w_p = colors.w_b = colors.w_u = colors.w_v = colors.w_n = 0.0;
         colors.w_color = 1.0;
-        return static_cast<int>(std::lround(check(scene_, colors, {{edge}}).objective.value()));
+        const auto is_fault_in = [&](const Scene& scene) {
+            return std::lround(check(scene, colors, {{edge}}).objective.value()) == 1;
+        };
+        const ColorProbabilities a = scene_.cones[edge.i].probabilities();
+        const ColorProbabilities b = scene_.cones[edge.j].probabilities();
+        const auto either = [](double of_a, double of_b) {
+            return Real(of_a) + Real(of_b) - Real(of_a) * Real(of_b);
+        };
+        Real faults = Real(a.blue) * Real(b.yellow) + Real(a.yellow) * Real(b.blue);
+        if (is_fault_in(all_blue_)) faults += either(a.blue, b.blue);
+        if (is_fault_in(all_yellow_)) faults += either(a.yellow, b.yellow);
+        return faults;
     }
 
     [[nodiscard]] bool are_far_from_each_other(const Edge& a, const Edge& b) const {
@@ -204,6 +225,8 @@ class Builder {
     const Scene& scene_;
     const RldParameters& p_;
     RldParameters without_costs_;
+    Scene all_blue_;  ///< where colors cost; the scene with this color alone
+    Scene all_yellow_;
     Real cos_;
     Real sin_;
     std::vector<Vector> vectors_;  ///< by edge

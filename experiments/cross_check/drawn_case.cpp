@@ -232,6 +232,10 @@ void draw_colors_and_confidences(Scene& scene, Draw& draw) {
     const bool with_confidence = draw.chance(0.3);
     for (Cone& cone : scene.cones) {
         if (with_color) cone.color = kColors[draw.index(kColors.size())];
+        if (with_color && draw.chance(0.2)) {
+            const double blue = rounded(draw.real(0.0, 1.0));
+            cone.color_probabilities = {.blue = blue, .yellow = 1.0 - blue};
+        }
         if (with_confidence) cone.confidence = rounded(draw.real(0.0, 1.0));
     }
 }

@@ -37,6 +37,7 @@ constexpr const char* kDelaunayBeam = "delaunay-beam.json";
 constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
+constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
 
 void write(const fs::path& file, const std::string& text) {
     AtomicFile output(file);
@@ -199,22 +200,53 @@ DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
     return maker_of(find_detector("rld-shape"), learned);
 }
 
-// The weights of front. It draws its scenes itself, so that of the options only seed and threads count.
+// The weights of front. It draws its scenes itself, so that of the options only seed, threads and whether
+// there are colors count. A set for colors is learned as the shipped one was, after the first set.
+
+constexpr double kColoredShare = 0.85;
+constexpr std::size_t kColoredSearchSteps = 5000;
+constexpr double kColoredSearchRate = 7e-4;
+constexpr std::size_t kColoredJudgeSteps = 3000;
+constexpr double kColoredJudgeRate = 1.5e-3;
+
+FrontTrainingRun run_stage(FrontTrainingRunOptions run, const LearningOptions& options) {
+    FrontTrainingOptions& training = run.training;
+    for (std::size_t* steps :
+         {&training.imitation_steps, &training.search_steps, &training.judge_steps, &training.trust_draws})
+        *steps = static_cast<std::size_t>(std::lround(options.front_steps * static_cast<double>(*steps)));
+    return run_front_training(run, {});
+}
+
+FrontTrainingRun learn_colors(FrontTrainingRunOptions run, const LearningOptions& options,
+                              const FrontTrainingRun& first, const fs::path& folder) {
+    FrontTrainingOptions& training = run.training;
+    training.initial = first.weights;
+    training.initial_name = "the first set";
+    training.only_colors = true;
+    training.scenes.colored_share = kColoredShare;
+    training.scenes.noise_scenes = false;
+    training.imitation_steps = 0;
+    training.search_steps = kColoredSearchSteps;
+    training.search_rate = kColoredSearchRate;
+    training.judge_steps = kColoredJudgeSteps;
+    training.judge_rate = kColoredJudgeRate;
+    training.checkpoint = folder / kFrontColorsCheckpoint;
+    FrontTrainingRun colors = run_stage(run, options);
+    fs::remove(training.checkpoint);
+    return colors;
+}
 
 void learn_front(const LearningOptions& options, const fs::path& folder) {
     if (fs::exists(folder / kFrontFoldFile)) return;
     FrontTrainingRunOptions run;
     run.tracks = options.tracks;
-    FrontTrainingOptions& training = run.training;
-    for (std::size_t* steps :
-         {&training.imitation_steps, &training.search_steps, &training.judge_steps, &training.trust_draws})
-        *steps = static_cast<std::size_t>(std::lround(options.front_steps * static_cast<double>(*steps)));
-    training.seed = options.scenes.seed;
-    training.threads = options.scenes.threads;
-    training.checkpoint = folder / kFrontCheckpoint;
-    const FrontTrainingRun result = run_front_training(run, {});
+    run.training.seed = options.scenes.seed;
+    run.training.threads = options.scenes.threads;
+    run.training.checkpoint = folder / kFrontCheckpoint;
+    FrontTrainingRun result = run_stage(run, options);
+    if (options.scenes.with_color) result = learn_colors(run, options, result, folder);
     write(folder / kFrontFoldFile, front_weights_json(result.weights, result.record));
-    fs::remove(training.checkpoint);
+    fs::remove(run.training.checkpoint);
 }
 
 FrontOptions front_options(const fs::path& folder) {

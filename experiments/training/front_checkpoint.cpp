@@ -26,13 +26,17 @@ Eigen::ArrayXd array(const JsonNode& node, Eigen::Index size) {
     return result;
 }
 
+Json names_of(const std::vector<Track>& courses) {
+    Json names = Json::array();
+    for (const Track& track : courses) names.push_back(track.name);
+    return names;
+}
+
 }  // namespace
 
 std::string describe_training(const std::vector<Track>& courses, const FrontTrainingOptions& options) {
-    Json names = Json::array();
-    for (const Track& track : courses) names.push_back(track.name);
     const FrontSearchOptions& search = options.loss.search;
-    Json json{{"tracks", names},
+    Json json{{"tracks", names_of(courses)},
               {"seed", options.seed},
               {"draws_per_step", options.draws_per_step},
               {"scenes",
@@ -68,6 +72,7 @@ std::string describe_training(const std::vector<Track>& courses, const FrontTrai
                 {"learning_rate", options.judge_rate},
                 {"trusted", options.trusted},
                 {"trust_draws", options.trust_draws}}}};
+    if (!options.trust_courses.empty()) json["trust_tracks"] = names_of(options.trust_courses);
     if (options.initial) json["begins_with"] = options.initial_name;
     return json.dump();
 }

@@ -75,30 +75,22 @@ void leave_out(const std::vector<std::string>& names, FrontWeights& weights) {
     }
 }
 
-/// 1 for each weight of an input of colors, 0 for all others.
-FrontWeights weights_of_colors() {
-    FrontWeights result = FrontWeights::zero();
-    const auto mark = [](FrontNetworkWeights& network, const std::vector<std::string_view>& lists) {
-        std::size_t first = 0;
-        for (const std::string_view key : lists) {
-            const auto all = front_feature_lists();
-            const auto list = std::ranges::find(all, key, &FrontFeatureList::key);
-            const std::size_t end = first + list->features.size();
-            for (std::size_t input = end - list->colors; input < end; ++input) {
-                network.linear[input] = 1.0F;
-                std::fill_n(network.hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
-                            kFrontUnits, 1.0F);
-            }
-            first = end;
-        }
-    };
-    mark(result.extend, {"state", "extend"});
-    mark(result.stop, {"state", "stop"});
-    mark(result.start, {"start"});
-    mark(result.rank, {"lane"});
-    mark(result.usable, {"lane"});
-    mark(result.right, {"cone", "state", "extend"});
-    return result;
+/// The set that a training begins with, as weights of their own: while it is learned it serves every scene.
+FrontWeights first_weights(const FrontTrainingOptions& options) {
+    if (!options.initial) return initial_weights(options.seed);
+    const FrontWeightSet& plain = *options.initial;
+    FrontWeights weights;
+    static_cast<FrontWeightSet&>(weights) =
+        options.only_colors ? options.initial->colored.value_or(plain) : plain;
+    return weights;
+}
+
+/// The courses that least_trust is chosen on, all with colors where the set is for colors.
+std::optional<FrontScenes> scenes_of_trust(const FrontTrainingOptions& options) {
+    if (options.trust_courses.empty()) return std::nullopt;
+    FrontSceneOptions scenes = options.scenes;
+    if (options.only_colors) scenes.colored_share = 1.0;
+    return FrontScenes(options.trust_courses, scenes, options.seed);
 }
 
 /// What one draw of a step gives.
@@ -130,16 +122,27 @@ class Training {
     Training(const std::vector<Track>& courses, const FrontTrainingOptions& options)
         : options_(options),
           scenes_(courses, options.scenes, options.seed),
-          weights_(options.initial ? *options.initial : initial_weights(options.seed)),
+          trust_scenes_(scenes_of_trust(options)),
+          weights_(first_weights(options)),
           adam_(static_cast<Eigen::Index>(parameter_count(weights_)), kMinDeviation),
           slots_(options.draws_per_step) {
         leave_out(options.without, weights_);
         values_ = flat(weights_);
-        if (options.only_colors) learned_ = flat(weights_of_colors());
     }
 
     [[nodiscard]] std::size_t steps() const { return first_judging() + options_.judge_steps; }
-    [[nodiscard]] const FrontWeights& weights() const { return weights_; }
+    /// With the set that is not learned, if there is one.
+    [[nodiscard]] FrontWeights weights() const {
+        FrontWeights result = weights_;
+        if (!options_.initial) return result;
+        if (!options_.only_colors) {
+            result.colored = options_.initial->colored;
+            return result;
+        }
+        result = *options_.initial;
+        result.colored = weights_;
+        return result;
+    }
 
     [[nodiscard]] FrontProgress::Stage stage(std::size_t step) const {
         if (step < options_.imitation_steps) return FrontProgress::Stage::move_by_move;
@@ -162,7 +165,6 @@ class Training {
         if (scenes == 0) return;
         leave_out(options_.without, sum);
         Eigen::ArrayXd derivatives = flat(sum) / static_cast<double>(scenes);
-        if (learned_.size() > 0) derivatives *= learned_;
         const double length = std::sqrt(derivatives.square().sum());
         if (length > kMaxGradient) derivatives *= kMaxGradient / length;
         adam_.add(derivatives);
@@ -170,17 +172,17 @@ class Training {
         set(weights_, values_);
     }
 
-    /// Sets least_trust so that on scenes drawn after all those learned from, the share of lanes asked for is
-    /// right up to their trusted length.
+    /// Sets least_trust so that on scenes of trust_courses, or without these on scenes drawn after all those
+    /// learned from, the share of lanes asked for is right up to their trusted length.
     void choose_least_trust() {
-        if (options_.only_colors) return;
         std::vector<std::vector<double>> wrong(options_.trust_draws);
         std::vector<std::size_t> scenes(options_.trust_draws);
         oneapi::tbb::parallel_for(std::size_t{0}, options_.trust_draws, [&](std::size_t i) {
             FrontJudgeLearner learner;
             FrontCost cost(weights_);
             FrontJudge judge(weights_);
-            const FrontScenes::Drawn drawn = scenes_.draw(steps() * slots_.size() + i);
+            const FrontScenes::Drawn drawn =
+                (trust_scenes_ ? *trust_scenes_ : scenes_).draw(steps() * slots_.size() + i);
             scenes[i] = drawn.scenes.size();
             for (const AnnotatedScene& scene : drawn.scenes) {
                 const FrontJudgeLearner::Loss loss =
@@ -296,9 +298,9 @@ class Training {
 
     FrontTrainingOptions options_;
     FrontScenes scenes_;
+    std::optional<FrontScenes> trust_scenes_;
     FrontWeights weights_;
-    Eigen::ArrayXd values_;   ///< of the weights, before they are rounded to float
-    Eigen::ArrayXd learned_;  ///< 1 for each that is learned, else 0; empty where all are
+    Eigen::ArrayXd values_;  ///< of the weights, before they are rounded to float
     Adam adam_;
     std::vector<Slot> slots_;
 };

@@ -21,8 +21,8 @@ struct FrontTrainingOptions {
     /// Weights that the training begins with, instead of drawn ones, and what a record calls them.
     std::optional<FrontWeights> initial;
     std::string initial_name;
-    /// Only the weights of inputs of colors are learned: where no cone has a color, nothing changes. Needs
-    /// `initial`, whose least_trust stays.
+    /// Only FrontWeights::colored is learned, beginning with that of `initial`, or its first set if it has
+    /// none: where no cone has a color, nothing changes. Needs `initial`.
     bool only_colors = false;
     /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
@@ -35,7 +35,9 @@ struct FrontTrainingOptions {
     double judge_rate = 2e-3;
     /// Target share of lanes that are right up to their trusted length.
     double trusted = 0.995;
-    std::size_t trust_draws = 1000;    ///< changed courses that least_trust is chosen on
+    std::size_t trust_draws = 1000;  ///< changed courses that least_trust is chosen on
+    /// The courses of these; without any, those that are learned from.
+    std::vector<Track> trust_courses;
     std::size_t figures_every = 1000;  ///< steps between two measurements on the scenes held out
     std::uint64_t seed = 0;
     unsigned threads = 1;                ///< the weights are the same with any number

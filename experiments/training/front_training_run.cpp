@@ -31,14 +31,28 @@ Json describe(const FrontFigures& figures) {
             {"right_where_trusted", rounded(figures.calibration.right_where_trusted().value_or(0.0))}};
 }
 
+/// Without those that have no annotated boundaries.
+std::vector<Track> annotated_tracks(const std::vector<std::string>& specs) {
+    std::vector<Track> tracks;
+    for (const std::string& spec : specs) std::ranges::move(load_tracks(spec), std::back_inserter(tracks));
+    std::erase_if(tracks, [](const Track& track) { return track.left.empty() || track.right.empty(); });
+    return tracks;
+}
+
+void require_not_trained_on(const std::string& name, const std::vector<Track>& courses, const char* option) {
+    if (std::ranges::find(courses, name, &Track::name) != courses.end())
+        throw InputError("", 0, option, "track '" + name + "' is trained on");
+}
+
 }  // namespace
 
 FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
                                     const std::function<void(const FrontProgress&)>& report) {
-    std::vector<Track> courses;
-    for (const std::string& spec : options.tracks)
-        std::ranges::move(load_tracks(spec), std::back_inserter(courses));
-    std::erase_if(courses, [](const Track& track) { return track.left.empty() || track.right.empty(); });
+    const std::vector<Track> courses = annotated_tracks(options.tracks);
+    FrontTrainingOptions training = options.training;
+    training.trust_courses = annotated_tracks(options.trust_tracks);
+    for (const Track& track : training.trust_courses)
+        require_not_trained_on(track.name, courses, "--trust-tracks");
     std::vector<SceneSet> held_out;
     if (!options.hold_out.empty()) {
         for (const std::string& condition : options.conditions) {
@@ -55,18 +69,16 @@ FrontTrainingRun run_front_training(const FrontTrainingRunOptions& options,
     if (!held_out.empty()) {
         for (const auto& [name, boundaries] : held_out.front().tracks) {
             held_out_names.push_back(name);
-            if (std::ranges::find(courses, name, &Track::name) != courses.end()) {
-                throw InputError("", 0, "--hold-out", "track '" + name + "' is trained on");
-            }
+            require_not_trained_on(name, courses, "--hold-out");
         }
     }
     FrontTrainingRun run;
     std::vector<FrontFigures> last;
-    run.weights = train_front(courses, held_out, options.training, [&](const FrontProgress& progress) {
+    run.weights = train_front(courses, held_out, training, [&](const FrontProgress& progress) {
         last = progress.held_out;
         if (report) report(progress);
     });
-    Json record = Json::parse(describe_training(courses, options.training));
+    Json record = Json::parse(describe_training(courses, training));
     record["hold_out_tracks"] = held_out_names;
     record["hold_out_every"] = options.hold_out_every_m;
     Json figures = Json::object();

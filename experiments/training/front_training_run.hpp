@@ -12,6 +12,9 @@ struct FrontTrainingRunOptions {
     std::vector<std::string>
         tracks;  ///< SPECs of load_tracks; runs without annotated boundaries are left out
     std::vector<std::string> hold_out;  ///< the same; never trained on, only measured
+    /// The same; least_trust is chosen on them. Never trained on. Empty: it is chosen on the tracks trained
+    /// on.
+    std::vector<std::string> trust_tracks;
     double hold_out_every_m = 10.0;
     std::vector<std::string> conditions{"paper", "car"};  ///< a set of held-out scenes each
     std::vector<double> rates{0.0, 0.1, 0.3, 0.5};        ///< of these scenes

@@ -11,8 +11,12 @@ const FrontWeights& valid(const FrontWeights& weights) {
 
 }  // namespace
 
-FrontCost::FrontCost(const FrontWeights& weights)
-    : extend_network_(valid(weights).extend), stop_network_(weights.stop), start_network_(weights.start) {}
+FrontCost::Networks::Networks(const FrontWeightSet& weights)
+    : extend(weights.extend), stop(weights.stop), start(weights.start) {}
+
+FrontCost::FrontCost(const FrontWeights& weights) : plain_(valid(weights)) {
+    if (weights.colored) colored_.emplace(*weights.colored);
+}
 
 std::span<const float> FrontCost::score_starts(FrontMap& map, const FrontStarts& starts) {
     for (const Side side : {kLeft, kRight}) {
@@ -31,8 +35,9 @@ std::span<const float> FrontCost::score_starts(FrontMap& map, const FrontStarts&
     const std::size_t count = starts.pairs.size();
     scores_.resize(2 * count);
     FrontSums sums{};
-    start_network_.begin({}, sums);
-    start_network_.score(sums, 0, starts_, scores_, map.has_colors() ? 0 : kStartColorFeatures);
+    const FrontNetwork& network = networks_for(map).start;
+    network.begin({}, sums);
+    network.score(sums, 0, starts_, scores_, map.has_colors() ? 0 : kStartColorFeatures);
     for (std::size_t i = 0; i < count; ++i) scores_[i] = scores_[2 * i] + scores_[2 * i + 1];
     return std::span(scores_).first(count);
 }
@@ -52,13 +57,14 @@ std::span<const float> FrontCost::score_moves(FrontMap& map, const FrontState& s
     const bool has_colors = map.has_colors();
     const std::span<const float> state_inputs =
         std::span(state_).first(kStateFeatures - (has_colors ? 0 : kStateColorFeatures));
-    extend_network_.begin(state_inputs, sums);
-    extend_network_.score(sums, kStateFeatures, extensions_, std::span(scores_).first(count),
+    const Networks& networks = networks_for(map);
+    networks.extend.begin(state_inputs, sums);
+    networks.extend.score(sums, kStateFeatures, extensions_, std::span(scores_).first(count),
                           has_colors ? 0 : kExtendColorFeatures);
     if (moves.stops) {
         stop_ = stop_features(map, state, side, extensions_);
-        stop_network_.begin(state_inputs, sums);
-        stop_network_.score(sums, kStateFeatures, stop_, std::span(scores_).subspan(count));
+        networks.stop.begin(state_inputs, sums);
+        networks.stop.score(sums, kStateFeatures, stop_, std::span(scores_).subspan(count));
     }
     return scores_;
 }

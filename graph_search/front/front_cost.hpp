@@ -5,6 +5,7 @@
 #include "graph_search/front/front_weights.hpp"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,9 +32,18 @@ class FrontCost {
     [[nodiscard]] std::span<const float> start_features_seen() const { return starts_; }
 
   private:
-    FrontNetwork extend_network_;
-    FrontNetwork stop_network_;
-    FrontNetwork start_network_;
+    struct Networks {
+        explicit Networks(const FrontWeightSet& weights);
+        FrontNetwork extend;
+        FrontNetwork stop;
+        FrontNetwork start;
+    };
+    [[nodiscard]] const Networks& networks_for(const FrontMap& map) const {
+        return colored_ && map.has_colors() ? *colored_ : plain_;
+    }
+
+    Networks plain_;
+    std::optional<Networks> colored_;
     StateFeatures state_{};
     StopFeatures stop_{};
     std::vector<float> extensions_;

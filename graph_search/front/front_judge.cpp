@@ -238,13 +238,15 @@ std::array<FrontFeatureList, 6> front_feature_lists() {
              {"lane", whole_lane_feature_table(), kWholeLaneColorFeatures}}};
 }
 
-FrontJudge::FrontJudge(const FrontWeights& weights)
-    : rank_network_(valid(weights).rank),
-      usable_network_(weights.usable),
-      right_network_(weights.right),
-      least_trust_(weights.least_trust) {}
+FrontJudge::Networks::Networks(const FrontWeightSet& weights)
+    : rank(weights.rank), usable(weights.usable), right(weights.right), least_trust(weights.least_trust) {}
+
+FrontJudge::FrontJudge(const FrontWeights& weights) : plain_(valid(weights)) {
+    if (weights.colored) colored_.emplace(*weights.colored);
+}
 
 void FrontJudge::look(FrontSearch& search, std::span<const Contender> contenders) {
+    sees_colors_ = colored_ && search.map().has_colors();
     scores_.clear();
     for (const Contender& lane : contenders) scores_.push_back(lane.score - search.node(lane.node).bonus);
     double sum = 0.0;
@@ -258,7 +260,7 @@ void FrontJudge::look(FrontSearch& search, std::span<const Contender> contenders
     see_cones(search);
     for (std::size_t i = 0; i < contenders.size(); ++i) {
         see_lane(search, contenders[i], i);
-        rank_[i] = static_cast<double>(rank_network_.score(features_[i]));
+        rank_[i] = static_cast<double>(networks().rank.score(features_[i]));
     }
     order_.resize(contenders.size());
     std::iota(order_.begin(), order_.end(), std::size_t{0});
@@ -359,7 +361,7 @@ void FrontJudge::see_cones(FrontSearch& search) {
             to = std::ranges::copy(state, to).out;
             std::ranges::copy(move, to);
         }
-        step.right = probability_of(static_cast<double>(right_network_.score(step.inputs)));
+        step.right = probability_of(static_cast<double>(networks().right.score(step.inputs)));
     }
 }
 
@@ -380,7 +382,7 @@ void FrontJudge::see_lane(FrontSearch& search, const Contender& lane, std::size_
 }
 
 double FrontJudge::confidence(std::size_t contender) const {
-    return probability_of(static_cast<double>(usable_network_.score(features_[contender])));
+    return probability_of(static_cast<double>(networks().usable.score(features_[contender])));
 }
 
 std::span<const FrontJudge::Reach> FrontJudge::reaches(const FrontSearch& search, std::size_t contender,
@@ -408,7 +410,7 @@ double FrontJudge::trusted_m(const FrontSearch& search, std::size_t contender,
                              const std::array<std::size_t, 2>& cones) {
     double result_m = 0.0;
     for (const Reach& reach : reaches(search, contender, cones)) {
-        if (reach.trust < least_trust_) break;
+        if (reach.trust < networks().least_trust) break;
         result_m = reach.trusted_m;
     }
     return result_m;

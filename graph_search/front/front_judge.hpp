@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,7 +60,8 @@ class FrontJudge {
     /// Valid until the next call.
     [[nodiscard]] std::span<const Reach> reaches(const FrontSearch& search, std::size_t contender,
                                                  const std::array<std::size_t, 2>& cones);
-    /// How far the contender is trusted: up to the last cone whose trust is FrontWeights::least_trust.
+    /// How far the contender is trusted: up to the last cone whose trust is least_trust of the scene's set
+    /// of weights.
     [[nodiscard]] double trusted_m(const FrontSearch& search, std::size_t contender,
                                    const std::array<std::size_t, 2>& cones);
 
@@ -86,10 +88,19 @@ class FrontJudge {
     void see_cones(FrontSearch& search);
     void see_lane(FrontSearch& search, const Contender& lane, std::size_t contender);
 
-    FrontNetwork rank_network_;
-    FrontNetwork usable_network_;
-    FrontNetwork right_network_;
-    double least_trust_;
+    struct Networks {
+        explicit Networks(const FrontWeightSet& weights);
+        FrontNetwork rank;
+        FrontNetwork usable;
+        FrontNetwork right;
+        double least_trust;
+    };
+    /// Those for the scene that was looked at.
+    [[nodiscard]] const Networks& networks() const { return sees_colors_ ? *colored_ : plain_; }
+
+    Networks plain_;
+    std::optional<Networks> colored_;
+    bool sees_colors_ = false;  ///< and there is a set for them
     std::vector<Step> steps_;
     std::vector<std::uint32_t> step_of_node_;
     std::vector<std::uint32_t> on_contenders_;  ///< of each step: a bit for each lane that shares its segment

@@ -8,17 +8,13 @@
 
 namespace conelane {
 
-FrontWeights FrontWeights::zero() {
-    return {FrontNetworkWeights::zero(kExtendInputs),      FrontNetworkWeights::zero(kStopInputs),
-            FrontNetworkWeights::zero(kStartFeatures),     FrontNetworkWeights::zero(kWholeLaneFeatures),
-            FrontNetworkWeights::zero(kWholeLaneFeatures), FrontNetworkWeights::zero(kRightInputs)};
-}
+namespace {
 
-void validate(const FrontWeights& weights) {
-    const auto require = [](const FrontNetworkWeights& network, std::size_t inputs, const char* name) {
-        if (network.inputs != inputs) {
-            throw InvalidInput(std::string(name) + ".inputs", "must be " + std::to_string(inputs));
-        }
+void validate_set(const FrontWeightSet& weights, const std::string& prefix) {
+    const auto require = [&](const FrontNetworkWeights& network, std::size_t inputs, const char* of) {
+        const std::string name = prefix + of;
+        if (network.inputs != inputs)
+            throw InvalidInput(name + ".inputs", "must be " + std::to_string(inputs));
         validate(network, name);
     };
     require(weights.extend, kExtendInputs, "extend");
@@ -28,7 +24,25 @@ void validate(const FrontWeights& weights) {
     require(weights.usable, kWholeLaneFeatures, "usable");
     require(weights.right, kRightInputs, "right");
     if (!(weights.least_trust >= 0.0 && weights.least_trust <= 1.0))
-        throw InvalidInput("least_trust", "must be in [0, 1]");
+        throw InvalidInput(prefix + "least_trust", "must be in [0, 1]");
+}
+
+}  // namespace
+
+FrontWeights FrontWeights::zero() {
+    FrontWeights weights;
+    weights.extend = FrontNetworkWeights::zero(kExtendInputs);
+    weights.stop = FrontNetworkWeights::zero(kStopInputs);
+    weights.start = FrontNetworkWeights::zero(kStartFeatures);
+    weights.rank = FrontNetworkWeights::zero(kWholeLaneFeatures);
+    weights.usable = FrontNetworkWeights::zero(kWholeLaneFeatures);
+    weights.right = FrontNetworkWeights::zero(kRightInputs);
+    return weights;
+}
+
+void validate(const FrontWeights& weights) {
+    validate_set(weights, "");
+    if (weights.colored) validate_set(*weights.colored, "colored_");
 }
 
 }  // namespace conelane

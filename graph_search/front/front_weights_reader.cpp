@@ -22,13 +22,19 @@
 namespace conelane {
 namespace {
 
-/// Files of version 1 have no features of colors: their weights are 0.
-constexpr int kOldVersion = 1;
-constexpr int kVersion = 2;
+/// Files of version 1 have no features of colors: their weights are 0. Those of version 2 have one set of
+/// weights for all scenes, those of version 3 a second one for scenes with colors.
+constexpr int kWithoutColors = 1;
+constexpr int kOneSet = 2;
+constexpr int kTwoSets = 3;
+
+/// What the keys of the second set begin with.
+constexpr std::string_view kOfColors = "colored_";
+constexpr std::string_view kLeastTrust = "least_trust";
 
 /// Of a list, how many a file of that version has.
 std::size_t names_in(const FrontFeatureList& list, int version) {
-    return list.features.size() - (version == kOldVersion ? list.colors : 0);
+    return list.features.size() - (version == kWithoutColors ? list.colors : 0);
 }
 
 /// The names of a file, by list.
@@ -95,11 +101,11 @@ struct NumberList {
     std::size_t each = 1;
 };
 
-/// All lists of numbers of a file.
-std::vector<NumberList> number_lists(FrontWeights& weights) {
-    std::vector<NumberList> lists;
-    const auto add = [&lists](const std::string& name, FrontNetworkWeights& network,
-                              const std::vector<std::string_view>& inputs) {
+/// Adds all lists of numbers of a set.
+void add_lists(const std::string& prefix, FrontWeightSet& weights, std::vector<NumberList>& lists) {
+    const auto add = [&](const char* of, FrontNetworkWeights& network,
+                         const std::vector<std::string_view>& inputs) {
+        const std::string name = prefix + of;
         lists.push_back({name + "_hidden", network.hidden, inputs, kFrontUnits});
         lists.push_back({name + "_hidden_bias", network.hidden_bias, {}});
         lists.push_back({name + "_output", network.output, {}});
@@ -112,7 +118,6 @@ std::vector<NumberList> number_lists(FrontWeights& weights) {
     add("rank", weights.rank, {"lane"});
     add("usable", weights.usable, {"lane"});
     add("right", weights.right, {"cone", "state", "extend"});
-    return lists;
 }
 
 /// Puts the numbers of a file of that version where they belong, and leaves those of other inputs as they
@@ -170,8 +175,13 @@ FrontWeights parse_front_weights(std::string_view text) {
     JsonReader json(text, "weights");
     if (json.next() != '{') json.fail("must be a JSON object, as `conelane train front` writes it");
     FrontWeights weights = FrontWeights::zero();
-    const std::vector<NumberList> lists = number_lists(weights);
+    FrontWeightSet& colored = weights.colored.emplace(weights);
+    std::vector<NumberList> lists;
+    add_lists("", weights, lists);
+    const std::size_t of_one_set = lists.size();
+    add_lists(std::string(kOfColors), colored, lists);
     std::vector<std::vector<float>> numbers(lists.size());
+    const std::string colored_least_trust = std::string(kOfColors) + std::string(kLeastTrust);
     NamesByList names;
     int version = 0;
     std::set<std::string> seen;
@@ -183,14 +193,16 @@ FrontWeights parse_front_weights(std::string_view text) {
             numbers[static_cast<std::size_t>(list - lists.begin())] = read_numbers(json, key);
         } else if (key == "version") {
             const double given = read_number(json, key);
-            for (const int known : {kOldVersion, kVersion}) {
+            for (const int known : {kWithoutColors, kOneSet, kTwoSets}) {
                 if (given == known) version = known;
             }
-            if (version == 0) throw InvalidInput(key, "must be 1 or 2");
+            if (version == 0) throw InvalidInput(key, "must be 1, 2 or 3");
         } else if (key == "features") {
             names = read_features(json);
-        } else if (key == "least_trust") {
+        } else if (key == kLeastTrust) {
             weights.least_trust = read_number(json, key);
+        } else if (key == colored_least_trust) {
+            colored.least_trust = read_number(json, key);
         } else {
             if (key != "training" && unknown.empty()) unknown = key;
             json.skip();
@@ -203,11 +215,19 @@ FrontWeights parse_front_weights(std::string_view text) {
     require("version");
     require("features");
     require_features(names, version);
-    for (std::size_t i = 0; i < lists.size(); ++i) {
+    for (std::size_t i = 0; i < (version == kTwoSets ? lists.size() : of_one_set); ++i) {
         require(lists[i].key);
         place(numbers[i], lists[i], version);
     }
-    require("least_trust");
+    require(std::string(kLeastTrust));
+    if (version == kTwoSets) {
+        require(colored_least_trust);
+    } else {
+        const auto of_colors =
+            std::ranges::find_if(seen, [](const std::string& key) { return key.starts_with(kOfColors); });
+        if (of_colors != seen.end()) throw InvalidInput(*of_colors, "is a key of version 3");
+        weights.colored.reset();
+    }
     if (!unknown.empty()) throw InvalidInput(unknown, "is not a key of weights of front");
     validate(weights);
     return weights;

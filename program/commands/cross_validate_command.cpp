@@ -36,6 +36,9 @@ void run(CrossValidateOptions& options) {
     learned.ranges_m = {30.0, 50.0};
     learned.conditions = options.learning_conditions;
     learned.every_m = options.learning_every_m;
+    learned.with_color = run.comparison.scenes.with_color;
+    learned.color_error_rate = run.comparison.scenes.color_error_rate;
+    learned.color_unknown_rate = run.comparison.scenes.color_unknown_rate;
     learned.seed = run.comparison.scenes.seed;
     learned.threads = options.threads;
     run.comparison.scenes.threads = options.threads;

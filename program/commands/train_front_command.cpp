@@ -90,6 +90,9 @@ void add_train_front_command(CLI::App& train_command) {
         .add_option("--tracks", run.tracks, "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE or eufs:FILE")
         ->required();
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
+    command.add_option("--trust-tracks", run.trust_tracks,
+                       "tracks to choose the threshold of trust on, not to learn from; without them it is "
+                       "chosen on new draws of --tracks");
     add_number_option(command, "--hold-out-every", run.hold_out_every_m,
                       "travel between poses on the tracks held out [m]");
     command.add_option("--condition", run.conditions, "of the scenes held out: paper, car, harsh")
@@ -137,8 +140,8 @@ void add_train_front_command(CLI::App& train_command) {
                       "share of the draws whose cones have colours");
     command.add_flag(
         "--only-colors", training.only_colors,
-        "with --from: only the weights of inputs of colours are learned, so that without colours nothing "
-        "changes");
+        "with --from: only the set of weights for scenes with colours is learned, so that without colours "
+        "nothing changes");
     command.add_flag("!--no-noise-scenes", training.scenes.noise_scenes,
                      "the judge sees no scenes of false cones alone; else a fifth of the draws has one");
     command.add_flag("!--no-short-sight", training.scenes.short_sight,

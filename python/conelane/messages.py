@@ -14,7 +14,7 @@ array([0, 2])
 """
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -41,8 +41,9 @@ class Cones(NamedTuple):
     ----------
     cones : (N, 2) ndarray of float64
         Positions [m], in the frame of the message.
-    colors : (N,) ndarray of uint8
-        Codes of `Color`.
+    colors : (N,) ndarray of uint8, or (N, 5) ndarray of float64
+        Codes of `Color`; or, where the message has them, probabilities of unknown, blue, yellow, small and big
+        orange.
     confidences : (N,) ndarray of float64, or None
         None where the message has none.
     ids : (N,) ndarray of int64, or None
@@ -50,9 +51,20 @@ class Cones(NamedTuple):
     """
 
     cones: FloatArray
-    colors: NDArray[np.uint8]
+    colors: Union[NDArray[np.uint8], FloatArray]
     confidences: Optional[FloatArray] = None
     ids: Optional[NDArray[np.int64]] = None
+
+    @property
+    def labels(self) -> NDArray[np.uint8]:
+        """Codes of `Color` of shape (N,): the most probable ones, big orange cones with the small ones, and unknown
+        where two are equally probable."""
+        if self.colors.ndim == 1:
+            return self.colors.astype(np.uint8)
+        of_labels = np.column_stack([self.colors[:, :3], self.colors[:, 3:].sum(axis=1)])
+        best = of_labels.max(axis=1, keepdims=True)
+        is_tie = (of_labels == best).sum(axis=1) > 1
+        return np.where(is_tie, int(Color.unknown), of_labels.argmax(axis=1)).astype(np.uint8)
 
 
 def _field(message: Any, path: str) -> Any:
@@ -239,14 +251,24 @@ def to_fs_track(cones: ArrayLike, colors: Optional[ArrayLike] = None) -> Dict[st
 
 _PACSIM_CLASSES = 7
 _PACSIM_COLORS = {0: Color.unknown, 2: Color.blue, 3: Color.yellow, 4: Color.orange, 5: Color.orange}
+_PACSIM_SURE = 1e-9  # how far the probability of a class may be below 1 that counts as a label
 _PACSIM_CLASS_OF = {Color.unknown: 0, Color.blue: 2, Color.yellow: 3, Color.orange: 4}
+
+
+def _of_pacsim_classes(probabilities: FloatArray) -> List[float]:
+    """Of unknown, blue, yellow, small and big orange; unknown where all are 0."""
+    if not probabilities.any():
+        return [1.0, 0.0, 0.0, 0.0, 0.0]
+    unknown, invisible, blue, yellow, orange, big_orange, time_keeping = (probabilities / probabilities.sum()).tolist()
+    return [unknown + invisible + time_keeping, blue, yellow, orange, big_orange]
 
 
 def from_pacsim(message: Any) -> Cones:
     """Cones of pacsim/PerceptionDetections, of pacsim/Track, or of a list of their landmarks.
 
-    The class of a landmark is the one of the highest probability. Invisible landmarks and those of the time keeping
-    are no cones and are left out; small and big orange ones are orange.
+    Landmarks whose most probable class is invisible or time keeping are no cones and are left out. `colors` are codes
+    if each cone is of one class with probability 1; small and big orange ones are orange. Else they are the
+    probabilities, divided by their sum, with those of invisible and of time keeping added to unknown.
 
     Parameters
     ----------
@@ -262,7 +284,8 @@ def from_pacsim(message: Any) -> Cones:
     Raises
     ------
     ValueError
-        Naming the field that is missing, and for other than seven classes.
+        Naming the field that is missing; for other than seven classes, and for probabilities that are negative or not
+        finite.
 
     Examples
     --------
@@ -276,19 +299,23 @@ def from_pacsim(message: Any) -> Cones:
         landmarks = [one for name in ("left_lane", "right_lane", "unknown") for one in _field(message, name)]
     else:
         landmarks = list(_field(message, "detections"))
-    kept, colors = [], []
+    kept, colors, soft = [], [], []
     for i, landmark in enumerate(landmarks):
         probabilities = np.asarray(_field(landmark, "class_probabilities"), dtype=np.float64)
         if probabilities.shape != (_PACSIM_CLASSES,):
             raise ValueError(f"landmark {i}: class_probabilities: {probabilities.size} of them, not {_PACSIM_CLASSES}")
+        if not (np.isfinite(probabilities).all() and (probabilities >= 0.0).all()):
+            raise ValueError(f"landmark {i}: class_probabilities: must be finite and at least 0")
         color = _PACSIM_COLORS.get(int(probabilities.argmax()))
         if color is not None:
             kept.append(landmark)
             colors.append(int(color))
+            soft.append(_of_pacsim_classes(probabilities))
+    is_sure = all(max(one) >= 1.0 - _PACSIM_SURE for one in soft)
     has_ids = bool(kept) and all(_has(landmark, "id") for landmark in kept)
     return Cones(
         _positions(_field(landmark, "pose.pose.position") for landmark in kept),
-        np.array(colors, dtype=np.uint8),
+        np.array(colors, dtype=np.uint8) if is_sure else np.array(soft, dtype=np.float64),
         np.array([float(_field(landmark, "detection_probability")) for landmark in kept]),
         np.array([int(_field(landmark, "id")) for landmark in kept], dtype=np.int64) if has_ids else None,
     )

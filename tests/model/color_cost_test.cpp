@@ -59,6 +59,21 @@ TEST(ColorCost, OfAnEdgeOfBothColorsIsOneFarAwayAndTwoBesideTheCar) {
     EXPECT_EQ(color_cost({20, 1.5}, kYellow, {23, 1.5}, kYellow), 0.0);  // far away no side is known
 }
 
+/// Blue with 0.7 and yellow with 0.1 at one end, with 0.4 and 0.5 at the other.
+TEST(ColorCost, OfProbabilitiesIsWhatIsExpected) {
+    const auto cost = [](const Point& from, const Point& to) {
+        Scene scene;
+        scene.cones = {{1, from, ConeColor::yellow}, {2, to, ConeColor::yellow}};  // the labels do not count
+        scene.cones[0].color_probabilities = {.unknown = 0.2, .blue = 0.7, .yellow = 0.1};
+        scene.cones[1].color_probabilities = {.blue = 0.4, .yellow = 0.5, .orange = 0.1};
+        return make_problem(scene, {}).edges.at(0).color_cost;
+    };
+    constexpr double kOfBoth = 0.7 * 0.5 + 0.1 * 0.4;
+    EXPECT_NEAR(cost({20, 1.5}, {23, 1.5}), kOfBoth, 1e-12);
+    EXPECT_NEAR(cost({2, -1.5}, {5, -1.5}), kOfBoth + 0.82, 1e-12);  // 1 - 0.3 * 0.6: one is blue
+    EXPECT_NEAR(cost({2, 1.5}, {5, 1.5}), kOfBoth + 0.55, 1e-12);    // 1 - 0.9 * 0.5: one is yellow
+}
+
 /// Every edge of a problem, each alone, is as dear to the checker as to the problem.
 TEST(ColorCost, IsThatOfTheIndependentChecker) {
     std::size_t faults = 0;
@@ -66,6 +81,9 @@ TEST(ColorCost, IsThatOfTheIndependentChecker) {
         Scene scene = tests::random_scene(seed, 10);
         for (std::size_t i = 0; i < scene.cones.size(); ++i) {
             scene.cones[i].color = (i + seed) % 3 == 0 ? kBlue : kYellow;
+            if (seed % 2 == 0) continue;
+            const double blue = static_cast<double>((7 * i + seed) % 10) / 10.0;
+            scene.cones[i].color_probabilities = {.unknown = 0.1, .blue = blue, .yellow = 0.9 - blue};
         }
         RldParameters parameters;
         parameters.w_color = 100.0;

@@ -96,7 +96,7 @@ class PacSim(unittest.TestCase):
         for one in (message, as_objects(message), self.LANDMARKS):
             cones = messages.from_pacsim(one)
             self.assertEqual(cones.cones.tolist(), [[0, 0], [2, -2], [3, -3], [4, -4], [5, -5]])
-            self.assertEqual(cones.colors.tolist(), KINDS[-1:] + KINDS[:-1])
+            self.assertEqual(cones.labels.tolist(), KINDS[-1:] + KINDS[:-1])
             np.testing.assert_allclose(cones.confidences, [0.0, 0.2, 0.3, 0.4, 0.5])
             self.assertIsNone(cones.ids)
 
@@ -105,7 +105,27 @@ class PacSim(unittest.TestCase):
                  "unknown": [landmark(4, 0, 0, id=9)], "time_keeping_gates": [landmark(1, 1, 6, id=1)]}
         cones = messages.from_pacsim(as_objects(track))
         self.assertEqual(cones.ids.tolist(), [5, 8, 9])
-        self.assertEqual(cones.colors.tolist(), [Color.blue, Color.yellow, Color.unknown])
+        self.assertEqual(cones.labels.tolist(), [Color.blue, Color.yellow, Color.unknown])
+
+    def test_probabilities_are_kept(self):
+        # Classes in the order of PacSim; its invisible and time-keeping ones count as unknown.
+        soft = {**landmark(3, 1, 2), "class_probabilities": [0.1, 0.05, 0.6, 0.1, 0.05, 0.02, 0.08]}
+        twice = {**landmark(3, -1, 3), "class_probabilities": [0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0]}
+        unseen = {**landmark(5, 1, 0), "class_probabilities": [0.0] * 7}
+        cones = messages.from_pacsim([soft, twice, unseen])
+        np.testing.assert_allclose(cones.colors, [[0.23, 0.6, 0.1, 0.05, 0.02], [0, 0, 1, 0, 0], [1, 0, 0, 0, 0]])
+        self.assertEqual(cones.labels.tolist(), [Color.blue, Color.yellow, Color.unknown])
+        conelane.Detector("front").detect(**cones._asdict(), pose=(0, 0, 0))
+        self.assertEqual(messages.from_pacsim([twice, unseen]).colors.tolist(), [Color.yellow, Color.unknown])
+
+    def test_the_label_of_a_tie_is_unknown(self):
+        cones = messages.Cones(np.zeros((2, 2)), np.array([[0, 0.5, 0.5, 0, 0], [0, 0.2, 0.2, 0.3, 0.3]]))
+        self.assertEqual(cones.labels.tolist(), [Color.unknown, Color.orange])
+
+    def test_probabilities_that_are_invalid(self):
+        for wrong in (-0.1, float("nan")):
+            with self.assertRaisesRegex(ValueError, "landmark 0: class_probabilities: must be finite"):
+                messages.from_pacsim([{**landmark(0, 0, 0), "class_probabilities": [wrong, 0, 1, 0, 0, 0, 0]}])
 
     def test_there_and_back(self):
         message = messages.to_pacsim(PLACES, COLORS, confidences=[1, 0.5, 0.25, 0], ids=[4, 3, 2, 1])

@@ -62,6 +62,13 @@ def gap(a, b, c, d):
     return smallest, ends <= smallest + TIE
 
 
+def blue_and_yellow(cone):
+    """Their probabilities, which `color_probabilities` has at places 1 and 2; without it those of the label."""
+    if "color_probabilities" in cone:
+        return cone["color_probabilities"][1:3]
+    return [float(cone.get("color") == color) for color in ("blue", "yellow")]
+
+
 class Model:
     """Rows (1)-(28) over columns a (edges), f (turns), g (cones); (5) and the pairing are added on demand."""
 
@@ -110,14 +117,14 @@ class Model:
             benefit = p["w_b"]
             if p.get("use_confidence"):
                 benefit *= cones[i].get("confidence", 1.0) * cones[j].get("confidence", 1.0)
-            colors = {cones[i].get("color"), cones[j].get("color")}
-            color = int({"blue", "yellow"} <= colors)
+            blue, yellow = zip(blue_and_yellow(cones[i]), blue_and_yellow(cones[j]))
+            color = blue[0] * yellow[1] + blue[1] * yellow[0]
             # Left of the car by its axis and by the edge's own line, taken along the heading; or right by both.
             forward = float(np.dot(v, self.heading))
             lefts = (cross(self.heading, middle - self.car), math.copysign(1, forward) * cross(v, middle - self.car))
-            if along and abs(forward) > TIE and (("blue" in colors and max(lefts) < -TIE)
-                                                 or ("yellow" in colors and min(lefts) > TIE)):
-                color += 1
+            if along and abs(forward) > TIE:
+                wrong = blue if max(lefts) < -TIE else yellow if min(lefts) > TIE else (0.0, 0.0)
+                color += 1 - (1 - wrong[0]) * (1 - wrong[1])
             self.cost[column] = p["w_s"] * s + p["w_p"] * heading + p.get("w_color", 0.0) * color - benefit
             if "w_v" in p:
                 self.cost[column] += p["w_v"] * self.facing_cost(i, j)

@@ -330,6 +330,7 @@ Scene colored(Scene scene, std::uint64_t seed) {
         const int draw = boost::random::uniform_int_distribution<int>(0, 3)(random);
         cone.color = draw == 0 ? ConeColor::blue : draw == 1 ? ConeColor::yellow : ConeColor::unknown;
         cone.confidence = 0.4 + 0.15 * draw;
+        if (draw == 3) cone.color_probabilities = {.unknown = 0.3, .blue = 0.6, .yellow = 0.1};
     }
     return scene;
 }

@@ -285,33 +285,54 @@ TEST(FrontTraining, BeginsWithTheWeightsThatAreGiven) {
     EXPECT_NE(weights.usable, options.initial->usable);
     EXPECT_THAT(describe_training(courses(), options),
                 testing::HasSubstr(R"("begins_with":"0123456789abcdef")"));
-    // Of inputs of colors alone: nothing else changes, nor does what is made of scenes without colors.
-    options.only_colors = true;
-    options.search_steps = 2;
+    // A set for colors that the training does not learn stays.
+    options.initial->colored = random_front_weights(5);
+    EXPECT_EQ(train_front(courses(), {}, options, {}).colored, options.initial->colored);
+    options.initial->stop.linear.pop_back();
+    EXPECT_THROW((void)train_front(courses(), {}, options, {}), InvalidInput);
+}
+
+/// The set for colors learns what a training of one set does that begins with the same numbers.
+TEST(FrontTraining, LearnsTheSetForColorsAlone) {
+    FrontTrainingOptions options = quick();
+    options.imitation_steps = 0;
     options.scenes.colored_share = 1.0;
-    const FrontWeights colored = train_front(courses(), {}, options, {});
-    EXPECT_NE(colored.extend, options.initial->extend);
-    EXPECT_EQ(colored.least_trust, options.initial->least_trust);
-    EXPECT_EQ(colored.extend.hidden_bias, options.initial->extend.hidden_bias);
-    EXPECT_EQ(colored.right.output, options.initial->right.output);
-    for (std::size_t input = 0; input < kExtendInputs; ++input) {
-        const bool of_state = input < kStateFeatures;
-        const std::string_view name = of_state ? state_feature_table()[input].name
-                                               : extend_feature_table()[input - kStateFeatures].name;
-        if (name.starts_with("color_")) continue;
-        EXPECT_EQ(colored.extend.linear[input], options.initial->extend.linear[input]) << name;
-        const auto row = [&](const FrontNetworkWeights& network) {
-            return std::vector<float>(
-                network.hidden.begin() + static_cast<std::ptrdiff_t>(input * kFrontUnits),
-                network.hidden.begin() + static_cast<std::ptrdiff_t>((input + 1) * kFrontUnits));
-        };
-        EXPECT_EQ(row(colored.extend), row(options.initial->extend)) << name;
-    }
+    options.initial = random_front_weights(4);
+    options.only_colors = true;
+    const FrontWeights weights = train_front(courses(), {}, options, {});
+    const auto first_set = [](const FrontWeights& of) -> const FrontWeightSet& { return of; };
+    EXPECT_EQ(first_set(weights), first_set(*options.initial));
+    FrontTrainingOptions of_one_set = options;
+    of_one_set.only_colors = false;
+    EXPECT_EQ(weights.colored, first_set(train_front(courses(), {}, of_one_set, {})));
+    EXPECT_NE(weights.colored, first_set(*options.initial));
+    // It begins with the set for colors of the weights that are given.
+    options.initial->colored = random_front_weights(5);
+    options.search_steps = 0;
+    options.judge_steps = 0;
+    FrontWeights unchanged = train_front(courses(), {}, options, {});
+    unchanged.colored.value().least_trust = options.initial->colored->least_trust;
+    EXPECT_EQ(unchanged, *options.initial);
     FrontTrainingOptions drawn = options;
     drawn.initial.reset();
     EXPECT_THROW((void)train_front(courses(), {}, drawn, {}), InvalidInput);
-    options.initial->stop.linear.pop_back();
-    EXPECT_THROW((void)train_front(courses(), {}, options, {}), InvalidInput);
+}
+
+/// Of lanes of random weights hardly any is right, so the threshold depends on what is drawn.
+TEST(FrontTraining, ChoosesTheThresholdOfTrustOnOtherCourses) {
+    FrontTrainingOptions options = quick();
+    options.initial = random_front_weights(4);
+    options.initial->usable = random_network(kWholeLaneFeatures, 7);
+    options.initial->right = random_network(kRightInputs, 8);
+    options.imitation_steps = options.search_steps = options.judge_steps = 0;
+    options.trusted = 0.7;
+    options.trust_draws = 20;
+    FrontWeights weights = train_front(courses(), {}, options, {});
+    options.trust_courses = std::vector{generate_track("slalom", 5)};
+    FrontWeights others = train_front(courses(), {}, options, {});
+    EXPECT_NE(weights.least_trust, others.least_trust);
+    others.least_trust = weights.least_trust;
+    EXPECT_EQ(weights, others);
 }
 
 TEST(FrontScenes, DrawTheSameForTheSameNumber) {
@@ -493,6 +514,11 @@ TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
     EXPECT_THAT(run.record, testing::HasSubstr(R"("tracks":["slalom@1"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("hold_out_tracks":["kidney@2"])"));
     EXPECT_THAT(run.record, testing::HasSubstr(R"("beam":6)"));
+    options.trust_tracks = {"generated:kidney@3"};
+    EXPECT_THAT(run_front_training(options, {}).record, testing::HasSubstr(R"("trust_tracks":["kidney@3"])"));
+    options.trust_tracks = options.tracks;
+    EXPECT_THROW((void)run_front_training(options, {}), InputError);
+    options.trust_tracks.clear();
     options.hold_out = options.tracks;
     EXPECT_THROW((void)run_front_training(options, {}), InputError);
 }
@@ -500,6 +526,36 @@ TEST(FrontTraining, ARunRecordsWhatItDependedOn) {
 TEST(FrontWeightsFile, GivesTheSameWeightsBack) {
     const FrontWeights weights = random_front_weights(8);
     EXPECT_TRUE(parse_front_weights(front_weights_json(weights, R"({"seed": 1})")) == weights);
+}
+
+TEST(FrontWeightsFile, HasASetForColors) {
+    FrontWeights weights = random_front_weights(8);
+    weights.colored = random_front_weights(9);
+    weights.colored->least_trust = 0.625;
+    const std::string text = front_weights_json(weights, "{}");
+    EXPECT_TRUE(parse_front_weights(text) == weights);
+    const auto key_of = [](const nlohmann::ordered_json& json) -> std::string {
+        try {
+            (void)parse_front_weights(json.dump());
+        } catch (const InvalidInput& error) {
+            return error.key();
+        }
+        return "accepted";
+    };
+    for (const std::string key : {"colored_start_linear", "colored_least_trust"}) {
+        auto json = nlohmann::ordered_json::parse(text);
+        json.erase(key);
+        EXPECT_EQ(key_of(json), key);
+        json["version"] = 2;
+        EXPECT_TRUE(key_of(json).starts_with("colored_")) << "of version 3";
+    }
+    weights.colored->stop.linear.pop_back();
+    try {
+        validate(weights);
+        FAIL();
+    } catch (const InvalidInput& error) {
+        EXPECT_EQ(error.key(), "colored_stop.linear");
+    }
 }
 
 TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
@@ -578,7 +634,8 @@ TEST(FrontWeightsFile, ErrorsNameTheKey) {
         }
         return "accepted";
     };
-    EXPECT_EQ(key_of("\"version\": 2", "\"version\": 3"), "version");
+    EXPECT_EQ(key_of("\"version\": 2", "\"version\": 4"), "version");
+    EXPECT_EQ(key_of("\"version\": 2", "\"version\": 3"), "colored_extend_hidden");
     EXPECT_EQ(key_of("\"version\": 2", "\"version\": 1"), "features");  // which has no colors
     EXPECT_EQ(key_of("own_segment_known", "unknown"), "features");
     EXPECT_EQ(key_of("\"stop_linear\"", "\"stop_lines\""), "stop_linear");

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -247,6 +248,28 @@ TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
             whole_m += segment_m(side, i) / 2.0;
     }
     EXPECT_NEAR(trusted_m(0.0), whole_m, 1e-5);
+}
+
+/// Scenes without colors are answered by the first set of weights alone, the others by the set for them.
+TEST(FrontJudge, ScenesWithColorsHaveWeightsOfTheirOwn) {
+    FrontWeights first = random_front_weights(1);
+    first.usable.output_bias = 1.0F;
+    FrontWeights second = random_front_weights(2);
+    second.usable.output_bias = 2.0F;
+    second.least_trust = 0.0;
+    FrontWeights both = first;
+    both.colored = second;
+    Scene scene = tests::random_scene(3, 24);
+    const auto answer_of = [&](const FrontWeights& weights) {
+        const LaneAnswer answer = make_front_detector({weights, {}})->detect(scene, tests::kNoTimeLimit);
+        EXPECT_EQ(answer.status, LaneStatus::found);
+        return std::tuple(answer.lane.left, answer.lane.right, answer.confidence, answer.trusted_m);
+    };
+    EXPECT_EQ(answer_of(both), answer_of(first));
+    scene.cones.front().color = ConeColor::blue;
+    EXPECT_EQ(answer_of(both), answer_of(second));
+    EXPECT_NE(std::get<0>(answer_of(first)), std::get<0>(answer_of(second)));
+    EXPECT_NE(std::get<3>(answer_of(first)), std::get<3>(answer_of(second)));
 }
 
 TEST(FrontJudge, DetectorSaysWhatItThinksOfItsBestLanes) {
