@@ -32,6 +32,10 @@ class Verification {
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
         if (p_.w_color > 0.0) violated("certificates are for the model without colour costs");
+        if (p_.learned_costs)
+            violated("certificates of a root bound are for the model without learned costs");
+        if (p_.d_gap > p_.d_e)
+            violated("certificates of a root bound are for the model without edges over gaps");
         check_multipliers();
         check_cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);

@@ -1,9 +1,12 @@
 #include "conelane/check.hpp"
 
+#include "model/learned_reference.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace conelane {
@@ -229,6 +232,34 @@ class Checker {
         return faults;
     }
 
+    [[nodiscard]] Real spacing(std::size_t a, std::size_t b) const {
+        return fourth((length(position(b) - position(a)) - static_cast<Real>(p_.d_e)) /
+                      static_cast<Real>(p_.d_t));
+    }
+    /// By how much the way from one cone by another on to a third one is off straight on.
+    [[nodiscard]] Real bend(std::size_t from, std::size_t by, std::size_t to) const {
+        const Vector back = position(from) - position(by);
+        const Vector on = position(to) - position(by);
+        return std::numbers::pi_v<Real> - std::atan2(std::abs(wedge(back, on)), dot(back, on));
+    }
+    [[nodiscard]] bool is_straight(std::size_t from, std::size_t by, std::size_t to) const {
+        return bend(from, by, to) <= static_cast<Real>(p_.theta_gap) + kTie;
+    }
+    /// Whether an edge that exceeds s_crit is allowed over a gap.
+    [[nodiscard]] bool is_gap(const Edge& edge) const {
+        const Real apart = length(position(edge.j) - position(edge.i));
+        if (apart > static_cast<Real>(p_.d_gap) + kTie || apart <= static_cast<Real>(p_.d_e)) return false;
+        const auto goes_on = [&](std::size_t from, std::size_t to) {
+            for (std::size_t on = 0; on < scene_.cones.size(); ++on) {
+                if (on == from || on == to || length(position(on) - position(to)) < kMinEdge) continue;
+                if (spacing(to, on) <= static_cast<Real>(p_.s_crit) + kTie && is_straight(from, to, on))
+                    return true;
+            }
+            return false;
+        };
+        return goes_on(edge.i, edge.j) && goes_on(edge.j, edge.i);
+    }
+
     /// An edge that may be part of a boundary, and so may face another one.
     struct FacingEdge {
         std::size_t k;
@@ -285,13 +316,18 @@ class Checker {
     void costs() {
         Real sum = 0;
         const std::vector<FacingEdge> facing = p_.w_v > 0 ? facing_edges() : std::vector<FacingEdge>{};
+        std::optional<LearnedReference<Real>> learned;
+        if (p_.learned_costs) learned.emplace(scene_, p_);
+        std::set<std::pair<std::size_t, std::size_t>> gaps;
         for (const Edge& edge : graph_.edges) {
             const Vector from = position(edge.i);
             const Vector to = position(edge.j);
             const Vector v = to - from;
             const Real spacing = fourth((length(v) - static_cast<Real>(p_.d_e)) / static_cast<Real>(p_.d_t));
-            if (spacing > static_cast<Real>(p_.s_crit) + kTie)
-                violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
+            if (spacing > static_cast<Real>(p_.s_crit) + kTie) {
+                if (!is_gap(edge)) violated_for_good("(27) edge " + name(edge) + " exceeds s_crit");
+                gaps.emplace(std::min(edge.i, edge.j), std::max(edge.i, edge.j));
+            }
             if (length(v) < kMinEdge) violated_for_good("edge " + name(edge) + " has no length");
             const Real across = std::abs(wedge(v, heading_));
             const Real car_distance = std::max(length(along(from, to, 0.5L) - car_), 0.5L);
@@ -302,7 +338,9 @@ class Checker {
             const Real angle = std::atan2(across, std::abs(dot(v, heading_)));
             const bool along_the_heading = close && angle <= static_cast<Real>(p_.theta_heading) + kTie;
             if (along_the_heading) ++report_.along_heading;
-            sum += static_cast<Real>(p_.w_color) * color_faults(edge, along_the_heading);
+            const Real faults = color_faults(edge, along_the_heading);
+            sum += static_cast<Real>(p_.w_color) * faults;
+            if (learned) sum += learned->edge(std::min(edge.i, edge.j), std::max(edge.i, edge.j), faults);
             if (p_.w_v > 0) sum += static_cast<Real>(p_.w_v) * facing_cost(edge, facing);
         }
         if (report_.along_heading < 2)
@@ -310,6 +348,11 @@ class Checker {
                      " edges along the heading instead of 2");
         for (const auto& [cone, others] : neighbours_) {
             if (others.size() == 1 && is_near(cone)) sum -= near_end_benefit(cone);
+            if (others.size() == 1 && learned)
+                sum += is_near(cone) ? learned->near_end(cone) : learned->far_end(cone);
+            const auto over_gap = [&, cone = cone](std::size_t other) {
+                return gaps.contains({std::min(cone, other), std::max(cone, other)});
+            };
             for (std::size_t a = 0; a < others.size(); ++a) {
                 for (std::size_t b = a + 1; b < others.size(); ++b) {
                     const Vector to_a = position(others[a]) - position(cone);
@@ -319,6 +362,11 @@ class Checker {
                         fourth((angle - static_cast<Real>(p_.theta_e)) / static_cast<Real>(p_.theta_t));
                     if (cost > static_cast<Real>(p_.t_crit) + kTie)
                         violated_for_good("(28) the angle at cone " + name(cone) + " exceeds t_crit");
+                    if ((over_gap(others[a]) || over_gap(others[b])) &&
+                        !is_straight(others[a], cone, others[b])) {
+                        violated_for_good("gap: the angle at cone " + name(cone) + " exceeds theta_gap");
+                    }
+                    if (learned) sum += learned->turn(others[a], cone, others[b]);
                     const Real uneven = (length(to_a) - length(to_b)) / static_cast<Real>(p_.d_t);
                     sum += static_cast<Real>(p_.w_t) * cost + static_cast<Real>(p_.w_u) * uneven * uneven;
                 }

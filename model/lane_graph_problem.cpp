@@ -2,12 +2,15 @@
 
 #include "model/deadline.hpp"
 #include "model/geometry.hpp"
+#include "model/learned_features.hpp"
 #include "model/near_edges.hpp"
 #include "model/shape_costs.hpp"
 #include "model/valid_scene_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
 #include <utility>
 
 namespace conelane {
@@ -126,6 +129,58 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
             !within(spacing_cost, p.s_crit) || length < kMinEdge_m};
 }
 
+/// Whether three cones bend by at most theta_gap at the middle one.
+bool is_straight(const Scene& scene, std::size_t before, std::size_t middle, std::size_t after,
+                 const RldParameters& p) {
+    const double angle = interior_angle(scene.cones[before].position, scene.cones[middle].position,
+                                        scene.cones[after].position);
+    return within(std::numbers::pi - angle, p.theta_gap);
+}
+
+/// Allows the edges over gaps: longer than s_crit allows, at most d_gap, and both their ends go straight on
+/// by an edge within s_crit. Precondition: all edges within s_crit are listed, and no gaps.
+void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, LaneGraphProblem& problem,
+               Limits& limits) {
+    const RldParameters& p = problem.parameters;
+    const std::size_t n = problem.cone_count;
+    if (p.d_gap <= p.d_e) return;
+    std::vector<std::vector<std::size_t>> next(n);
+    for (const ProblemEdge& edge : problem.edges) {
+        if (edge.high_cost) continue;
+        next[edge.i].push_back(edge.j);
+        next[edge.j].push_back(edge.i);
+    }
+    const auto goes_on = [&](std::size_t from, std::size_t to) {
+        return std::ranges::any_of(next[to],
+                                   [&](std::size_t on) { return is_straight(scene, from, to, on, p); });
+    };
+    std::vector<ProblemEdge> gaps;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (limits.stop(problem, 10 * (n - i))) return;
+        for (std::size_t j = i + 1; j < n; ++j) {
+            const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
+            if (!within(distance, p.d_gap) || distance <= p.d_e ||
+                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit) || !goes_on(i, j) ||
+                !goes_on(j, i))
+                continue;
+            ProblemEdge edge = make_problem_edge(scene, heading, p, i, j, distance);
+            edge.high_cost = false;
+            edge.gap = true;
+            gaps.push_back(edge);
+        }
+    }
+    const auto cones = [](const ProblemEdge& edge) { return std::pair(edge.i, edge.j); };
+    if (extent == EdgeExtent::all_pairs) {  // every pair is listed
+        for (const ProblemEdge& gap : gaps)
+            *std::ranges::lower_bound(problem.edges, cones(gap), {}, cones) = gap;
+        return;
+    }
+    std::vector<ProblemEdge> all;
+    all.reserve(problem.edges.size() + gaps.size());
+    std::ranges::merge(problem.edges, gaps, std::back_inserter(all), {}, cones, cones);
+    problem.edges = std::move(all);
+}
+
 /// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
 /// forbid_crossing those that cross too.
 void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
@@ -155,7 +210,7 @@ void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limit
 /// Precondition: all edges are listed.
 void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const RldParameters& p = problem.parameters;
-    if (p.w_v > 0.0) {
+    if (p.w_v > 0.0 || p.learned_costs) {
         const auto stop = [&](std::size_t pairs) { return limits.stop(problem, 4 * pairs); };
         const std::vector<double> facing = facing_costs(scene, problem.edges, p, stop);
         if (limits.struck()) return;
@@ -173,8 +228,25 @@ void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limi
     }
 }
 
-/// Precondition: edges and the fit of near ends are known.
-void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
+/// Adds those of edges and ends. Precondition: all edges are listed, with their shape costs.
+void add_learned_costs(const LearnedFeatures& features, LaneGraphProblem& problem, Limits& limits) {
+    const LearnedCosts& costs = *problem.parameters.learned_costs;
+    for (std::size_t i = 0; i < problem.cone_count; ++i) {
+        const double cost = problem.near[i] ? costs.of(LearnedPart::near_end)(features.near_end(i))
+                                            : costs.of(LearnedPart::far_end)(features.far_end(i));
+        problem.learned_end_cost[i] = std::min(0.0, cost);
+    }
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+        if (limits.stop(problem, 100 + 2 * problem.cone_count)) return;
+        ProblemEdge& edge = problem.edges[e];
+        if (!edge.high_cost) edge.learned_cost = costs.of(LearnedPart::edge)(features.edge(e));
+        edge.cost += edge.learned_cost + problem.learned_end_cost[edge.i] + problem.learned_end_cost[edge.j];
+    }
+}
+
+/// Precondition: edges and what ends cost are known. `features`: for learned costs, else null.
+void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphProblem& problem,
+                Limits& limits) {
     const RldParameters& p = problem.parameters;
     const auto other_end = [&](std::size_t edge, std::size_t cone) {
         const ProblemEdge& e = problem.edges[edge];
@@ -187,9 +259,11 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     for (std::size_t middle = 0; middle < problem.cone_count; ++middle) {
         const std::vector<std::size_t>& incident = problem.incident[middle];
         const Point& at = scene.cones[middle].position;
-        const double end_cost = 2.0 * p.w_n * problem.near_end_fit[middle];
+        const double end_cost =
+            2.0 * p.w_n * problem.near_end_fit[middle] - 2.0 * problem.learned_end_cost[middle];
         for (std::size_t first = 0; first < incident.size(); ++first) {
-            if (limits.stop(problem, 20 * (incident.size() - first))) return;
+            const std::size_t work = features != nullptr ? 200 : 20;
+            if (limits.stop(problem, work * (incident.size() - first))) return;
             for (std::size_t second = first + 1; second < incident.size(); ++second) {
                 // Ascending edges at a cone have ascending other ends.
                 const Point& before = scene.cones[other_end(incident[first], middle)].position;
@@ -198,9 +272,18 @@ void find_turns(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
                 const double angle_cost = fourth_power((angle - p.theta_e) / p.theta_t);  // (20)
                 const double uneven =
                     p.w_u > 0.0 ? unevenness((before - at).norm(), (after - at).norm(), p) : 0.0;
+                const ProblemEdge& e = problem.edges[incident[first]];
+                const ProblemEdge& f = problem.edges[incident[second]];
+                const bool too_sharp = !within(angle_cost, p.t_crit) ||
+                                       ((e.gap || f.gap) && !within(std::numbers::pi - angle, p.theta_gap));
+                double learned = 0.0;
+                if (features != nullptr && !too_sharp && !e.high_cost && !f.high_cost) {
+                    learned = std::max(0.0, p.learned_costs->of(LearnedPart::turn)(features->turn(
+                                                incident[first], incident[second], middle, angle_cost)));
+                }
                 problem.turns.push_back({incident[first], incident[second], middle, angle_cost, uneven,
-                                         p.w_t * angle_cost + p.w_u * uneven + end_cost,
-                                         !within(angle_cost, p.t_crit)});
+                                         p.w_t * angle_cost + p.w_u * uneven + end_cost + learned, too_sharp,
+                                         learned});
             }
         }
     }
@@ -303,10 +386,17 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
         problem.near[i] = within((scene.cones[i].position - scene.pose.position).norm(), parameters.d_near);
     }
     find_edges(scene, extent, problem, limits);
+    find_gaps(scene, scene.pose.heading(), extent, problem, limits);
     if (limits.stop(problem)) return problem;
     find_incident(problem);
     add_shape_costs(scene, problem, limits);
-    if (!limits.stop(problem)) find_turns(scene, problem, limits);
+    problem.learned_end_cost.assign(n, 0.0);
+    std::optional<LearnedFeatures> features;
+    if (parameters.learned_costs && !limits.stop(problem)) {
+        features.emplace(scene, problem, [&](std::size_t work) { return limits.stop(problem, work); });
+        if (!limits.stop(problem)) add_learned_costs(*features, problem, limits);
+    }
+    if (!limits.stop(problem)) find_turns(scene, features ? &*features : nullptr, problem, limits);
     if (!limits.stop(problem)) find_conflicts(scene, problem, limits);
     limits.stop(problem);
     return problem;

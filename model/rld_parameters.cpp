@@ -1,6 +1,7 @@
 #include "conelane/rld_parameters.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "conelane/learned_costs.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,6 +11,8 @@ namespace conelane {
 namespace {
 
 constexpr double kMaxLength_m = 1000.0;
+/// Beyond three missing cones an edge says nothing.
+constexpr double kMaxGap_m = 20.0;
 constexpr double kMaxWeight = 1e6;
 /// What a difference is divided by [m] or [rad]. Below a millimetre, costs depend on rounding.
 constexpr double kMinThreshold = 1e-3;
@@ -33,7 +36,7 @@ constexpr std::array<RldParameterField, 15> kFields{{
     {"t_crit", &P::t_crit, "1", 0.0, kMaxWeight, "largest angle cost"},
 }};
 
-constexpr std::array<RldParameterField, 8> kExtraFields{{
+constexpr std::array<RldParameterField, 10> kExtraFields{{
     {"w_color", &P::w_color, "1", 0.0, kMaxWeight, "weight of the colour cost"},
     {"w_u", &P::w_u, "1", 0.0, kMaxWeight, "weight of uneven spacing"},
     {"w_v", &P::w_v, "1", 0.0, kMaxWeight, "weight of the facing cost"},
@@ -42,6 +45,8 @@ constexpr std::array<RldParameterField, 8> kExtraFields{{
     {"d_v", &P::d_v, "m", kMinThreshold, kMaxLength_m, "facing threshold"},
     {"theta_v", &P::theta_v, "rad", kMinThreshold, std::numbers::pi, "facing angle threshold"},
     {"d_l", &P::d_l, "m", kMinThreshold, kMaxLength_m, "facing length threshold"},
+    {"d_gap", &P::d_gap, "m", 0.0, kMaxGap_m, "largest length of an edge over a gap"},
+    {"theta_gap", &P::theta_gap, "rad", 0.0, std::numbers::pi, "largest angle at an edge over a gap"},
 }};
 
 void require_in_range(const RldParameterField& field, const RldParameters& parameters) {
@@ -88,6 +93,7 @@ bool has_shape_costs(const RldParameters& parameters) {
 void validate(const RldParameters& parameters) {
     for (const RldParameterField& field : kFields) require_in_range(field, parameters);
     for (const RldParameterField& field : kExtraFields) require_in_range(field, parameters);
+    if (parameters.learned_costs) validate(*parameters.learned_costs);
 }
 
 }  // namespace conelane

@@ -1,6 +1,7 @@
 #include "evaluation/checking/exact_costs.hpp"
 
 #include "conelane/check.hpp"
+#include "model/learned_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +38,9 @@ class Builder {
         without_costs_ = parameters;
         without_costs_.w_v = 0.0;
         without_costs_.w_color = 0.0;
-        if (p_.w_color == 0.0) return;
+        without_costs_.learned_costs.reset();
+        if (p_.learned_costs) learned_.emplace(scene_, p_);
+        if (p_.w_color == 0.0 && !learned_) return;
         for (const ConeColor color : {ConeColor::blue, ConeColor::yellow}) {
             Scene& painted = color == ConeColor::blue ? all_blue_ : all_yellow_;
             painted = scene;
@@ -111,7 +114,9 @@ class Builder {
         Real cost = Real(p_.w_s) * fourth((lengths_[e] - Real(p_.d_e)) / Real(p_.d_t)) +
                     Real(p_.w_p) * fourth(across(vectors_[e]) / car_distance) - benefit;
         if (p_.w_v > 0.0) cost += Real(p_.w_v) * facing_cost(e);
-        if (p_.w_color > 0.0) cost += Real(p_.w_color) * color_faults(edge);
+        const Real faults = p_.w_color > 0.0 || learned_ ? color_faults(edge) : Real(0);
+        if (p_.w_color > 0.0) cost += Real(p_.w_color) * faults;
+        if (learned_) cost += learned_->edge(edge.i, edge.j, faults);
         return cost;
     }
 
@@ -122,6 +127,8 @@ class Builder {
         for (std::size_t f = 0; f < result_.edges.size(); ++f) {
             const Edge& other = result_.edges[f];
             if (other.i == edge.i || other.i == edge.j || other.j == edge.i || other.j == edge.j) continue;
+            if (fourth((lengths_[f] - Real(p_.d_e)) / Real(p_.d_t)) > Real(p_.s_crit) + Real("1e-9"))
+                continue;  // over a gap
             const Vector way{middles_[f].x - middles_[e].x, middles_[f].y - middles_[e].y};
             const Real ahead = dot(way, vectors_[e]) / lengths_[e];
             const Real off_width = abs(wedge(vectors_[e], way)) / lengths_[e] - Real(p_.d_w);
@@ -140,6 +147,7 @@ class Builder {
         RldParameters colors = p_;
         colors.w_s = colors.w_t = colors.w_p = colors.w_b = colors.w_u = colors.w_v = colors.w_n = 0.0;
         colors.w_color = 1.0;
+        colors.learned_costs.reset();
         const auto is_fault_in = [&](const Scene& scene) {
             return std::lround(check(scene, colors, {{edge}}).objective.value()) == 1;
         };
@@ -198,8 +206,10 @@ class Builder {
         const Vector back = from_to(result_.head(a), result_.tail(a));
         const Vector on = from_to(result_.head(a), result_.head(b));
         const Real angle = atan2(abs(wedge(back, on)), dot(back, on));
-        return Real(p_.w_t) * fourth((angle - Real(p_.theta_e)) / Real(p_.theta_t)) +
-               Real(p_.w_u) * square((lengths_[a / 2] - lengths_[b / 2]) / Real(p_.d_t));
+        Real cost = Real(p_.w_t) * fourth((angle - Real(p_.theta_e)) / Real(p_.theta_t)) +
+                    Real(p_.w_u) * square((lengths_[a / 2] - lengths_[b / 2]) / Real(p_.d_t));
+        if (learned_) cost += learned_->turn(result_.tail(a), result_.head(a), result_.head(b));
+        return cost;
     }
 
     void find_ends() {
@@ -211,7 +221,10 @@ class Builder {
             result_.near.push_back(place.length() <= Real(p_.d_near) + tie);
             const Real off = (across(place) - Real(p_.d_w) / 2) / Real(p_.d_t);
             const Real fit = std::max(Real(0), Real(1 - square(off)));
-            result_.end_cost.push_back(result_.near.back() ? rounded_down(-Real(p_.w_n) * fit) : Exact(0));
+            const bool is_near = result_.near.back();
+            Real cost = is_near ? Real(-Real(p_.w_n) * fit) : Real(0);
+            if (learned_) cost += is_near ? learned_->near_end(cone) : learned_->far_end(cone);
+            result_.end_cost.push_back(is_near || learned_ ? rounded_down(cost) : Exact(0));
         }
         result_.partners.assign(count, std::vector<bool>(count, false));
         for (std::size_t f = 0; f < count; ++f) {
@@ -225,8 +238,9 @@ class Builder {
     const Scene& scene_;
     const RldParameters& p_;
     RldParameters without_costs_;
-    Scene all_blue_;  ///< where colors cost; the scene with this color alone
+    Scene all_blue_;  ///< where colors count; the scene with this color alone
     Scene all_yellow_;
+    std::optional<LearnedReference<Real>> learned_;
     Real cos_;
     Real sin_;
     std::vector<Vector> vectors_;  ///< by edge

@@ -21,6 +21,7 @@ constexpr std::uint64_t kStepsBetweenLooksAtTheClock = 1024;
 RldParameters without_costs(RldParameters parameters) {
     parameters.w_v = 0.0;
     parameters.w_color = 0.0;
+    parameters.learned_costs.reset();
     return parameters;
 }
 

@@ -1,5 +1,6 @@
 #include "evaluation/files/parameter_tag.hpp"
 
+#include "conelane/learned_costs.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 
@@ -30,6 +31,14 @@ std::string hash_of(const RldParameters& parameters) {
     }
     if (parameters.use_confidence) add("use_confidence", 1.0);
     if (parameters.forbid_crossing) add("forbid_crossing", 1.0);
+    if (parameters.learned_costs) {
+        for (const LearnedPart part : kLearnedParts) {
+            const LearnedNetwork& network = parameters.learned_costs->of(part);
+            for (const auto* list : {&network.linear, &network.hidden, &network.output}) {
+                for (const double weight : *list) add(to_string(part), weight);
+            }
+        }
+    }
     return fmt::format("{:016x}", hash);
 }
 

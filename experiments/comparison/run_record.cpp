@@ -5,6 +5,7 @@
 #include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/files/parameter_tag.hpp"
 #include "evaluation/files/provenance.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "experiments/comparison/echo_floor.hpp"
@@ -74,6 +75,7 @@ nlohmann::ordered_json to_json(const RldParameters& parameters) {
     }
     json["use_confidence"] = parameters.use_confidence;
     json["forbid_crossing"] = parameters.forbid_crossing;
+    if (parameters.learned_costs) json["learned_costs"] = tag_of("", parameters).hash.value();
     return json;
 }
 

@@ -6,6 +6,7 @@
 #include "experiments/training/adam.hpp"
 #include "experiments/training/front_checkpoint.hpp"
 #include "experiments/training/front_gradient.hpp"
+#include "experiments/training/training_checkpoint.hpp"
 #include "graph_search/front/front_detector.hpp"
 #include "graph_search/front/front_judge_features.hpp"
 
@@ -143,6 +144,7 @@ class Training {
         result.colored = weights_;
         return result;
     }
+    [[nodiscard]] Eigen::Index size() const { return values_.size(); }  ///< of all numbers
 
     [[nodiscard]] FrontProgress::Stage stage(std::size_t step) const {
         if (step < options_.imitation_steps) return FrontProgress::Stage::move_by_move;
@@ -203,10 +205,10 @@ class Training {
         weights_.least_trust = std::min(weights_.least_trust, 1.0);
     }
 
-    [[nodiscard]] FrontCheckpoint checkpoint(std::size_t step) const {
+    [[nodiscard]] TrainingCheckpoint checkpoint(std::size_t step) const {
         return {step, values_, adam_.state()};
     }
-    void restore(const FrontCheckpoint& checkpoint) {
+    void restore(const TrainingCheckpoint& checkpoint) {
         values_ = checkpoint.values;
         adam_.restore(checkpoint.adam);
         set(weights_, values_);
@@ -405,7 +407,7 @@ FrontWeights train_front(const std::vector<Track>& courses, const std::vector<Sc
     std::size_t step = 0;
     const std::string identity = describe_training(courses, options);
     if (!options.checkpoint.empty()) {
-        if (const auto checkpoint = read_front_checkpoint(options.checkpoint, identity)) {
+        if (const auto checkpoint = read_training_checkpoint(options.checkpoint, identity, training.size())) {
             training.restore(*checkpoint);
             step = checkpoint->step;
         }
@@ -419,7 +421,7 @@ FrontWeights train_front(const std::vector<Track>& courses, const std::vector<Sc
         const bool is_last = step == training.steps();
         if (is_last) choose_least_trust();
         if (!options.checkpoint.empty() && (is_last || step % options.checkpoint_every == 0)) {
-            write_front_checkpoint(options.checkpoint, identity, training.checkpoint(step));
+            write_training_checkpoint(options.checkpoint, identity, training.checkpoint(step));
         }
         if (!report || (!is_last && step % options.figures_every != 0)) continue;
         const auto scenes = static_cast<double>(std::max<std::size_t>(training.counts.scenes, 1));

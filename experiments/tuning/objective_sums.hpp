@@ -22,7 +22,8 @@ inline constexpr std::array<double RldParameters::*, kObjectiveTermCount> kObjec
 /// terms. Benefit and near ends are at most zero.
 using ObjectiveSums = std::array<double, kObjectiveTermCount>;
 
-/// Zero for w_b, w_u and w_v where those are zero. Precondition: every edge is listed in the problem.
+/// Zero for w_b, w_u and w_v where those are zero. Preconditions: every edge is listed in the problem, and no
+/// costs are learned.
 [[nodiscard]] ObjectiveSums objective_sums(const LaneGraphProblem& problem, const LaneGraph& graph);
 
 }  // namespace conelane::experiments

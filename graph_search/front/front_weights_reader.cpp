@@ -4,12 +4,12 @@
 #include "graph_search/front/front_features.hpp"
 #include "graph_search/front/front_judge_features.hpp"
 #include "graph_search/shared/json_reader.hpp"
+#include "graph_search/shared/weights_bytes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
@@ -148,27 +148,6 @@ double read_number(JsonReader& json, const std::string& key) {
     return json.number();
 }
 
-#ifdef __wasi__  // a WebAssembly module has no files: weights come as bytes
-std::string bytes_of(const std::filesystem::path& /*file*/) {
-    throw InvalidInput("weights", "cannot be read");
-}
-#else
-std::string bytes_of(const std::filesystem::path& file) {
-    constexpr std::size_t kMaxBytes = std::size_t{64} << 20U;  // the shipped file has 0.13 MB
-    std::ifstream stream(file, std::ios::binary);
-    std::string bytes(1U << 16U, '\0');
-    std::size_t size = 0;
-    while (stream && size <= kMaxBytes) {
-        if (size == bytes.size()) bytes.resize(2 * bytes.size());
-        stream.read(bytes.data() + size, static_cast<std::streamsize>(bytes.size() - size));
-        size += static_cast<std::size_t>(stream.gcount());
-    }
-    if (!stream.eof()) throw InvalidInput("weights", size > kMaxBytes ? "is too large" : "cannot be read");
-    bytes.resize(size);
-    return bytes;
-}
-#endif
-
 }  // namespace
 
 FrontWeights parse_front_weights(std::string_view text) {
@@ -234,14 +213,9 @@ FrontWeights parse_front_weights(std::string_view text) {
 }
 
 FrontWeights read_front_weights(const std::filesystem::path& file) {
-    try {
-        return parse_front_weights(bytes_of(file));
-    } catch (const InvalidInput& error) {
-        const std::string what = error.what();
-        const std::string prefix = "weights: ";
-        throw InvalidInput(
-            "weights", file.string() + ": " + (what.starts_with(prefix) ? what.substr(prefix.size()) : what));
-    }
+    FrontWeights weights;
+    with_weights_file(file, [&](std::string_view text) { weights = parse_front_weights(text); });
+    return weights;
 }
 
 }  // namespace conelane

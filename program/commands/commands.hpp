@@ -28,8 +28,9 @@ void add_plot_command(CLI::App& program);
 void add_sweep_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
 void add_train_command(CLI::App& program);
-/// `front` below it.
+/// `front` and `rld` below it.
 void add_train_front_command(CLI::App& train_command);
+void add_train_rld_command(CLI::App& train_command);
 void add_tune_command(CLI::App& program);
 void add_tune_method_command(CLI::App& program);
 

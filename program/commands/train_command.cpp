@@ -195,10 +195,11 @@ void add_network_options(CLI::App& command, RankNetTrainingOptions& training) {
 }  // namespace
 
 void add_train_command(CLI::App& program) {
-    CLI::App& command =
-        *program.add_subcommand("train",
-                                "trains the ranking network of clc, or the step scores of its beam search; "
-                                "`conelane train front` trains the networks of front");
+    CLI::App& command = *program.add_subcommand(
+        "train",
+        "trains the ranking network of clc, or the step scores of its beam search; "
+        "`conelane train front` trains the networks of front, `conelane train rld` the "
+        "costs of RLD");
     auto options = std::make_shared<Options>();
     TrainingRunOptions& run = options->run;
     CLI::Option& variants = add_track_options(command, run);
@@ -213,6 +214,7 @@ void add_train_command(CLI::App& program) {
     add_threads_option(command, options->threads, "the weights are the same with any number");
     add_output_option(command, "--out", options->out, "weights (JSON)");
     add_train_front_command(command);
+    add_train_rld_command(command);
     command.callback([options, &command] {
         if (!command.get_subcommands().empty()) return;
         // Required of this command, but not of the ones below it, where CLI11 would ask for them too.

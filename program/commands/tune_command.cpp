@@ -181,6 +181,8 @@ void run(TuneOptions& options) {
     options.scenes.threads = options.evaluation.threads;
     options.tuner.seed = options.scenes.seed;
     RldParameters start = ParameterSource{options.start, {}}.load();
+    if (start.learned_costs)
+        throw InvalidInput("--start", "has learned costs, which `conelane train rld` learns");
     if (options.shape) start = with_shape_costs(start);
     const Evaluation evaluation(make_scene_set(options.tracks, options.scenes), options.evaluation);
     EvaluationLog log(options.log, to_line(conditions(options, start)),

@@ -2,6 +2,7 @@
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
+#include "detectors/parameters/learned_costs_reader.hpp"
 
 #include <algorithm>
 #include <array>
@@ -117,7 +118,7 @@ std::string parameter_keys() {
     for (const auto fields : {rld_parameter_fields(), rld_extra_fields()}) {
         for (const RldParameterField& field : fields) keys += std::string(field.key) + ", ";
     }
-    return keys + "pairing, use_confidence, forbid_crossing";
+    return keys + "pairing, use_confidence, forbid_crossing, learned_costs";
 }
 
 double number(py::handle object, const std::string& key) {
@@ -142,6 +143,8 @@ void set_parameter(RldParameters& parameters, const std::string& key, py::handle
         if (!py::isinstance<py::bool_>(value)) throw InvalidInput(key, "is neither True nor False");
         (key == "use_confidence" ? parameters.use_confidence : parameters.forbid_crossing) =
             value.cast<bool>();
+    } else if (key == "learned_costs") {
+        parameters.learned_costs = read_learned_costs(std::string(py::str(value)));
     } else {
         throw InvalidInput("parameters", "there is no '" + key + "', only " + parameter_keys());
     }

@@ -2,6 +2,9 @@
 
 #include "solvers/path_pair/search_tuning.hpp"
 
+#include <cstdint>
+#include <limits>
+
 namespace conelane {
 
 /// Stages of `path-pair`, and its numbers. The answer is the same with each stage off; it takes longer.
@@ -16,6 +19,9 @@ struct PathPairOptions {
     int root_steps = 150;              ///< most ascent steps at the root
     int node_steps = 30;               ///< and at each other node
     SearchTuning tuning = {};
+    /// The search ends after so many counted steps of about a nanosecond, as if time had run out: a limit
+    /// that is the same on every machine.
+    std::int64_t max_work = std::numeric_limits<std::int64_t>::max();
 };
 
 }  // namespace conelane

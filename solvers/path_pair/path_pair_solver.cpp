@@ -181,7 +181,7 @@ class PathPairSolver : public RldSolver {
     Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
         Outcome outcome{std::numeric_limits<double>::infinity(), true};
         for_each_system(problem, [&](const std::optional<std::size_t>&) {
-            SearchClock clock(deadline);  // whose total of work is that of one search
+            SearchClock clock(deadline, options_.max_work);  // whose total of work is that of one search
             const Outcome part = search_.run(system_, tolerance, clock);
             outcome.bound = std::min(outcome.bound, part.bound);
             outcome.complete = outcome.complete && part.complete;
@@ -195,8 +195,10 @@ class PathPairSolver : public RldSolver {
         constexpr double kUnit = 1.0 / (1 << SearchCertificate::kFractionBits);
         SearchCertificate::Part part;
         // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
-        const double most =
-            cost_limit(problem) + 2.0 * problem.parameters.w_n * static_cast<double>(problem.edges.size());
+        const double best_end =
+            problem.learned_end_cost.empty() ? 0.0 : std::ranges::min(problem.learned_end_cost);
+        const double most = cost_limit(problem) + 2.0 * (problem.parameters.w_n - best_end) *
+                                                      static_cast<double>(problem.edges.size());
         const double cutoff = std::min(bound, most);
         // Drops nothing here that exact arithmetic does not drop.
         incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));

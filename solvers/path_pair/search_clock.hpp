@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace conelane::path_pair {
 
@@ -12,8 +13,10 @@ namespace conelane::path_pair {
 /// are then invalid.
 class SearchClock {
   public:
-    /// Without a deadline it never expires.
-    explicit SearchClock(const Deadline& deadline = Deadline()) : deadline_(deadline) {}
+    /// Without a deadline and a limit of total_work it never expires.
+    explicit SearchClock(const Deadline& deadline = Deadline(),
+                         std::int64_t max_work = std::numeric_limits<std::int64_t>::max())
+        : deadline_(deadline), max_work_(max_work) {}
     virtual ~SearchClock() = default;
     SearchClock(const SearchClock&) = delete;
     SearchClock& operator=(const SearchClock&) = delete;
@@ -32,7 +35,7 @@ class SearchClock {
     /// Checks the deadline now.
     bool out_of_time() {
         work_ = 0;
-        struck_ = struck_ || has_passed();
+        struck_ = struck_ || total_work_ >= max_work_ || has_passed();
         return struck_;
     }
     [[nodiscard]] bool struck() const { return struck_; }
@@ -44,6 +47,7 @@ class SearchClock {
     [[nodiscard]] virtual bool has_passed() { return deadline_.passed(); }
 
     Deadline deadline_;
+    std::int64_t max_work_;
     std::size_t work_ = 0;
     std::int64_t total_work_ = 0;
     bool struck_ = false;

@@ -92,7 +92,8 @@ def parameters_page(root, fields):
     lines += ["| `pairing` | name | near_far | near_far, paper | – | which ends a path may join |", "", "Extras, off by default: costs of colours, confidences and the shape of the lane.", ""]
     lines += number_table("rld extra")
     lines += ["| `use_confidence` | true or false | false | | – | the benefit of an edge is `w_b` times the confidences of its cones |",
-              "| `forbid_crossing` | true or false | false | | – | no two edges cross |", "", "### Shipped sets", "",
+              "| `forbid_crossing` | true or false | false | | – | no two edges cross |",
+              "| `learned_costs` | file | none | | – | costs that `conelane train rld` has learned, added to the others |", "", "### Shipped sets", "",
               "`--params NAME`, `rld_parameter_set(NAME)` or `parameters=\"NAME\"`. Only rows where a set differs from the defaults:", "",
               "| parameter | default | " + " | ".join(f"`{name[4:]}`" for name in sets) + " |", "| --- | --- |" + " --- |" * len(sets)]
     defaults = groups["rld"] + groups["rld extra"]

@@ -4,6 +4,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
 #include "solvers/registry.hpp"
+#include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/solver_cases.hpp"
 
@@ -276,6 +277,38 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
         if (*report.lane_graph != *plain.lane_graph) ++changed;
     }
     EXPECT_GT(changed, 0) << "the extras decided nothing";
+}
+
+/// Learned costs and edges over gaps are numbers of the problem like all others: every solver minimises the
+/// same ones, and the checker finds them again.
+TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
+    int changed = 0;
+    int over_gaps = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 6 + seed % 4);
+        RldParameters parameters;
+        parameters.d_gap = 9.0;
+        parameters.theta_gap = 0.6;
+        const RldReport plain = solve(scene, parameters);
+        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        const RldReport reference = make_exhaustive_solver()->solve(problem, {});
+        const RldReport report = solve(scene, parameters);
+        ASSERT_EQ(report.status, reference.status) << report.message;
+        if (report.status != SolveStatus::optimal) continue;
+        EXPECT_NEAR(*report.objective, *reference.objective, 1e-6);
+        EXPECT_THAT(
+            check(scene, parameters, *report.lane_graph, {true, *report.objective, report.bound}).violations,
+            testing::IsEmpty());
+        if (*report.lane_graph != *plain.lane_graph) ++changed;
+        for (const ProblemEdge& edge : problem.edges) {
+            if (edge.gap && std::ranges::binary_search(report.lane_graph->edges, Edge{edge.i, edge.j}))
+                ++over_gaps;
+        }
+    }
+    EXPECT_GT(changed, 5) << "the learned costs decided little";
+    EXPECT_GT(over_gaps, 0) << "no lane goes over a gap";
 }
 
 /// Two near edges that cross pay more than a lane that does not; with d_min = 0 only forbid_crossing tells.

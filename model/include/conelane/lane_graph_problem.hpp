@@ -31,12 +31,15 @@ struct ProblemEdge {
     /// along the heading; to the left likewise. In a bend the two tests may differ: then the edge is on no
     /// side. Other edges have no side.
     double color_cost;
-    double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0
+    double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0 and no costs are learned
     /// w_s s_ij + w_p p_ij - w_b (29), with use_confidence - w_b times both cones' confidences instead, and
-    /// of the extras w_color color_ij + w_v v_ij - w_n (z_i + z_j).
+    /// of the extras w_color color_ij + w_v v_ij - w_n (z_i + z_j), and of learned costs its own and those of
+    /// ends at i and at j.
     double cost;
-    bool along_heading;  ///< h_ij of (9)
-    bool high_cost;      ///< s_ij > s_crit (27): never chosen
+    bool along_heading;         ///< h_ij of (9)
+    bool high_cost;             ///< s_ij > s_crit (27), and no gap: never chosen
+    bool gap = false;           ///< s_ij > s_crit, and allowed over a gap by d_gap
+    double learned_cost = 0.0;  ///< of the edge alone; 0 where it is high_cost
 };
 
 /// Two edges that meet in a cone, {i, middle} and {middle, k} with i < k, as indices into `edges`.
@@ -46,8 +49,9 @@ struct ProblemTurn {
     std::size_t middle;
     double angle_cost;  ///< t_ijk (20), without weight
     double unevenness;  ///< u_ijk, without weight; 0 where w_u is 0
-    double cost;        ///< w_t t_ijk, and of the extras w_u u_ijk + 2 w_n z_j
-    bool high_cost;     ///< t_ijk > t_crit (28): never both chosen
+    double cost;     ///< w_t t_ijk, of the extras w_u u_ijk + 2 w_n z_j, and of learned costs; not negative
+    bool high_cost;  ///< t_ijk > t_crit (28), or too sharp at an edge over a gap: never both chosen
+    double learned_cost = 0.0;  ///< of the turn alone, not negative; 0 where it or an edge is high_cost
 };
 
 /// Which edges a problem lists.
@@ -68,6 +72,8 @@ struct LaneGraphProblem {
     /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 where a path ends, else 0. So
     /// - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
     std::vector<double> near_end_fit;
+    /// By cone: the learned cost if a path ends there, 0 or negative; it is a cost of edges and turns too.
+    std::vector<double> learned_end_cost;
     std::vector<std::pair<std::size_t, std::size_t>> far_apart;  ///< (17): far cones i < j with D_ij > d_max
     std::vector<std::vector<double>> distance_m;                 ///< D_ij; filled for all_pairs only
     std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <numbers>
 #include <span>
 #include <string_view>
 
 namespace conelane {
+
+struct LearnedCosts;
 
 /// Which pairs of paths are a lane graph.
 enum class Pairing {
@@ -46,6 +49,13 @@ struct RldParameters {
     double d_v = 2.7;      ///< facing threshold [m]
     double theta_v = 0.4;  ///< facing angle threshold [rad]
     double d_l = 3.0;      ///< facing length threshold [m]
+
+    // Edges over gaps, where a cone of a boundary is missing; off by default.
+    double d_gap = 0.0;      ///< largest length of an edge that s_crit forbids [m]
+    double theta_gap = 0.4;  ///< largest angle from straight on at both ends of such an edge [rad]
+
+    /// Costs from learned_costs.hpp, added to those above; none by default. Never changed once it is here.
+    std::shared_ptr<const LearnedCosts> learned_costs = {};
 };
 
 /// One numeric parameter: how files spell it, where it is, and what it may be.

@@ -8,6 +8,7 @@
 #include "evaluation/files/search_certificate_file.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/file_test.hpp"
+#include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 
 #include <cmath>
@@ -69,6 +70,28 @@ TEST(SearchCertificate, OfAStraightLaneCanBeFollowedByHand) {
     EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
     EXPECT_TRUE(verdict.is_optimum);
     EXPECT_EQ(verdict.steps, 0);  // nothing is left to enumerate
+}
+
+/// Also with learned costs, which are recomputed in 50 digits.
+TEST(SearchCertificate, OfLearnedCostsIsVerified) {
+    int verified = 0;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 10);
+        RldParameters parameters;
+        parameters.d_gap = 9.0;
+        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
+        const SearchCertificate certificate = certify_search(make_problem(scene, parameters));
+        if (!certificate.lane_graph) continue;
+        const SearchVerdict verdict = verify(certificate, scene, parameters);
+        EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
+        EXPECT_TRUE(verdict.is_optimum);
+        ++verified;
+        RldParameters others = parameters;
+        others.learned_costs = tests::random_learned_costs(seed + 100, 0);
+        EXPECT_NE(verify(certificate, scene, others).kind, Kind::verified);
+    }
+    EXPECT_GT(verified, 5);
 }
 
 /// With the weight 1/2 on each heading edge beyond the second the relaxation is 1 lower, which the

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "conelane/learned_costs.hpp"
+#include "conelane/rld_parameters.hpp"
+#include "evaluation/tracks/track.hpp"
+#include "experiments/training/front_scenes.hpp"
+#include "experiments/training/rld_learner.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// The parameters that costs are learned with: no cost but the learned ones; limits that allow most true
+/// lanes, also where a cone is missed.
+[[nodiscard]] RldParameters rld_learning_parameters();
+
+/// The costs of the shipped set `shape` as linear learned costs, with a constant moved from edges to turns
+/// and ends, which changes no optimum. With hidden units, these are drawn by the seed and give nearly
+/// nothing.
+[[nodiscard]] LearnedCosts shape_as_learned_costs(std::size_t units, std::uint64_t seed);
+
+struct RldTrainingOptions {
+    RldParameters parameters = rld_learning_parameters();  ///< learned costs in them are replaced
+    FrontSceneOptions scenes{.colored_share = 0.0, .noise_scenes = false, .highest_rate = 0.6};
+    RldMargin margin;
+    std::size_t units = 16;  ///< hidden units of each network; 0 for linear costs
+    /// Limit of the search for a rival, in steps of about a nanosecond.
+    std::int64_t max_work = 15'000'000;
+    std::size_t draws_per_step = 8;  ///< changed courses to a step of Adam
+    std::size_t steps = 2000;
+    double learning_rate = 5e-3;     ///< of Adam, falls to 0 along a cosine
+    std::size_t report_every = 100;  ///< steps
+    std::uint64_t seed = 0;
+    unsigned threads = 1;                ///< the costs are the same with any number
+    std::string checkpoint;              ///< file to resume from, written regularly; none if empty
+    std::size_t checkpoint_every = 200;  ///< steps
+};
+
+/// Throws InvalidInput naming the option that is out of its range.
+void validate(const RldTrainingOptions& options);
+
+/// Everything that determines the costs, as one line of JSON.
+[[nodiscard]] std::string describe_training(const std::vector<Track>& courses,
+                                            const RldTrainingOptions& options);
+
+struct RldProgress {
+    std::size_t step = 0;
+    std::size_t steps = 0;
+    // Since the last report:
+    std::size_t scenes = 0;
+    double allowed = 0.0;  ///< share of the scenes whose truth is a lane graph of the problem
+    // Of those, shares and means:
+    double proven = 0.0;  ///< searches for a rival that ended with a proof
+    double found = 0.0;   ///< scenes without a cheaper rival
+    double hinge = 0.0;   ///< mean loss
+};
+
+/// Learns costs from courses by the structured hinge loss of RldLearner, with Adam. The same courses, options
+/// (except `threads` and files) and build give the same costs to the last bit, also if a run was stopped and
+/// resumed from its checkpoint. Throws InvalidInput if an option is out of range, InputError if the
+/// checkpoint is of another training.
+[[nodiscard]] LearnedCosts train_rld(const std::vector<Track>& courses, const RldTrainingOptions& options,
+                                     const std::function<void(const RldProgress&)>& report);
+
+}  // namespace conelane::experiments

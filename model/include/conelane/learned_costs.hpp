@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace conelane {
+
+/// What a learned cost is of.
+enum class LearnedPart { edge, turn, near_end, far_end };
+inline constexpr std::array kLearnedParts{LearnedPart::edge, LearnedPart::turn, LearnedPart::near_end,
+                                          LearnedPart::far_end};
+/// As files spell it: `edge`, `turn`, `near_end`, `far_end`.
+[[nodiscard]] std::string_view to_string(LearnedPart part);
+
+/// A measured number that a learned cost depends on.
+struct LearnedFeature {
+    std::string_view name;
+    std::string_view unit;    ///< of what is measured, before it is divided by its scale
+    std::string_view reason;  ///< what a high value means
+};
+/// All features of a part, in the order of their weights. The first one is 1 everywhere.
+[[nodiscard]] std::span<const LearnedFeature> learned_features(LearnedPart part);
+
+/// linear * x + sum over units u of output_u max(0, hidden_u * x). Without units it is linear. Sums run in
+/// the order of the numbers, in double, without fused operations: the result is the same on every machine.
+struct LearnedNetwork {
+    std::vector<double> linear;  ///< one a feature
+    std::vector<double> hidden;  ///< one a feature and unit, feature after feature
+    std::vector<double> output;  ///< one a unit
+
+    [[nodiscard]] std::size_t units() const { return output.size(); }
+    /// Precondition: as many features as `linear`.
+    [[nodiscard]] double operator()(std::span<const double> features) const;
+    bool operator==(const LearnedNetwork&) const = default;
+};
+
+/// Learned costs of the lane graph problem, by part. They are added to the costs of (29):
+/// - of an edge, the network itself,
+/// - of a turn, the network where it is positive, else 0, so that no turn gains,
+/// - of a near or far end, the network where it is negative, else 0, so that every end gains.
+/// This restricts nothing: every lane graph has two near and two far ends, and two turns less for each path
+/// than edges, so a constant moved from turns to edges, or added to all ends, changes no optimum.
+struct LearnedCosts {
+    std::array<LearnedNetwork, kLearnedParts.size()> networks;
+
+    [[nodiscard]] const LearnedNetwork& of(LearnedPart part) const {
+        return networks[static_cast<std::size_t>(part)];
+    }
+    [[nodiscard]] LearnedNetwork& of(LearnedPart part) { return networks[static_cast<std::size_t>(part)]; }
+    /// All 0, with so many hidden units in each network.
+    [[nodiscard]] static LearnedCosts zero(std::size_t units = 0);
+    bool operator==(const LearnedCosts&) const = default;
+};
+
+/// Throws InvalidInput naming network and list, such as `edge.hidden`, where a size is wrong or a number is
+/// not finite or beyond 1e6.
+void validate(const LearnedCosts& costs);
+
+}  // namespace conelane

@@ -1,0 +1,212 @@
+#include "experiments/training/rld_training.hpp"
+
+#include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameter_sets.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/tracks/track_spec.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
+#include "tests/support/learned_costs.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane::experiments {
+namespace {
+
+std::vector<Track> courses() {
+    std::vector<Track> all = load_tracks("generated:kidney@4");
+    std::ranges::move(load_tracks("generated:hairpins@2"), std::back_inserter(all));
+    return all;
+}
+
+RldTrainingOptions quick() {
+    RldTrainingOptions options;
+    options.units = 3;
+    options.steps = 12;
+    options.draws_per_step = 2;
+    options.scenes.scenes_per_draw = 2;
+    options.max_work = 2'000'000;
+    options.report_every = 5;
+    return options;
+}
+
+/// The training begins where `shape` stands: with its limits, the same lane graphs are optimal.
+TEST(RldTraining, BeginsWithTheOptimaOfShape) {
+    const RldParameters shape = rld_parameter_set("shape").value();
+    RldParameters learned = shape;
+    for (double RldParameters::*const weight :
+         {&RldParameters::w_s, &RldParameters::w_t, &RldParameters::w_p, &RldParameters::w_b,
+          &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
+        learned.*weight = 0.0;
+    }
+    learned.learned_costs = std::make_shared<const LearnedCosts>(shape_as_learned_costs(0, 0));
+    const auto solver = make_path_pair_solver();
+    int lanes = 0;
+    int same = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        const Scene scene = tests::random_scene(seed, 12);
+        const LaneGraphProblem problem = make_problem(scene, shape);
+        const RldReport of_shape = solver->solve(problem, {});
+        const RldReport of_learned = solver->solve(make_problem(scene, learned), {});
+        ASSERT_EQ(of_shape.status, of_learned.status);
+        if (!of_shape.lane_graph) continue;
+        ++lanes;
+        // Heading costs above 4 and unevenness above 4 are cut: then the optima may differ.
+        if (std::abs(objective(problem, *of_learned.lane_graph) - *of_shape.objective) < 1e-9) ++same;
+    }
+    EXPECT_GT(lanes, 40);
+    EXPECT_GE(same, lanes - 2);
+}
+
+/// Of the cost of a lane graph by each number, as differences of two costs say.
+TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
+    int compared = 0;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 10);
+        RldParameters parameters;
+        LearnedCosts costs = *tests::random_learned_costs(seed, 4);
+        // Away from the limits, where there is no derivative.
+        costs.of(LearnedPart::turn).linear[0] += 60.0;
+        costs.of(LearnedPart::near_end).linear[0] -= 60.0;
+        costs.of(LearnedPart::far_end).linear[0] -= 60.0;
+        const auto problem_with = [&](const LearnedCosts& with) {
+            RldParameters own = parameters;
+            own.learned_costs = std::make_shared<const LearnedCosts>(with);
+            return make_problem(scene, own);
+        };
+        const LaneGraphProblem problem = problem_with(costs);
+        const RldReport best = make_path_pair_solver()->solve(problem, {});
+        if (!best.lane_graph) continue;
+        const LearnedFeatures features(scene, problem);
+        LearnedCosts gradient = LearnedCosts::zero(4);
+        add_cost_gradient(problem, features, *best.lane_graph, 2.0, gradient);
+        const Eigen::ArrayXd at = flat(costs);
+        const Eigen::ArrayXd derivatives = flat(gradient);
+        constexpr double kStep = 1e-6;
+        for (Eigen::Index i = 0; i < at.size(); i += 3) {
+            Eigen::ArrayXd moved = at;
+            moved[i] += kStep;
+            LearnedCosts above = costs;
+            set(above, moved);
+            moved[i] -= 2.0 * kStep;
+            LearnedCosts below = costs;
+            set(below, moved);
+            const double difference = objective(problem_with(above), *best.lane_graph) -
+                                      objective(problem_with(below), *best.lane_graph);
+            EXPECT_NEAR(derivatives[i], 2.0 * difference / (2.0 * kStep), 1e-4) << "number " << i;
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 100);
+}
+
+/// A turn that would gain costs 0: a step may raise it, but not lower it further.
+TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
+    const Scene scene = tests::random_scene(3, 10);
+    LearnedCosts costs = shape_as_learned_costs(0, 0);
+    costs.of(LearnedPart::turn).linear[0] = -50.0;
+    costs.of(LearnedPart::far_end).linear[0] = 50.0;
+    RldParameters parameters;
+    parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
+    const LaneGraphProblem problem = make_problem(scene, parameters);
+    const RldReport best = make_path_pair_solver()->solve(problem, {});
+    ASSERT_TRUE(best.lane_graph);
+    const LearnedFeatures features(scene, problem);
+    for (const double factor : {1.0, -1.0}) {
+        LearnedCosts gradient = LearnedCosts::zero(0);
+        add_cost_gradient(problem, features, *best.lane_graph, factor, gradient);
+        const double turns = gradient.of(LearnedPart::turn).linear[0];
+        const double ends = gradient.of(LearnedPart::far_end).linear[0];
+        EXPECT_EQ(turns != 0.0, factor < 0.0);
+        EXPECT_EQ(ends, factor > 0.0 ? 2.0 : 0.0);
+    }
+}
+
+TEST(RldTraining, LowersTheLossOfAScene) {
+    const FrontScenes scenes(courses(), quick().scenes, 1);
+    RldParameters parameters = rld_learning_parameters();
+    LearnedCosts costs = shape_as_learned_costs(2, 1);
+    RldLearner learner({}, 5'000'000);
+    int lowered = 0;
+    int tried = 0;
+    int allowed = 0;
+    for (std::uint64_t number = 0; number < 30 && tried < 10; ++number) {
+        for (const AnnotatedScene& scene : scenes.draw(number).scenes) {
+            LearnedCosts gradient = LearnedCosts::zero(2);
+            parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
+            const RldLearner::Loss loss = learner.add(scene, parameters, gradient);
+            allowed += loss.allowed ? 1 : 0;
+            if (!loss.allowed || loss.found || loss.hinge < 0.1) continue;
+            ++tried;
+            LearnedCosts next = costs;
+            set(next, flat(costs) - 1e-4 * flat(gradient));
+            parameters.learned_costs = std::make_shared<const LearnedCosts>(next);
+            LearnedCosts ignored = LearnedCosts::zero(2);
+            if (learner.add(scene, parameters, ignored).hinge < loss.hinge) ++lowered;
+        }
+    }
+    EXPECT_GT(allowed, 20);
+    EXPECT_GE(tried, 5);
+    EXPECT_GE(lowered, tried - 1);
+}
+
+TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed) {
+    RldTrainingOptions options = quick();
+    const LearnedCosts costs = train_rld(courses(), options, {});
+    EXPECT_FALSE(costs == shape_as_learned_costs(3, 0));
+    options.threads = 2;
+    EXPECT_TRUE(train_rld(courses(), options, {}) == costs);
+    options.seed = 1;
+    EXPECT_FALSE(train_rld(courses(), options, {}) == costs);
+}
+
+TEST(RldTraining, GoesOnFromWhereItWasEnded) {
+    const auto folder = std::filesystem::temp_directory_path() / "conelane_rld_training_test";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    RldTrainingOptions options = quick();
+    const LearnedCosts whole = train_rld(courses(), options, {});
+    options.checkpoint = (folder / "rld.checkpoint").string();
+    options.checkpoint_every = 4;
+    struct Ended {};
+    EXPECT_THROW((void)train_rld(courses(), options, [](const RldProgress&) { throw Ended{}; }), Ended);
+    std::vector<std::size_t> reported;
+    const LearnedCosts resumed = train_rld(
+        courses(), options, [&](const RldProgress& progress) { reported.push_back(progress.step); });
+    EXPECT_THAT(reported, testing::ElementsAre(5, 10, 12)) << "gone on from step 4";
+    EXPECT_TRUE(resumed == whole);
+    options.seed = 9;
+    EXPECT_THROW((void)train_rld(courses(), options, {}), InputError) << "another training";
+    std::ofstream(options.checkpoint) << "{}";
+    EXPECT_THROW((void)train_rld(courses(), options, {}), InputError);
+    std::filesystem::remove_all(folder);
+}
+
+TEST(RldTraining, RefusesWhatIsOutOfRange) {
+    const auto refused = [](const auto& change) {
+        RldTrainingOptions options = quick();
+        change(options);
+        EXPECT_THROW((void)train_rld(courses(), options, {}), InvalidInput);
+    };
+    refused([](RldTrainingOptions& o) { o.units = 300; });
+    refused([](RldTrainingOptions& o) { o.learning_rate = 0.0; });
+    refused([](RldTrainingOptions& o) { o.draws_per_step = 0; });
+    refused([](RldTrainingOptions& o) { o.margin.far = -1.0; });
+    refused([](RldTrainingOptions& o) { o.max_work = 0; });
+    refused([](RldTrainingOptions& o) { o.parameters.d_t = -1.0; });
+}
+
+}  // namespace
+}  // namespace conelane::experiments

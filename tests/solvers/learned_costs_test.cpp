@@ -1,0 +1,286 @@
+// Learned costs in the problem: what they are of, that they are what the networks say, and what they may not
+// be.
+
+#include "conelane/learned_costs.hpp"
+
+#include "conelane/check.hpp"
+#include "conelane/invalid_input.hpp"
+#include "conelane/lane_graph_problem.hpp"
+#include "model/learned_features.hpp"
+#include "solvers/exhaustive.hpp"
+#include "tests/support/learned_costs.hpp"
+#include "tests/support/random_scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace conelane {
+namespace {
+
+Scene scene_of(const std::vector<Point>& positions) {
+    Scene scene;
+    for (const Point& position : positions)
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    return scene;
+}
+
+std::size_t place_of(LearnedPart part, std::string_view name) {
+    const auto features = learned_features(part);
+    return static_cast<std::size_t>(std::ranges::find(features, name, &LearnedFeature::name) -
+                                    features.begin());
+}
+
+RldParameters with_weight(LearnedPart part, std::string_view name, double weight) {
+    LearnedCosts costs = LearnedCosts::zero();
+    costs.of(part).linear.at(place_of(part, name)) = weight;
+    RldParameters parameters;
+    parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
+    return parameters;
+}
+
+const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::size_t j) {
+    return *std::ranges::find_if(problem.edges,
+                                 [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
+}
+
+/// A cost of edges that all lanes share moves nothing; a gain of ends that are inside the view makes the lane
+/// end earlier.
+TEST(LearnedCosts, DecideWhichLaneIsBest) {
+    const Scene scene =
+        scene_of({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
+    const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
+    const LaneGraphProblem plain = make_problem(scene, {});
+    EXPECT_EQ(make_exhaustive_solver()->solve(plain, {}).lane_graph, whole);
+    // 4.2 m ahead is 0.14 of 30 m: an edge there costs 10 * (5.8 / 30) more, so the lane that ends before it
+    // would be the better one. But (11) wants both far ends beyond 6 m, and no other lane has them.
+    const RldParameters far = with_weight(LearnedPart::edge, "distance", 10.0);
+    const RldReport kept = make_exhaustive_solver()->solve(make_problem(scene, far), {});
+    EXPECT_EQ(kept.lane_graph, whole);
+    // Four cones more, and ends that gain by what is left of the view: now the lane ends at 7.4 m, where the
+    // plain one goes on to 10.6 m.
+    Scene longer = scene;
+    longer.cones.push_back({6, {10.6, 1.75}});
+    longer.cones.push_back({7, {10.6, -1.75}});
+    const LaneGraph all{{{0, 1}, {1, 2}, {2, 6}, {3, 4}, {4, 5}, {5, 7}}};
+    EXPECT_EQ(make_exhaustive_solver()->solve(make_problem(longer, {}), {}).lane_graph, all);
+    const RldParameters ends = with_weight(LearnedPart::far_end, "in_view", -10.0);
+    const RldReport shorter = make_exhaustive_solver()->solve(make_problem(longer, ends), {});
+    EXPECT_EQ(shorter.lane_graph, whole);
+    // By hand: four edges at -1, and two ends in view by what the farthest cones are beyond them.
+    const double in_view = (std::hypot(10.6, 1.75) - std::hypot(7.4, 1.75)) / 10.0;
+    EXPECT_NEAR(*shorter.objective, -4.0 - 2 * 10.0 * in_view, 1e-9);
+}
+
+TEST(LearnedCosts, MeasureWhatTheirNamesSay) {
+    // Boundaries 3.6 m apart; cone 4 stands 0.6 m off the middle of the edge {0, 1}, inside the lane.
+    const Scene scene = scene_of({{2, 1.8}, {6, 1.8}, {2, -1.8}, {6, -1.8}, {4, 1.2}});
+    RldParameters parameters;
+    parameters.learned_costs = std::make_shared<const LearnedCosts>(LearnedCosts::zero());
+    const LaneGraphProblem problem = make_problem(scene, parameters);
+    const LearnedFeatures features(scene, problem);
+    const auto of_edge = [&](std::size_t i, std::size_t j, std::string_view name) {
+        const auto edge = static_cast<std::size_t>(&edge_of(problem, i, j) - problem.edges.data());
+        return features.edge(edge)[place_of(LearnedPart::edge, name)];
+    };
+    EXPECT_EQ(of_edge(0, 1, "one"), 1.0);
+    EXPECT_NEAR(of_edge(0, 1, "facing"), 0.0, 1e-12);
+    EXPECT_NEAR(of_edge(0, 1, "facing_any_width"), 0.0, 1e-12);
+    EXPECT_NEAR(of_edge(0, 1, "stretch"), 0.8 / parameters.d_t, 1e-12);
+    EXPECT_NEAR(of_edge(0, 1, "beside"), 1.0 - 0.25, 1e-12);  // half of 1.2 m off, in the middle
+    EXPECT_NEAR(of_edge(2, 3, "beside"), 0.0, 1e-12);
+    EXPECT_NEAR(of_edge(0, 1, "in_lane"), 0.0, 1e-12) << "the other side is empty";
+    EXPECT_NEAR(of_edge(0, 1, "distance"), std::hypot(4.0, 1.8) / 30.0, 1e-12);
+    EXPECT_NEAR(of_edge(0, 1, "aside"), 1.8 / (1.0 + std::hypot(4.0, 1.8)), 1e-12);
+    EXPECT_EQ(of_edge(0, 1, "color_cost"), 0.0);
+    EXPECT_EQ(of_edge(0, 1, "doubt"), 0.0);
+    const auto near = features.near_end(0);
+    EXPECT_NEAR(near[place_of(LearnedPart::near_end, "fit")], 1.0, 1e-12);
+    EXPECT_NEAR(near[place_of(LearnedPart::near_end, "ahead")], 2.0 / 6.0, 1e-12);
+    EXPECT_NEAR(near[place_of(LearnedPart::near_end, "behind")], 0.0, 1e-12);
+    const auto far = features.far_end(1);
+    EXPECT_NEAR(far[place_of(LearnedPart::far_end, "in_view")], 0.0, 1e-12);
+    // A turn over the top of a triangle of 2 m by 2 m with a cone at its centre.
+    const Scene roof = scene_of({{0, 0}, {2, 2}, {4, 0}, {2, 0.9}});
+    RldParameters any_turn = parameters;
+    any_turn.t_crit = 1e6;
+    any_turn.d_e = 2.8;
+    const LaneGraphProblem over = make_problem(roof, any_turn);
+    const LearnedFeatures of_roof(roof, over);
+    for (const ProblemTurn& turn : over.turns) {
+        if (turn.middle != 1) continue;
+        const ProblemEdge& e = over.edges[turn.edge_i];
+        const ProblemEdge& f = over.edges[turn.edge_k];
+        if (e.i + e.j + f.i + f.j != 0 + 1 + 1 + 2) continue;
+        const auto x = of_roof.turn(turn.edge_i, turn.edge_k, turn.middle, turn.angle_cost);
+        EXPECT_NEAR(x[place_of(LearnedPart::turn, "inside")], 1.0, 1e-12);
+        // Three cones on a circle of 2 m.
+        EXPECT_NEAR(x[place_of(LearnedPart::turn, "curvature")], 5.0 / 2.0, 1e-12);
+        EXPECT_NEAR(x[place_of(LearnedPart::turn, "unevenness")], 0.0, 1e-12);
+        return;
+    }
+    FAIL() << "there is no such turn";
+}
+
+/// Edge by edge, turn by turn, end by end; a turn never gains, an end never costs.
+TEST(LearnedCosts, OfTheProblemAreThoseOfTheNetworks) {
+    int clamped = 0;
+    int gaps = 0;
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = tests::random_scene(seed, 12);
+        RldParameters parameters;
+        parameters.d_gap = 9.0;
+        parameters.w_n = 0.5;
+        const LaneGraphProblem plain = make_problem(scene, parameters);
+        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
+        const LearnedCosts& costs = *parameters.learned_costs;
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        const LearnedFeatures features(scene, problem);
+        ASSERT_EQ(problem.edges.size(), plain.edges.size());
+        std::vector<double> end(problem.cone_count);
+        for (std::size_t cone = 0; cone < end.size(); ++cone) {
+            const double value = problem.near[cone] ? costs.of(LearnedPart::near_end)(features.near_end(cone))
+                                                    : costs.of(LearnedPart::far_end)(features.far_end(cone));
+            end[cone] = std::min(0.0, value);
+            clamped += value > 0.0 ? 1 : 0;
+            EXPECT_EQ(problem.learned_end_cost[cone], end[cone]);
+        }
+        for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+            const ProblemEdge& edge = problem.edges[e];
+            gaps += edge.gap ? 1 : 0;
+            const double own = costs.of(LearnedPart::edge)(features.edge(e));
+            EXPECT_EQ(edge.learned_cost, own);
+            EXPECT_NEAR(edge.cost, plain.edges[e].cost + own + end[edge.i] + end[edge.j], 1e-12);
+        }
+        ASSERT_EQ(problem.turns.size(), plain.turns.size());
+        for (std::size_t t = 0; t < problem.turns.size(); ++t) {
+            const ProblemTurn& turn = problem.turns[t];
+            EXPECT_GE(turn.cost, 0.0);
+            if (turn.high_cost) continue;
+            const double own = costs.of(LearnedPart::turn)(
+                features.turn(turn.edge_i, turn.edge_k, turn.middle, turn.angle_cost));
+            clamped += own < 0.0 ? 1 : 0;
+            EXPECT_EQ(turn.learned_cost, std::max(0.0, own));
+            EXPECT_NEAR(turn.cost, plain.turns[t].cost + turn.learned_cost - 2.0 * end[turn.middle], 1e-12);
+        }
+    }
+    EXPECT_GT(clamped, 20);
+    EXPECT_GT(gaps, 20);
+}
+
+/// The sums of the problem are those of a checker with other arithmetic, for whole lanes and single edges.
+TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
+    int lanes = 0;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        Scene scene = tests::random_scene(seed, 10);
+        for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+            scene.cones[i].color = i % 3 == 0 ? ConeColor::blue : ConeColor::yellow;
+            scene.cones[i].confidence = 1.0 - 0.05 * static_cast<double>(i % 4);
+        }
+        RldParameters parameters;
+        parameters.d_gap = 10.0;
+        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 7);
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        for (const ProblemEdge& edge : problem.edges) {
+            const CheckReport report = check(scene, parameters, LaneGraph{{{edge.i, edge.j}}});
+            ASSERT_TRUE(report.objective);
+            EXPECT_FALSE(report.is_final);
+            ASSERT_NEAR(*report.objective, edge.cost, 1e-9);
+        }
+        for (const ProblemTurn& turn : problem.turns) {
+            const auto of = [&](std::size_t e) { return Edge{problem.edges[e].i, problem.edges[e].j}; };
+            LaneGraph both{{of(turn.edge_i), of(turn.edge_k)}};
+            std::ranges::sort(both.edges);
+            const CheckReport report = check(scene, parameters, both);
+            EXPECT_EQ(report.is_final, turn.high_cost);
+            if (!turn.high_cost) ASSERT_NEAR(*report.objective, objective(problem, both), 1e-9);
+        }
+        const RldReport best = make_exhaustive_solver()->solve(problem, {});
+        if (!best.lane_graph) continue;
+        ++lanes;
+        EXPECT_NEAR(*check(scene, parameters, *best.lane_graph).objective, *best.objective, 1e-9);
+    }
+    EXPECT_GT(lanes, 30);
+}
+
+/// A missed cone leaves 6.4 m. The edge over it is there only where both its ends go straight on.
+TEST(Gaps, GoStraightOnAtBothEnds) {
+    const auto has_gap = [](const Scene& scene, const RldParameters& parameters, std::size_t i,
+                            std::size_t j) {
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        const LaneGraphProblem listed = make_problem(scene, parameters, EdgeExtent::all_pairs);
+        const auto found = std::ranges::find_if(
+            problem.edges, [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
+        const bool has = found != problem.edges.end();
+        if (has) EXPECT_TRUE(found->gap);
+        EXPECT_EQ(!edge_of(listed, i, j).high_cost, has);
+        EXPECT_EQ(check(scene, parameters, {{{i, j}}}).is_final, !has);
+        return has;
+    };
+    const Scene straight = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}});
+    RldParameters parameters;
+    EXPECT_FALSE(has_gap(straight, parameters, 1, 2)) << "off by default";
+    parameters.d_gap = 6.5;
+    EXPECT_TRUE(has_gap(straight, parameters, 1, 2));
+    parameters.d_gap = 6.3;
+    EXPECT_FALSE(has_gap(straight, parameters, 1, 2));
+    parameters.d_gap = 9.0;
+    const Scene bent = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.0, 3.5}});
+    EXPECT_FALSE(has_gap(bent, parameters, 1, 2));
+    parameters.theta_gap = 0.8;
+    EXPECT_TRUE(has_gap(bent, parameters, 1, 2));
+    EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
+        << "nothing before it";
+    // A turn at its end may be no sharper than theta_gap, though t_crit allows more.
+    parameters.theta_gap = 0.4;
+    const Scene forked = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});
+    const LaneGraphProblem problem = make_problem(forked, parameters);
+    int turns = 0;
+    for (const ProblemTurn& turn : problem.turns) {
+        if (turn.middle != 2) continue;
+        const ProblemEdge& e = problem.edges[turn.edge_i];
+        const ProblemEdge& f = problem.edges[turn.edge_k];
+        if (!e.gap && !f.gap) continue;
+        ++turns;
+        const bool to_the_side = e.j == 4 || f.j == 4;
+        EXPECT_EQ(turn.high_cost, to_the_side);
+        const LaneGraph both{{{1, 2}, {2, to_the_side ? 4U : 3U}}};
+        EXPECT_EQ(check(forked, parameters, both).is_final, to_the_side);
+    }
+    EXPECT_EQ(turns, 2);
+}
+
+TEST(LearnedCosts, AreCheckedBeforeTheyAreUsed) {
+    const auto fault = [](const auto& change) {
+        LearnedCosts costs = LearnedCosts::zero(3);
+        change(costs);
+        try {
+            validate(costs);
+        } catch (const InvalidInput& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(fault([](LearnedCosts&) {}), "");
+    EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::edge).linear.pop_back(); }),
+              "edge.linear: must have 15 numbers, not 14");
+    EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::turn).hidden.pop_back(); }),
+              "turn.hidden: must have 39 numbers, not 38");
+    EXPECT_EQ(fault([](LearnedCosts& c) { c.of(LearnedPart::far_end).output[1] = std::nan(""); }),
+              "far_end.output: must hold numbers between -1e6 and 1e6");
+    RldParameters parameters;
+    parameters.learned_costs = std::make_shared<const LearnedCosts>();
+    EXPECT_THROW((void)make_problem(tests::random_scene(1, 6), parameters), InvalidInput);
+}
+
+}  // namespace
+}  // namespace conelane
