@@ -3,6 +3,9 @@
 #include "detectors/planner/lane_stretch.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
 
 namespace conelane {
 
@@ -12,6 +15,7 @@ void LaneChoice::clear() {
 
 void LaneChoice::move_along(const RigidShift& shift) {
     if (challenger_) move(*challenger_, shift);
+    for (Supported& point : driven_) point.place = shift(point.place);
 }
 
 bool LaneChoice::is_spent(const DrivableLane& left) const {
@@ -22,19 +26,61 @@ bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) cons
     return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
 }
 
+/// Where the lane runs along the one driven so far, `weight` is added to what supported that one; elsewhere
+/// it is the only support.
+void LaneChoice::support(const DrivableLane& lane, double weight) {
+    std::vector<Supported> next;
+    next.reserve(lane.points.size());
+    std::size_t at = 0;  // both are followed from the car on: another leg may be nearer
+    for (const DrivablePoint& point : lane.points) {
+        double nearest_m2 = settings_.jump_m * settings_.jump_m;
+        std::optional<std::size_t> nearest;
+        for (std::size_t i = at; i < driven_.size(); ++i) {
+            const double distance_m2 = (driven_[i].place - point.position).squaredNorm();
+            if (distance_m2 > nearest_m2) continue;
+            nearest_m2 = distance_m2;
+            nearest = i;
+        }
+        if (nearest) at = *nearest;
+        const double before = nearest ? driven_[*nearest].weight : 0.0;
+        next.push_back({point.position, std::min(settings_.max_support, before + weight)});
+    }
+    driven_ = std::move(next);
+}
+
+double LaneChoice::support_where_left(const DrivableLane& fresh, const DrivableLane& left) const {
+    const double shared_m = common_m(fresh, left, settings_.jump_m, settings_.near_m);
+    // A little past it: places next to each other share their support.
+    const Point place = point_at(left, shared_m + settings_.jump_m).position;
+    double nearest_m2 = std::numeric_limits<double>::infinity();
+    double weight = 0.0;
+    for (const Supported& point : driven_) {
+        const double distance_m2 = (point.place - place).squaredNorm();
+        if (distance_m2 >= nearest_m2) continue;
+        nearest_m2 = distance_m2;
+        weight = point.weight;
+    }
+    return weight;
+}
+
 bool LaneChoice::take(const DrivableLane& fresh, const DrivableLane& left, double weight,
                       double kept_weight) {
     if (agrees(fresh, left)) {
-        support_ = is_spent(left) ? weight : std::min(settings_.max_support, support_ + weight);
+        if (is_spent(left)) driven_.clear();
+        support(fresh, weight);
         challenger_.reset();
         return true;
     }
     const bool again = challenger_ && jump_m(fresh, *challenger_, settings_.near_m) <= settings_.jump_m;
     challenger_support_ = again ? challenger_support_ + weight : weight;
     challenger_frames_ = again ? challenger_frames_ + 1 : 1;
-    support_ = std::min(settings_.max_support, support_ + kept_weight);
-    if (challenger_frames_ >= 2 && challenger_support_ >= support_) {
-        support_ = std::min(settings_.max_support, challenger_support_);
+    for (Supported& point : driven_) {
+        point.weight = std::min(settings_.max_support, point.weight + kept_weight);
+    }
+    if (challenger_frames_ >= 2 && challenger_support_ >= support_where_left(fresh, left)) {
+        support(fresh, 0.0);
+        const double least = std::min(settings_.max_support, challenger_support_);
+        for (Supported& point : driven_) point.weight = std::max(point.weight, least);
         challenger_.reset();
         return true;
     }

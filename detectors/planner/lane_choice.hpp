@@ -5,14 +5,17 @@
 #include "detectors/planner/rigid_shift.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace conelane {
 
 /// Decides between the lane driven so far and a new one that jumps away from it near the car.
 ///
-/// Each frame supports a lane with a weight, the probability that its detector gives. The support of a new
-/// lane, from at least two frames, has to exceed that of the lane driven so far, which is at most
-/// settings.max_support. So uncertain frames change nothing, and a wrong lane is left after some frames.
+/// Each frame supports the lane that it gives, in all places of it, with a weight: the probability that its
+/// detector gives. The support of a new lane, from at least two frames, has to reach that of the lane driven
+/// so far at the place where the new one leaves it, which is at most settings.max_support. So uncertain
+/// frames change nothing, a wrong lane is left after some frames, and a far stretch that was seen a moment
+/// ago does not profit from what frames said of the stretch before it.
 class LaneChoice {
   public:
     explicit LaneChoice(const LaneChoiceSettings& settings) : settings_(settings) {}
@@ -28,10 +31,18 @@ class LaneChoice {
     void clear();
 
   private:
+    /// A place of the lane driven so far, and the weights of the frames that support the lane there.
+    struct Supported {
+        Point place;
+        double weight;
+    };
     [[nodiscard]] bool is_spent(const DrivableLane& left) const;
+    void support(const DrivableLane& lane, double weight);
+    /// Support of the lane driven so far at the place where `fresh` leaves it.
+    [[nodiscard]] double support_where_left(const DrivableLane& fresh, const DrivableLane& left) const;
 
     LaneChoiceSettings settings_;
-    double support_ = 0.0;  ///< weights of the frames that support the lane driven so far
+    std::vector<Supported> driven_;
     std::optional<DrivableLane> challenger_;
     double challenger_support_ = 0.0;
     int challenger_frames_ = 0;

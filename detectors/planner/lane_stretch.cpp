@@ -96,6 +96,34 @@ void add_bend(std::vector<DrivablePoint>& points, const DrivablePoint& from, con
     }
 }
 
+/// Goes along a lane and tells how far each of its points is from another lane, as far as that reaches, until
+/// `tell` returns false. `window_m`: arc length that is searched past each point.
+template <typename Tell>
+void follow(const DrivableLane& lane, const DrivableLane& other, double window_m, Tell tell) {
+    if (other.points.size() < 2) return;
+    std::size_t at = 0;  // both are followed from the car on: another leg may be nearer
+    for (const DrivablePoint& point : lane.points) {
+        double nearest_m = std::numeric_limits<double>::infinity();
+        std::size_t nearest = at;
+        double parameter = 0.0;
+        for (std::size_t i = at; i + 1 < other.points.size() && other.points[i].s_m <= point.s_m + window_m;
+             ++i) {
+            const FootPoint foot =
+                foot_point(point.position, {other.points[i].position, other.points[i + 1].position});
+            if (foot.distance_m < nearest_m) {
+                nearest_m = foot.distance_m;
+                nearest = i;
+                parameter = foot.parameter;
+            }
+        }
+        at = nearest;
+        const bool before_start = nearest == 0 && parameter <= 0.0;
+        const bool past_end = nearest + 2 == other.points.size() && parameter >= 1.0;
+        if (past_end && point.s_m >= other.points.back().s_m - 1.0) return;
+        if (!tell(point, before_start && nearest_m < window_m ? 0.0 : nearest_m)) return;
+    }
+}
+
 }  // namespace
 
 std::optional<LaneFoot> foot_on(const DrivableLane& lane, const Pose& pose, double from_s_m, double to_s_m) {
@@ -154,31 +182,21 @@ DrivableLane stretch(const DrivableLane& lane, double from_s_m, double to_s_m, d
 
 double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m) {
     double max_m = 0.0;
-    if (other.points.size() < 2) return max_m;
-    std::size_t at = 0;  // both are followed from the car on: another leg may be nearer
-    for (const DrivablePoint& point : lane.points) {
-        if (point.s_m > within_m) break;
-        double nearest_m = std::numeric_limits<double>::infinity();
-        std::size_t nearest = at;
-        double parameter = 0.0;
-        for (std::size_t i = at; i + 1 < other.points.size() && other.points[i].s_m <= point.s_m + within_m;
-             ++i) {
-            const FootPoint foot =
-                foot_point(point.position, {other.points[i].position, other.points[i + 1].position});
-            if (foot.distance_m < nearest_m) {
-                nearest_m = foot.distance_m;
-                nearest = i;
-                parameter = foot.parameter;
-            }
-        }
-        at = nearest;
-        const bool before_start = nearest == 0 && parameter <= 0.0;
-        const bool past_end = nearest + 2 == other.points.size() && parameter >= 1.0;
-        if (past_end && point.s_m >= other.points.back().s_m - 1.0) break;
-        if (before_start && nearest_m < within_m) continue;
-        max_m = std::max(max_m, nearest_m);
-    }
+    follow(lane, other, within_m, [&](const DrivablePoint& point, double distance_m) {
+        if (point.s_m <= within_m) max_m = std::max(max_m, distance_m);
+        return point.s_m <= within_m;
+    });
     return max_m;
+}
+
+double common_m(const DrivableLane& lane, const DrivableLane& other, double apart_m, double window_m) {
+    double until_m = 0.0;
+    follow(lane, other, window_m, [&](const DrivablePoint& point, double distance_m) {
+        if (distance_m > apart_m) return false;
+        until_m = point.s_m;
+        return true;
+    });
+    return until_m;
 }
 
 std::optional<DrivableLane> begun_at_car(const DrivableLane& lane, const Pose& pose,

@@ -27,6 +27,11 @@ struct LaneFoot {
 /// Distance of two open lanes within an arc length of the first one, where both exist [m].
 [[nodiscard]] double jump_m(const DrivableLane& lane, const DrivableLane& other, double within_m);
 
+/// Arc length of the first lane up to which it is within `apart_m` of the other one; it ends where that one
+/// ends. `window_m`: arc length of the other one that is searched past each point.
+[[nodiscard]] double common_m(const DrivableLane& lane, const DrivableLane& other, double apart_m,
+                              double window_m);
+
 /// The lane extended back to the car if it begins ahead: along `before`, the lane driven so far, if that
 /// leads to it, else in one bend from the car. Nothing if it is more than 12 m away, or, for a bend, too far
 /// aside: more than 2.5 m and three tenths of the distance ahead.

@@ -110,6 +110,11 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     plan.answer = named_as_given(std::move(plan.answer));
     if (fresh) {
         *fresh = steadied(*fresh, left, options_.drivable.step_m);
+        // A lane that says little must not make the planner forget what it knew: the next frame could then
+        // lead anywhere.
+        if (fresh->length_m < choice_settings_.short_m) {
+            *fresh = extended(*fresh, left, options_.drivable.step_m);
+        }
         path_.remember(*fresh, frame.time_s);
         plan.lane = std::move(*fresh);
         plan.state = PlanState::following;
@@ -167,6 +172,10 @@ std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, co
             other.lane = candidate.lane;
             std::optional<DrivableLane> lane = fresh_lane(other, scene, left);
             if (!lane || !choice_.agrees(*lane, before)) continue;
+            // Detectors say how far their answer is trusted. Of a candidate, what it shares with the trusted
+            // rest of the lane driven so far is trusted.
+            const double shared_m = common_m(*lane, left, choice_settings_.jump_m, choice_settings_.near_m);
+            lane->trusted_m = std::min(left.trusted_m.value_or(0.0), shared_m);
             kept = std::move(lane);
             best = probability;
         }

@@ -36,7 +36,8 @@ struct ShiftSettings {
 struct LaneChoiceSettings {
     double near_m = 8.0;  ///< a jump within this arc length ahead of the car has to be confirmed
     double jump_m = 0.9;  ///< distance of the lines of two frames: half the narrowest lane, less the noise
-    double max_support = 6.0;       ///< largest support of a lane, in weights of frames
+    double max_support = 6.0;       ///< largest support of a place of a lane, in weights of frames
+    double short_m = 12.0;          ///< a shorter lane is extended by the one driven so far
     double unsure_weight = 0.4;     ///< weight of a frame whose detector gives no probability
     double min_kept_weight = 0.02;  ///< a less probable candidate does not count
     double course_weight = 0.3;     ///< weight of the lap before, in each frame

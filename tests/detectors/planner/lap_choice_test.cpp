@@ -80,6 +80,36 @@ TEST(LaneChoice, FramesThatSpeakForTheLaneDrivenByHoldANewOneUp) {
     EXPECT_LT(frames[1], 10) << "and no trap";
 }
 
+/// Straight on, then from `bend_m` on in another direction.
+DrivableLane bent(double bend_m, double heading_rad) {
+    DrivableLane lane = line(0.0);
+    const Point at(bend_m, 0.0);
+    for (DrivablePoint& point : lane.points) {
+        if (point.s_m <= bend_m) continue;
+        point.position = at + (point.s_m - bend_m) * Point(std::cos(heading_rad), std::sin(heading_rad));
+        point.heading_rad = heading_rad;
+    }
+    return lane;
+}
+
+TEST(LaneChoice, AStretchHasNoSupportFromFramesThatDidNotSeeIt) {
+    // Sure frames saw 5 m only; then one unsure frame went on to the left.
+    const auto frames_until_right = [&](double unsure_left_m) {
+        LaneChoice choice{LaneChoiceSettings{}};
+        DrivableLane seen = line(0.0);
+        seen.points.resize(11);
+        seen.length_m = 5.0;
+        EXPECT_TRUE(choice.take(seen, DrivableLane{}, 0.95));
+        for (int i = 0; i < 20; ++i) EXPECT_TRUE(choice.take(seen, seen, 0.95));
+        const DrivableLane left = bent(5.0, unsure_left_m);
+        EXPECT_TRUE(choice.take(left, seen, 0.1)) << "it goes on along what was seen";
+        int frames = 1;
+        while (frames < 100 && !choice.take(bent(5.0, -0.8), left, 0.6)) ++frames;
+        return frames;
+    };
+    EXPECT_EQ(frames_until_right(0.8), 2) << "two surer frames outweigh it";
+}
+
 DrivableLane line_aside(double left_m, double width_m) {
     DrivableLane lane = line(0.0);
     for (DrivablePoint& point : lane.points) {
@@ -118,6 +148,34 @@ TEST(Steadied, TheLineComesNoNearerToABoundary) {
     for (const DrivablePoint& point : steadied(line_aside(0.4, 2.0), line_aside(0.0, 2.0), 0.5).points) {
         EXPECT_NEAR(point.position.y(), 0.4, 1e-9);
     }
+}
+
+/// A straight lane of cones ahead of a car at x; those from `from_x_m` to `to_x_m`.
+Frame straight_frame(double time_s, double x_m, double from_x_m, double to_x_m) {
+    Frame frame{time_s, {{x_m, 0.0}, 0.0}, {}};
+    for (int i = 0; i < 60; ++i) {
+        if (3.0 * i < from_x_m || 3.0 * i > to_x_m) continue;
+        frame.cones.push_back({2 * i, {3.0 * i, 1.75}});
+        frame.cones.push_back({2 * i + 1, {3.0 * i, -1.75}});
+    }
+    return frame;
+}
+
+TEST(LapPlanner, AShortLaneDoesNotEndThePath) {
+    // The map forgets the far cones at once: their ids change, and only the near ones are seen.
+    const auto planner = make_planner({.detector = "front"});
+    Plan plan;
+    for (int i = 0; i < 8; ++i) {
+        plan = planner->update(straight_frame(0.1 * i, 0.6 * i, 0.6 * i, 0.6 * i + 20.0),
+                               {.time_limit_ms = 1e4});
+    }
+    ASSERT_EQ(plan.state, PlanState::following);
+    ASSERT_GT(plan.lane.length_m, 14.0);
+    const double end_x_m = plan.lane.points.back().position.x();
+    plan = planner->update(straight_frame(0.8, 4.8, 4.8, 12.0), {.time_limit_ms = 1e4});
+    ASSERT_EQ(plan.state, PlanState::following);
+    EXPECT_GT(plan.lane.points.back().position.x(), end_x_m - 1.0);
+    EXPECT_LE(plan.safe_m, 12.0 - 4.8) << "only what the frame shows is trusted";
 }
 
 TEST(LapPlanner, AFrameOfTheSameTimeAtAnotherPoseIsNotFollowed) {
