@@ -53,6 +53,15 @@ TEST(Jump, IsHowFarTwoLanesAreApartNearTheCar) {
     EXPECT_NEAR(jump_m(lane, straight_line({-3.0, 0.0}, 0.0, 20.0), 8.0), 0.0, 0.01) << "along is no jump";
 }
 
+TEST(Common, IsHowFarTwoLanesRunTogether) {
+    const DrivableLane lane = straight_line({0.0, 0.0}, 0.0, 20.0);
+    EXPECT_NEAR(common_m(lane, straight_line({0.0, 0.5}, 0.0, 12.0), 0.9, 8.0), 11.0, 0.51)
+        << "to the end of the shorter one";
+    EXPECT_NEAR(common_m(lane, straight_line({0.0, 0.0}, 0.1, 20.0), 0.9, 8.0), 0.9 / std::sin(0.1), 0.51);
+    EXPECT_EQ(common_m(lane, straight_line({0.0, 2.0}, 0.0, 20.0), 0.9, 8.0), 0.0);
+    EXPECT_EQ(common_m(lane, DrivableLane{}, 0.9, 8.0), 0.0);
+}
+
 TEST(BegunAtCar, ALaneThatBeginsAheadIsJoinedToTheCar) {
     const DrivableLane ahead = straight_line({5.0, 0.0}, 0.0, 10.0);
     const Pose car{{0.0, 0.6}, 0.0};
