@@ -137,8 +137,8 @@ RldParameters rld_learning_parameters() {
     parameters.theta_heading = 1.4;
     parameters.d_near = 8.0;
     parameters.d_max = 7.0;
-    parameters.d_gap = 10.0;
-    parameters.theta_gap = 0.4;
+    parameters.d_gap = 11.5;
+    parameters.theta_gap = 0.7;
     return parameters;
 }
 
