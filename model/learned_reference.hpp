@@ -153,7 +153,8 @@ class LearnedReference {
         return sqrt(dot(a, a));
     }
     static Vector half(const Vector& a) { return {a.x / 2, a.y / 2}; }
-    static Real size(const Real& a) { return a < 0 ? Real(-a) : a; }
+    /// Of -0 it is 0: atan2 tells them apart.
+    static Real size(const Real& a) { return a > 0 ? a : Real(0 - a); }
     static Real least(const Real& a, int most) { return std::min(a, Real(most)); }
     static Real unit(const Real& a) { return std::max(Real(0), std::min(a, Real(1))); }
     static Real fall(const Real& a) { return std::max(Real(0), Real(1 - a * a)); }

@@ -219,6 +219,30 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
     EXPECT_GT(lanes, 30);
 }
 
+/// Three cones in line along an axis cut off an area of 0 or of -0, which atan2 tells apart.
+TEST(LearnedCosts, StraightOnIsStraightOnForTheCheckerToo) {
+    const RldParameters parameters = with_weight(LearnedPart::turn, "angle", 1.0);
+    int turns = 0;
+    for (const Point& step : {Point(3, 0), Point(-3, 0), Point(0, 3), Point(0, -3)}) {
+        for (const Point& from : {Point(1, 1.5), Point(-1, -1.5)}) {
+            Scene scene = scene_of({from, from + step, from + 2.0 * step});
+            for (int rotation = 0; rotation < 3; ++rotation) {
+                std::ranges::rotate(scene.cones, scene.cones.begin() + 1);
+                const LaneGraphProblem problem = make_problem(scene, parameters);
+                for (const ProblemTurn& turn : problem.turns) {
+                    if (turn.high_cost) continue;
+                    ++turns;
+                    const ProblemEdge& e = problem.edges[turn.edge_i];
+                    const ProblemEdge& f = problem.edges[turn.edge_k];
+                    const LaneGraph both{{{e.i, e.j}, {f.i, f.j}}};
+                    EXPECT_NEAR(*check(scene, parameters, both).objective, objective(problem, both), 1e-9);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(turns, 24);
+}
+
 /// A missed cone leaves 6.4 m. The edge over it is there only where one of its ends goes straight on.
 TEST(Gaps, GoStraightOnAtAnEnd) {
     const auto has_gap = [](const Scene& scene, const RldParameters& parameters, std::size_t i,
