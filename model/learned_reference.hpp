@@ -29,7 +29,9 @@ class LearnedReference {
             cones_.push_back(&cone);
             place_.push_back({Real(cone.position.x()) - Real(scene.pose.position.x()),
                               Real(cone.position.y()) - Real(scene.pose.position.y())});
-            view_ = std::max(view_, length(place_.back()));
+            const Real away = length(place_.back());
+            view_ = std::max(view_,
+                             Real(away * unit((70 - away) / 10) * unit(1 + dot(ahead_, place_.back()) / 10)));
         }
         for (std::size_t i = 0; i < place_.size(); ++i) {
             for (std::size_t j = i + 1; j < place_.size(); ++j) {
