@@ -156,7 +156,7 @@ class LearnedReference {
     }
     static Vector half(const Vector& a) { return {a.x / 2, a.y / 2}; }
     /// Of -0 it is 0: atan2 tells them apart.
-    static Real size(const Real& a) { return a > 0 ? a : Real(0 - a); }
+    static Real size(const Real& a) { return a > 0 ? a : a < 0 ? Real(-a) : Real(0); }
     static Real least(const Real& a, int most) { return std::min(a, Real(most)); }
     static Real unit(const Real& a) { return std::max(Real(0), std::min(a, Real(1))); }
     static Real fall(const Real& a) { return std::max(Real(0), Real(1 - a * a)); }
