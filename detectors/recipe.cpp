@@ -1,6 +1,7 @@
 #include "detectors/recipe.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "conelane/rld_parameter_sets.hpp"
 #include "detectors/baseline_parameters.hpp"
 #include "detectors/drivable/drivable_answers.hpp"
 #include "graph_search/baselines/astar_lane/astar_lane_detector.hpp"
@@ -93,6 +94,12 @@ constexpr std::array kRecipes{
                    "rld-pair with the costs of the lane's shape: even spacing, facing edges, near ends",
                    LearnedFrom({}, kShapeCourses), ClosedLanes::never, ColorUse::by_weight,
                    RldRecipe{path_pair, {}, true}},
+    DetectorRecipe{
+        "rld-learned",
+        "rld-pair with learned costs of edges, turns and ends; steps over missed cones, and proves "
+        "that no lane is better by these costs",
+        LearnedFrom(kLearnedRldWeights), ClosedLanes::never, ColorUse::by_weight,
+        RldRecipe{path_pair, {}, false, "learned"}},
     DetectorRecipe{"rld-context", "RLD by the exact search among more cones, then cut to the nearest",
                    LearnedFrom::nothing(), ClosedLanes::never, ColorUse::by_weight,
                    RldRecipe{path_pair, {kRldConeSet, kRldContext}}},
@@ -214,9 +221,14 @@ ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options) {
 }
 
 RldParameters rld_parameters(const DetectorRecipe& recipe, const DetectorOptions& options) {
-    RldParameters parameters = options.rld_parameters.value_or(RldParameters{});
-    if (options.pairing) parameters.pairing = *options.pairing;
     const auto* rld = std::get_if<RldRecipe>(&recipe.how);
+    RldParameters parameters;
+    if (options.rld_parameters) {
+        parameters = *options.rld_parameters;
+    } else if (rld != nullptr && !rld->parameter_set.empty()) {
+        parameters = rld_parameter_set(rld->parameter_set).value();
+    }
+    if (options.pairing) parameters.pairing = *options.pairing;
     return rld != nullptr && rld->shape_costs ? with_shape_costs(parameters) : parameters;
 }
 

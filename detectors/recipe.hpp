@@ -3,6 +3,7 @@
 #include "conelane/detectors.hpp"
 #include "conelane/rld_detector.hpp"
 #include "conelane/rld_solver.hpp"
+#include "detectors/parameters/parameter_files.hpp"
 #include "graph_search/weights/weight_files.hpp"
 
 #include <array>
@@ -21,7 +22,8 @@ struct FrontOptions;
 struct RldRecipe {
     std::unique_ptr<RldSolver> (*make_solver)();
     ConeSet cones;
-    bool shape_costs = false;  ///< adds the costs of a lane's shape where the parameters have none
+    bool shape_costs = false;             ///< adds the costs of a lane's shape where the parameters have none
+    std::string_view parameter_set = {};  ///< of rld_parameter_set, in place of the defaults
 };
 
 /// `front`, whose weights may be replaced.
@@ -55,6 +57,7 @@ class LearnedFrom {
 
 // For tables of detectors.
 inline constexpr std::array kFrontWeights{&kFrontFile};
+inline constexpr std::array kLearnedRldWeights{&kLearnedWeightsFile};
 inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
 inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};

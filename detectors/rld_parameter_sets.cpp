@@ -1,5 +1,6 @@
 #include "conelane/rld_parameter_sets.hpp"
 
+#include "detectors/parameters/learned_costs_reader.hpp"
 #include "detectors/parameters/parameter_files.hpp"
 #include "detectors/parameters/parameter_reader.hpp"
 
@@ -20,6 +21,11 @@ RldParameters parameters_of(std::string_view file) {
     RldParameters parameters;
     const auto keys =
         read_parameters(file, fields, parameters, [&](JsonReader& json, const std::string& key) {
+            if (key == "learned_costs") {  // the one weights file that is embedded
+                json.skip();
+                parameters.learned_costs = parse_learned_costs(kLearnedWeightsFile);
+                return true;
+            }
             if (key != "pairing") return false;
             const std::string pairing = json.string();
             if (pairing != to_string(Pairing::paper) && pairing != to_string(Pairing::near_far))
@@ -39,7 +45,8 @@ const std::vector<ParameterSet>& parameter_sets() {
     static const std::vector<ParameterSet> kSets{{"n12", parameters_of(kN12File)},
                                                  {"context", parameters_of(kContextFile)},
                                                  {"shape", parameters_of(kShapeFile)},
-                                                 {"full", parameters_of(kFullFile)}};
+                                                 {"full", parameters_of(kFullFile)},
+                                                 {"learned", parameters_of(kLearnedFile)}};
     return kSets;
 }
 

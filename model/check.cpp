@@ -257,7 +257,7 @@ class Checker {
             }
             return false;
         };
-        return goes_on(edge.i, edge.j) && goes_on(edge.j, edge.i);
+        return goes_on(edge.i, edge.j) || goes_on(edge.j, edge.i);
     }
 
     /// An edge that may be part of a boundary, and so may face another one.

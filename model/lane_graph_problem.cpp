@@ -160,8 +160,8 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
         for (std::size_t j = i + 1; j < n; ++j) {
             const double distance = (scene.cones[j].position - scene.cones[i].position).norm();
             if (!within(distance, p.d_gap) || distance <= p.d_e ||
-                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit) || !goes_on(i, j) ||
-                !goes_on(j, i))
+                within(fourth_power((distance - p.d_e) / p.d_t), p.s_crit) ||
+                (!goes_on(i, j) && !goes_on(j, i)))
                 continue;
             ProblemEdge edge = make_problem_edge(scene, heading, p, i, j, distance);
             edge.high_cost = false;

@@ -36,6 +36,9 @@ constexpr double kOn_m = 6.0;
 constexpr double kOnRamp_m = 2.0;
 constexpr double kMaxOn = 3.0;
 constexpr double kViewScale_m = 10.0;
+/// From 10 m before it on, a cone says ever less of how far the car sees; no sensor sees so far. Nor does a
+/// cone behind the car.
+constexpr double kBeyondView_m = 70.0;
 constexpr double kEndScale_m = 6.0;
 constexpr double kMaxEndDistance = 2.0;
 constexpr double kMaxOffAxis = 3.0;
@@ -66,7 +69,8 @@ LearnedFeatures::LearnedFeatures(const Scene& scene, const LaneGraphProblem& pro
     for (std::size_t i = 0; i < n; ++i) {
         distance_m_[i] = (at(i) - scene.pose.position).norm();
         ahead_m_[i] = scene.pose.ahead_m(at(i));
-        view_m_ = std::max(view_m_, distance_m_[i]);
+        view_m_ = std::max(view_m_, distance_m_[i] * ramp((kBeyondView_m - distance_m_[i]) / kViewScale_m) *
+                                        ramp(1.0 + ahead_m_[i] / kViewScale_m));
     }
     for (std::size_t i = 0; i < n; ++i) {
         if (stop && stop(2 * n)) return;

@@ -45,7 +45,7 @@ class LearnedFeatures {
     const LaneGraphProblem* problem_;
     std::vector<double> distance_m_;  ///< of each cone from the car
     std::vector<double> ahead_m_;
-    double view_m_ = 0.0;  ///< of the farthest cone
+    double view_m_ = 0.0;  ///< how far the car sees
     std::vector<double> cone_crowd_;
     std::vector<double> facing_;                    ///< by edge, at any width
     std::vector<std::vector<std::size_t>> around_;  ///< cones within kAround_m of each

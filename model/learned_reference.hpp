@@ -29,7 +29,9 @@ class LearnedReference {
             cones_.push_back(&cone);
             place_.push_back({Real(cone.position.x()) - Real(scene.pose.position.x()),
                               Real(cone.position.y()) - Real(scene.pose.position.y())});
-            view_ = std::max(view_, length(place_.back()));
+            const Real away = length(place_.back());
+            view_ = std::max(view_,
+                             Real(away * unit((70 - away) / 10) * unit(1 + dot(ahead_, place_.back()) / 10)));
         }
         for (std::size_t i = 0; i < place_.size(); ++i) {
             for (std::size_t j = i + 1; j < place_.size(); ++j) {
@@ -153,7 +155,8 @@ class LearnedReference {
         return sqrt(dot(a, a));
     }
     static Vector half(const Vector& a) { return {a.x / 2, a.y / 2}; }
-    static Real size(const Real& a) { return a < 0 ? Real(-a) : a; }
+    /// Of -0 it is 0: atan2 tells them apart.
+    static Real size(const Real& a) { return a > 0 ? a : a < 0 ? Real(-a) : Real(0); }
     static Real least(const Real& a, int most) { return std::min(a, Real(most)); }
     static Real unit(const Real& a) { return std::max(Real(0), std::min(a, Real(1))); }
     static Real fall(const Real& a) { return std::max(Real(0), Real(1 - a * a)); }

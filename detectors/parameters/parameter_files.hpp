@@ -9,6 +9,8 @@ extern const std::string_view kN12File;
 extern const std::string_view kContextFile;
 extern const std::string_view kShapeFile;
 extern const std::string_view kFullFile;
+extern const std::string_view kLearnedFile;
+extern const std::string_view kLearnedWeightsFile;
 extern const std::string_view kDelaunayBeamFile;
 extern const std::string_view kAstarLaneFile;
 

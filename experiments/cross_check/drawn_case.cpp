@@ -1,11 +1,16 @@
 #include "experiments/cross_check/drawn_case.hpp"
 
 #include "conelane/lane_graph_problem.hpp"
+#include "conelane/learned_costs.hpp"
 #include "evaluation/seeded_random.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <boost/random/uniform_int_distribution.hpp>
 #include <boost/random/uniform_real_distribution.hpp>
@@ -226,6 +231,22 @@ void draw_parameters(RldParameters& parameters, Draw& draw) {
     parameters.pairing = draw.chance(0.5) ? Pairing::paper : Pairing::near_far;
 }
 
+/// Edges over gaps, and learned costs of any sign.
+void draw_learned_costs(RldParameters& parameters, Draw& draw) {
+    constexpr std::size_t kUnits = 4;
+    if (draw.chance(0.5)) {
+        parameters.d_gap = rounded(draw.real(5.0, 12.0));
+        parameters.theta_gap = rounded(draw.real(0.1, 1.0));
+    }
+    LearnedCosts costs = LearnedCosts::zero(draw.chance(0.5) ? kUnits : 0);
+    for (LearnedNetwork& network : costs.networks) {
+        for (std::vector<double>* list : {&network.linear, &network.hidden, &network.output}) {
+            for (double& number : *list) number = rounded(draw.real(-0.6, 0.6));
+        }
+    }
+    parameters.learned_costs = std::make_shared<const LearnedCosts>(std::move(costs));
+}
+
 void draw_colors_and_confidences(Scene& scene, Draw& draw) {
     constexpr std::array kColors{ConeColor::unknown, ConeColor::blue, ConeColor::yellow, ConeColor::orange};
     const bool with_color = draw.chance(0.3);
@@ -270,6 +291,11 @@ CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std:
     }
     drawn.scene.id = fmt::format("case_{}", number);
     drawn.tight_limit_ms = draw.one_of(kLimits_ms);
+    // Learned costs are of metres: not in scenes that are scaled, or so far away that metres are lost, nor
+    // where an edge of no length has no direction.
+    constexpr std::array<std::string_view, 3> kWithout{"coincident", "far_away", "scaled"};
+    if (draw.chance(0.2) && std::ranges::find(kWithout, drawn.kind) == kWithout.end())
+        draw_learned_costs(drawn.parameters, draw);
     // The paper's formulation grows with the fourth power of the cones.
     if (drawn.scene.cones.size() <= 8 && draw.chance(0.3)) drawn.formulation = Formulation::paper;
     return drawn;

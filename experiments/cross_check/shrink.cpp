@@ -61,6 +61,7 @@ class Shrinking {
         reset(&RldParameters::use_confidence);
         reset(&RldParameters::forbid_crossing);
         reset(&RldParameters::pairing);
+        reset(&RldParameters::learned_costs);
     }
 
     CrossCheckCase smallest_;

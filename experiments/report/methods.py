@@ -42,6 +42,7 @@ _KNOWN = {
     "rld-pair": _rld_here("The same objective on all cones, by an exact search over pairs of paths."),
     "rld-shape": _rld_here("rld-pair with three more costs, for the shape of the lane: another objective, another optimum."),
     "rld-context": _rld_here("Looks at 24 cones and answers for the 12 nearest."),
+    "rld-learned": _rld_here("rld-pair with learned costs of edges, turns and ends; steps over missed cones."),
     "rld-shape-context": _rld_here("rld-context with the costs of the lane's shape."),
     "delaunay-beam": Description("Beam search for a centre line through the Delaunay triangulation of the cones, as the team AMZ "
                                  "drove with.", "baseline"),

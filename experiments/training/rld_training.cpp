@@ -39,12 +39,20 @@ struct Slot {
     std::vector<RldLearner::Loss> losses;
 };
 
+LearnedCosts initial_costs(const RldTrainingOptions& options) {
+    const LearnedCosts start =
+        options.parameters.learned_costs ? *options.parameters.learned_costs : shape_as_learned_costs();
+    const bool is_linear = std::ranges::all_of(
+        start.networks, [](const LearnedNetwork& network) { return network.units() == 0; });
+    return is_linear ? with_hidden_units(start, options.units, options.seed) : start;
+}
+
 class Training {
   public:
     Training(const std::vector<Track>& courses, const RldTrainingOptions& options)
         : options_(options),
           scenes_(courses, options.scenes, options.seed),
-          costs_(shape_as_learned_costs(options.units, options.seed)),
+          costs_(initial_costs(options)),
           values_(flat(costs_)),
           adam_(values_.size(), kMinDeviation),
           slots_(options.draws_per_step) {
@@ -129,17 +137,17 @@ RldParameters rld_learning_parameters() {
     parameters.theta_heading = 1.4;
     parameters.d_near = 8.0;
     parameters.d_max = 7.0;
-    parameters.d_gap = 10.0;
-    parameters.theta_gap = 0.4;
+    parameters.d_gap = 11.5;
+    parameters.theta_gap = 0.7;
     return parameters;
 }
 
-LearnedCosts shape_as_learned_costs(std::size_t units, std::uint64_t seed) {
+LearnedCosts shape_as_learned_costs() {
     // Of each turn and end: so that they may become cheaper before a limit of LearnedCosts holds.
     constexpr double kMoved = 0.5;
     constexpr double kEnd = -1.0;
     const RldParameters shape = rld_parameter_set("shape").value();
-    LearnedCosts costs = LearnedCosts::zero(units);
+    LearnedCosts costs = LearnedCosts::zero();
     weight(costs, LearnedPart::edge, "one") = -shape.w_b - kMoved;
     weight(costs, LearnedPart::edge, "spacing") = shape.w_s;
     weight(costs, LearnedPart::edge, "heading") = shape.w_p;
@@ -150,10 +158,16 @@ LearnedCosts shape_as_learned_costs(std::size_t units, std::uint64_t seed) {
     weight(costs, LearnedPart::near_end, "one") = kEnd;
     weight(costs, LearnedPart::near_end, "fit") = -shape.w_n;
     weight(costs, LearnedPart::far_end, "one") = kEnd;
-    if (units == 0) return costs;
+    return costs;
+}
+
+LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units, std::uint64_t seed) {
+    LearnedCosts costs = LearnedCosts::zero(units);
     auto random = generator_of("learned costs", seed);
     for (const LearnedPart part : kLearnedParts) {
         LearnedNetwork& network = costs.of(part);
+        network.linear = linear.of(part).linear;
+        if (units == 0) continue;
         boost::random::normal_distribution<double> of_hidden(
             0.0, std::sqrt(2.0 / static_cast<double>(network.linear.size())));
         for (double& number : network.hidden) number = of_hidden(random);
@@ -170,6 +184,11 @@ void validate(const RldTrainingOptions& options) {
     };
     validate(options.parameters);
     require(options.units <= 256, "units", "must be at most 256");
+    if (options.parameters.learned_costs) {
+        for (const LearnedNetwork& network : options.parameters.learned_costs->networks)
+            require(network.units() == 0 || network.units() == options.units, "units",
+                    "must be those of the costs that the training begins with");
+    }
     require(options.max_work > 0, "max_work", "must be positive");
     require(options.draws_per_step > 0, "draws_per_step", "must be positive");
     require(options.scenes.scenes_per_draw > 0, "scenes_per_draw", "must be positive");
@@ -186,8 +205,6 @@ std::string describe_training(const std::vector<Track>& courses, const RldTraini
     using Json = nlohmann::ordered_json;
     Json names = Json::array();
     for (const Track& track : courses) names.push_back(track.name);
-    RldParameters limits = options.parameters;
-    limits.learned_costs.reset();
     return Json{
         {"tracks", names},
         {"seed", options.seed},
@@ -201,7 +218,7 @@ std::string describe_training(const std::vector<Track>& courses, const RldTraini
           {"other_course", options.scenes.other_course},
           {"colored_share", options.scenes.colored_share},
           {"highest_rate", options.scenes.highest_rate}}},
-        {"parameters_hash", tag_of("", limits).hash.value()},
+        {"parameters_hash", tag_of("", options.parameters).hash.value()},
         {"units", options.units},
         {"steps", options.steps},
         {"learning_rate", options.learning_rate},

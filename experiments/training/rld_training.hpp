@@ -19,12 +19,18 @@ namespace conelane::experiments {
 [[nodiscard]] RldParameters rld_learning_parameters();
 
 /// The costs of the shipped set `shape` as linear learned costs, with a constant moved from edges to turns
-/// and ends, which changes no optimum. With hidden units, these are drawn by the seed and give nearly
-/// nothing.
-[[nodiscard]] LearnedCosts shape_as_learned_costs(std::size_t units, std::uint64_t seed);
+/// and ends, which changes no optimum.
+[[nodiscard]] LearnedCosts shape_as_learned_costs();
+
+/// Linear costs with so many hidden units, drawn by the seed, that add nearly nothing. Precondition: `linear`
+/// has none.
+[[nodiscard]] LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units,
+                                             std::uint64_t seed);
 
 struct RldTrainingOptions {
-    RldParameters parameters = rld_learning_parameters();  ///< learned costs in them are replaced
+    /// Limits and costs that the learned ones are added to. Where they have learned costs, the training
+    /// begins with those, with hidden units added to linear ones; else with shape_as_learned_costs.
+    RldParameters parameters = rld_learning_parameters();
     FrontSceneOptions scenes{.colored_share = 0.0, .noise_scenes = false, .highest_rate = 0.6};
     RldMargin margin;
     std::size_t units = 16;  ///< hidden units of each network; 0 for linear costs

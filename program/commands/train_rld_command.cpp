@@ -62,8 +62,8 @@ void add_train_rld_command(CLI::App& train_command) {
         ->required();
     command.add_option(
         "--params", options->parameters,
-        "parameters that the costs are added to, a set or a file (JSON); without it limits that "
-        "allow most true lanes, and no other cost");
+        "parameters that the costs are added to, a set or a file (JSON), whose learned costs the training "
+        "begins with; without it limits that allow most true lanes, and no other cost");
     add_count_option(command, "--units", training.units,
                      "hidden units of each network; 0 for linear costs, a readable weight a feature", 0);
     add_count_option(command, "--steps", training.steps, "steps of Adam", 0);

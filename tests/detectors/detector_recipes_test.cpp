@@ -22,6 +22,7 @@ namespace conelane {
 namespace {
 
 using experiments::KnownDetector;
+using testing::AllOf;
 using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
@@ -116,6 +117,7 @@ TEST(TrainingCourses, AreThoseOfTheRecordsOfAllItsWeightsAndThoseInViewWhenParam
     EXPECT_THAT(training_courses("clc"), Not(Contains("circle")));
     EXPECT_THAT(training_courses("delaunay-beam"), Contains("fsd_1"));
     EXPECT_THAT(training_courses("rld-shape-context"), Contains("fsd_6"));
+    EXPECT_THAT(training_courses("rld-learned"), AllOf(Contains("fsd_6"), Contains("kidney@4")));
     for (const char* const none : {"rld-pair", "rld-context", "clc-longest", "no detector"})
         EXPECT_THAT(training_courses(none), IsEmpty()) << none;
 }

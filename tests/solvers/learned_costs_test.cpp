@@ -8,6 +8,7 @@
 #include "conelane/lane_graph_problem.hpp"
 #include "model/learned_features.hpp"
 #include "solvers/exhaustive.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 
@@ -51,20 +52,24 @@ const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::
                                  [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
 }
 
-/// A cost of edges that all lanes share moves nothing; a gain of ends that are inside the view makes the lane
-/// end earlier.
+/// Edges that cost more the farther they are make the lane begin later or not at all; ends that gain inside
+/// the view make it end earlier.
 TEST(LearnedCosts, DecideWhichLaneIsBest) {
     const Scene scene =
         scene_of({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
     const LaneGraph whole{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     const LaneGraphProblem plain = make_problem(scene, {});
     EXPECT_EQ(make_exhaustive_solver()->solve(plain, {}).lane_graph, whole);
-    // 4.2 m ahead is 0.14 of 30 m: an edge there costs 10 * (5.8 / 30) more, so the lane that ends before it
-    // would be the better one. But (11) wants both far ends beyond 6 m, and no other lane has them.
-    const RldParameters far = with_weight(LearnedPart::edge, "distance", 10.0);
-    const RldReport kept = make_exhaustive_solver()->solve(make_problem(scene, far), {});
-    EXPECT_EQ(kept.lane_graph, whole);
-    // Four cones more, and ends that gain by what is left of the view: now the lane ends at 7.4 m, where the
+    // With 10 for each 30 m, the first two edges cost 10 * 3.1 / 30 - 1 > 0: the lane begins at the second
+    // cones. With 1 every edge still gains.
+    const RldParameters dear = with_weight(LearnedPart::edge, "distance", 10.0);
+    const LaneGraph later{{{1, 2}, {4, 5}}};
+    const RldReport begins_later = make_exhaustive_solver()->solve(make_problem(scene, dear), {});
+    EXPECT_EQ(begins_later.lane_graph, later);
+    EXPECT_NEAR(*begins_later.objective, 2.0 * (10.0 * std::hypot(5.8, 1.75) / 30.0 - 1.0), 1e-9);
+    const RldParameters cheap = with_weight(LearnedPart::edge, "distance", 1.0);
+    EXPECT_EQ(make_exhaustive_solver()->solve(make_problem(scene, cheap), {}).lane_graph, whole);
+    // Two cones more, and ends that gain by what is left of the view: now the lane ends at 7.4 m, where the
     // plain one goes on to 10.6 m.
     Scene longer = scene;
     longer.cones.push_back({6, {10.6, 1.75}});
@@ -202,9 +207,11 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
             std::ranges::sort(both.edges);
             const CheckReport report = check(scene, parameters, both);
             EXPECT_EQ(report.is_final, turn.high_cost);
-            if (!turn.high_cost) ASSERT_NEAR(*report.objective, objective(problem, both), 1e-9);
+            if (!turn.high_cost) {
+                ASSERT_NEAR(*report.objective, objective(problem, both), 1e-9);
+            }
         }
-        const RldReport best = make_exhaustive_solver()->solve(problem, {});
+        const RldReport best = make_path_pair_solver()->solve(problem, {});
         if (!best.lane_graph) continue;
         ++lanes;
         EXPECT_NEAR(*check(scene, parameters, *best.lane_graph).objective, *best.objective, 1e-9);
@@ -212,8 +219,32 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
     EXPECT_GT(lanes, 30);
 }
 
-/// A missed cone leaves 6.4 m. The edge over it is there only where both its ends go straight on.
-TEST(Gaps, GoStraightOnAtBothEnds) {
+/// Three cones in line along an axis cut off an area of 0 or of -0, which atan2 tells apart.
+TEST(LearnedCosts, StraightOnIsStraightOnForTheCheckerToo) {
+    const RldParameters parameters = with_weight(LearnedPart::turn, "angle", 1.0);
+    int turns = 0;
+    for (const Point& step : {Point(3, 0), Point(-3, 0), Point(0, 3), Point(0, -3)}) {
+        for (const Point& from : {Point(1, 1.5), Point(-1, -1.5)}) {
+            Scene scene = scene_of({from, from + step, from + 2.0 * step});
+            for (int rotation = 0; rotation < 3; ++rotation) {
+                std::ranges::rotate(scene.cones, scene.cones.begin() + 1);
+                const LaneGraphProblem problem = make_problem(scene, parameters);
+                for (const ProblemTurn& turn : problem.turns) {
+                    if (turn.high_cost) continue;
+                    ++turns;
+                    const ProblemEdge& e = problem.edges[turn.edge_i];
+                    const ProblemEdge& f = problem.edges[turn.edge_k];
+                    const LaneGraph both{{{e.i, e.j}, {f.i, f.j}}};
+                    EXPECT_NEAR(*check(scene, parameters, both).objective, objective(problem, both), 1e-9);
+                }
+            }
+        }
+    }
+    EXPECT_EQ(turns, 24);
+}
+
+/// A missed cone leaves 6.4 m. The edge over it is there only where one of its ends goes straight on.
+TEST(Gaps, GoStraightOnAtAnEnd) {
     const auto has_gap = [](const Scene& scene, const RldParameters& parameters, std::size_t i,
                             std::size_t j) {
         const LaneGraphProblem problem = make_problem(scene, parameters);
@@ -221,7 +252,9 @@ TEST(Gaps, GoStraightOnAtBothEnds) {
         const auto found = std::ranges::find_if(
             problem.edges, [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
         const bool has = found != problem.edges.end();
-        if (has) EXPECT_TRUE(found->gap);
+        if (has) {
+            EXPECT_TRUE(found->gap);
+        }
         EXPECT_EQ(!edge_of(listed, i, j).high_cost, has);
         EXPECT_EQ(check(scene, parameters, {{{i, j}}}).is_final, !has);
         return has;
@@ -234,12 +267,13 @@ TEST(Gaps, GoStraightOnAtBothEnds) {
     parameters.d_gap = 6.3;
     EXPECT_FALSE(has_gap(straight, parameters, 1, 2));
     parameters.d_gap = 9.0;
-    const Scene bent = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.0, 3.5}});
+    const Scene bent = scene_of({{2, -0.5}, {4.2, 1.5}, {10.6, 1.5}, {13.0, 3.5}});
     EXPECT_FALSE(has_gap(bent, parameters, 1, 2));
     parameters.theta_gap = 0.8;
     EXPECT_TRUE(has_gap(bent, parameters, 1, 2));
-    EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
-        << "nothing before it";
+    EXPECT_TRUE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
+        << "the first edge in view";
+    EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}}), parameters, 0, 1)) << "nothing around it";
     // A turn at its end may be no sharper than theta_gap, though t_crit allows more.
     parameters.theta_gap = 0.4;
     const Scene forked = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});

@@ -50,11 +50,11 @@ TEST(RldTraining, BeginsWithTheOptimaOfShape) {
           &RldParameters::w_u, &RldParameters::w_v, &RldParameters::w_n}) {
         learned.*weight = 0.0;
     }
-    learned.learned_costs = std::make_shared<const LearnedCosts>(shape_as_learned_costs(0, 0));
+    learned.learned_costs = std::make_shared<const LearnedCosts>(shape_as_learned_costs());
     const auto solver = make_path_pair_solver();
     int lanes = 0;
     int same = 0;
-    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
         const Scene scene = tests::random_scene(seed, 12);
         const LaneGraphProblem problem = make_problem(scene, shape);
         const RldReport of_shape = solver->solve(problem, {});
@@ -72,7 +72,7 @@ TEST(RldTraining, BeginsWithTheOptimaOfShape) {
 /// Of the cost of a lane graph by each number, as differences of two costs say.
 TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
     int compared = 0;
-    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    for (std::uint64_t seed = 0; seed < 14; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         const Scene scene = tests::random_scene(seed, 10);
         RldParameters parameters;
@@ -114,15 +114,21 @@ TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
 
 /// A turn that would gain costs 0: a step may raise it, but not lower it further.
 TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
-    const Scene scene = tests::random_scene(3, 10);
-    LearnedCosts costs = shape_as_learned_costs(0, 0);
+    LearnedCosts costs = shape_as_learned_costs();
     costs.of(LearnedPart::turn).linear[0] = -50.0;
     costs.of(LearnedPart::far_end).linear[0] = 50.0;
     RldParameters parameters;
     parameters.learned_costs = std::make_shared<const LearnedCosts>(costs);
-    const LaneGraphProblem problem = make_problem(scene, parameters);
-    const RldReport best = make_path_pair_solver()->solve(problem, {});
+    Scene scene;
+    LaneGraphProblem problem;
+    RldReport best;
+    for (std::uint64_t seed = 0; !best.lane_graph && seed < 20; ++seed) {
+        scene = tests::random_scene(seed, 10);
+        problem = make_problem(scene, parameters);
+        best = make_path_pair_solver()->solve(problem, {});
+    }
     ASSERT_TRUE(best.lane_graph);
+    ASSERT_GT(best.lane_graph->edges.size(), 2U) << "there is a turn";
     const LearnedFeatures features(scene, problem);
     for (const double factor : {1.0, -1.0}) {
         LearnedCosts gradient = LearnedCosts::zero(0);
@@ -137,7 +143,7 @@ TEST(RldTraining, WhatALimitHoldsIsPushedOnlyAwayFromIt) {
 TEST(RldTraining, LowersTheLossOfAScene) {
     const FrontScenes scenes(courses(), quick().scenes, 1);
     RldParameters parameters = rld_learning_parameters();
-    LearnedCosts costs = shape_as_learned_costs(2, 1);
+    LearnedCosts costs = with_hidden_units(shape_as_learned_costs(), 2, 1);
     RldLearner learner({}, 5'000'000);
     int lowered = 0;
     int tried = 0;
@@ -157,7 +163,7 @@ TEST(RldTraining, LowersTheLossOfAScene) {
             if (learner.add(scene, parameters, ignored).hinge < loss.hinge) ++lowered;
         }
     }
-    EXPECT_GT(allowed, 20);
+    EXPECT_GT(allowed, 10);
     EXPECT_GE(tried, 5);
     EXPECT_GE(lowered, tried - 1);
 }
@@ -165,7 +171,7 @@ TEST(RldTraining, LowersTheLossOfAScene) {
 TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed) {
     RldTrainingOptions options = quick();
     const LearnedCosts costs = train_rld(courses(), options, {});
-    EXPECT_FALSE(costs == shape_as_learned_costs(3, 0));
+    EXPECT_FALSE(costs == with_hidden_units(shape_as_learned_costs(), 3, 0));
     options.threads = 2;
     EXPECT_TRUE(train_rld(courses(), options, {}) == costs);
     options.seed = 1;
@@ -192,6 +198,24 @@ TEST(RldTraining, GoesOnFromWhereItWasEnded) {
     std::ofstream(options.checkpoint) << "{}";
     EXPECT_THROW((void)train_rld(courses(), options, {}), InputError);
     std::filesystem::remove_all(folder);
+}
+
+/// Without a step, what comes out is what went in, with hidden units on top that change next to nothing.
+TEST(RldTraining, BeginsWithTheCostsOfTheParameters) {
+    RldTrainingOptions options = quick();
+    options.steps = 0;
+    options.parameters.learned_costs = tests::random_learned_costs(5, 0);
+    const LearnedCosts costs = train_rld(courses(), options, {});
+    for (const LearnedPart part : kLearnedParts) {
+        EXPECT_EQ(costs.of(part).linear, options.parameters.learned_costs->of(part).linear);
+        EXPECT_EQ(costs.of(part).units(), 3U);
+        const std::vector<double> ones(costs.of(part).linear.size(), 1.0);
+        EXPECT_NEAR(costs.of(part)(ones), options.parameters.learned_costs->of(part)(ones), 0.5);
+    }
+    options.parameters.learned_costs = tests::random_learned_costs(5, 3);
+    EXPECT_TRUE(train_rld(courses(), options, {}) == *options.parameters.learned_costs);
+    options.units = 4;
+    EXPECT_THROW((void)train_rld(courses(), options, {}), InvalidInput);
 }
 
 TEST(RldTraining, RefusesWhatIsOutOfRange) {

@@ -6,10 +6,12 @@
 #include "solvers/path_pair/graph/arc_graph.hpp"
 #include "solvers/path_pair/graph/residual_graph.hpp"
 #include "solvers/path_pair/graph/timed_growth.hpp"
+#include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search_clock.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -109,6 +111,24 @@ TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
     EXPECT_GT(looks, 5);
     EXPECT_TRUE(make_room(values, 100, clock));
     EXPECT_EQ(clock.looks(), looks) << "there is room";
+}
+
+/// A limit in steps, unlike one in time, ends a search in the same place each time.
+TEST(PathPairWork, ALimitOfWorkEndsTheSearchInTheSamePlace) {
+    const LaneGraphProblem problem = dense_problem();
+    std::vector<RldReport> reports;
+    for (const std::int64_t work : {20'000'000, 20'000'000, 60'000'000})
+        reports.push_back(make_path_pair_solver({.max_work = work})->solve(problem, {}));
+    for (const RldReport& report : reports) {
+        EXPECT_NE(report.status, SolveStatus::optimal);
+        EXPECT_EQ(report.stopped_by, StopReason::time);
+    }
+    EXPECT_EQ(reports[0].lane_graph, reports[1].lane_graph);
+    EXPECT_EQ(reports[0].objective, reports[1].objective);
+    EXPECT_EQ(reports[0].bound, reports[1].bound);
+    EXPECT_EQ(reports[0].nodes, reports[1].nodes);
+    ASSERT_TRUE(reports[0].bound && reports[2].bound);
+    EXPECT_LE(*reports[0].bound, *reports[2].bound);
 }
 
 }  // namespace
