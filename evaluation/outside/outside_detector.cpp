@@ -3,6 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
+#include "evaluation/outside/solver_program.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -89,6 +90,7 @@ OutsideDetector parse_named_source(std::string_view text, OutsideDetector::Kind 
                            fmt::format("'{}' is not a name for {}: letters, digits and ._+- only, at most {}",
                                        detector.name, form, kMaxName));
     }
+    if (detector.is_solver()) SolverProgram::require_valid_command(detector.source);
     return detector;
 }
 

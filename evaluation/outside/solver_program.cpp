@@ -74,14 +74,14 @@ std::string filled(std::string text, const std::vector<Placeholder>& values) {
 
 /// A word in braces, letters and underscores alone, that stands for nothing: most likely a slip of the pen.
 /// `${NAME}` is the shell's.
-void require_known_placeholders(const std::string& command) {
+void require_known_placeholders(std::string_view command) {
     const std::vector<Placeholder> known = placeholders({}, "", "");
     for (std::size_t open = command.find('{'); open != std::string::npos;
          open = command.find('{', open + 1)) {
         const std::size_t close = command.find('}', open);
         if (close == std::string::npos) return;
         if (open > 0 && command[open - 1] == '$') continue;
-        const std::string word = command.substr(open, close + 1 - open);
+        const std::string_view word = command.substr(open, close + 1 - open);
         const bool is_word =
             word.size() > 2 && std::all_of(word.begin() + 1, word.end() - 1,
                                            [](unsigned char c) { return std::islower(c) != 0 || c == '_'; });
@@ -137,15 +137,19 @@ Told read_line(const std::string& line, SolutionFile& told) {
 
 }  // namespace
 
+void SolverProgram::require_valid_command(std::string_view command) {
+    require_known_placeholders(command);
+    if (command.find("{mps}") != std::string_view::npos && command.find("{lp}") != std::string_view::npos)
+        throw InvalidInput("solver", "a command has {mps} or {lp}, not both");
+}
+
 SolverProgram::SolverProgram(std::string command, const SolverPatience& patience)
     : command_(std::move(command)),
       patience_(patience),
       is_conversation_(command_.find("{mps}") == std::string::npos &&
                        command_.find("{lp}") == std::string::npos),
       writes_lp_(command_.find("{lp}") != std::string::npos) {
-    require_known_placeholders(command_);
-    if (writes_lp_ && command_.find("{mps}") != std::string::npos)
-        throw InvalidInput("solver", "a command has {mps} or {lp}, not both");
+    require_valid_command(command_);
     const auto held = hold_interruption();
     folder_ = make_folder();
     clearing_.emplace([folder = folder_] {

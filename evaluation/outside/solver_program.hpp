@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace conelane {
 
@@ -49,8 +50,11 @@ struct SolverQuestion {
 /// when a signal ends this program.
 class SolverProgram {
   public:
+    /// Throws InvalidInput if the command has an unknown placeholder, or both {mps} and {lp}.
+    static void require_valid_command(std::string_view command);
+
     /// Throws std::filesystem::filesystem_error if there is no folder for temporary files, InvalidInput if
-    /// its name has characters that a shell would interpret or the command has an unknown placeholder.
+    /// its name has characters that a shell would interpret or the command is not valid.
     explicit SolverProgram(std::string command, const SolverPatience& patience = {});
     ~SolverProgram();
     SolverProgram(const SolverProgram&) = delete;

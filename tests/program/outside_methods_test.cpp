@@ -492,7 +492,7 @@ TEST_F(OutsideDetectors, AWrongSolverIsAnErrorAndNeverALane) {
         "compare --tracks generated:circle --condition paper --every 30 --fp 0 --nearest 8 --out r --methods "
         "'solver:liar=" +
         solver_child() + " half-a-point 2 marker'");
-    EXPECT_THAT(outcome.errors, HasSubstr("'liar"));
+    EXPECT_THAT(outcome.errors, HasSubstr("liar n=8: "));
     bool any_error = false;
     for (const LaneRecord& record : lanes("r/liar.n008"))
         any_error = any_error || record.answer.status == LaneStatus::error;

@@ -96,7 +96,7 @@ TEST_F(Words, HelpOfEveryCommandFitsAHundredColumns) {
 /// A terminal on stderr is told how far the work is; files, pipes and standard output are not.
 TEST_F(Words, LongWorkSaysOnATerminalHowMuchTimeIsLeft) {
     if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no program `script`";
-    const std::string scenes = "scenes --tracks generated:long_lap --fp 0,0.1,0.3,0.5 --every 0.4 --out ";
+    const std::string scenes = "scenes --tracks generated:long_lap --fp 0,0.1,0.3,0.5 --every 0.15 --out ";
     const std::string within = "cd " + path("").string() + " && ";
     const std::string on_terminal = within + "script -qec '" + conelane_program() + " " + scenes +
                                     "a.scenes.jsonl >said' typescript >/dev/null </dev/null";
