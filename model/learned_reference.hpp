@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -33,13 +34,7 @@ class LearnedReference {
             view_ = std::max(view_,
                              Real(away * unit((70 - away) / 10) * unit(1 + dot(ahead_, place_.back()) / 10)));
         }
-        for (std::size_t i = 0; i < place_.size(); ++i) {
-            for (std::size_t j = i + 1; j < place_.size(); ++j) {
-                const Real apart = length(place_[j] - place_[i]);
-                if (apart < Real(1e-100) || spacing(apart) > Real(p_.s_crit) + Real(1e-9)) continue;
-                facing_.push_back({i, j, apart});
-            }
-        }
+        find_facing();
     }
 
     /// `color_cost`: of ProblemEdge, by the caller.
@@ -146,7 +141,27 @@ class LearnedReference {
         std::size_t k;
         std::size_t l;
         Real length;
+        Real middle_x;
     };
+
+    /// Pairs of cones within s_crit, by the x of their middle. A sweep along x, since all pairs of hundreds
+    /// of cones take longer than a car has between two looks at the clock.
+    void find_facing() {
+        const double longest_m = p_.d_e + p_.d_t * std::pow(p_.s_crit + 1e-9, 0.25) + 1e-6;
+        std::vector<std::size_t> by_x(place_.size());
+        std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+        std::ranges::sort(by_x, [&](std::size_t i, std::size_t j) { return place_[i].x < place_[j].x; });
+        for (std::size_t a = 0; a < by_x.size(); ++a) {
+            for (std::size_t b = a + 1; b < by_x.size(); ++b) {
+                const auto [i, j] = std::minmax(by_x[a], by_x[b]);
+                if (place_[by_x[b]].x - place_[by_x[a]].x > Real(longest_m)) break;
+                const Real apart = length(place_[j] - place_[i]);
+                if (apart < Real(1e-100) || spacing(apart) > Real(p_.s_crit) + Real(1e-9)) continue;
+                facing_.push_back({i, j, apart, half(place_[i] + place_[j]).x});
+            }
+        }
+        std::ranges::sort(facing_, [](const Facing& a, const Facing& b) { return a.middle_x < b.middle_x; });
+    }
 
     static Real dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y; }
     static Real wedge(const Vector& a, const Vector& b) { return a.x * b.y - a.y * b.x; }
@@ -174,18 +189,23 @@ class LearnedReference {
     }
 
     /// The least of a measure of (along, across, sine, longer) over the edges that may face {i, j}, at
-    /// most 1.
+    /// most 1. `reach_m`: the measure is at least 1 where the middles are farther apart.
     template <typename Measure>
-    [[nodiscard]] Real best_facing(std::size_t i, std::size_t j, const Measure& measure) const {
+    [[nodiscard]] Real best_facing(std::size_t i, std::size_t j, double reach_m,
+                                   const Measure& measure) const {
         const Vector own = place_[j] - place_[i];
         const Real own_length = length(own);
+        const Real middle_x = half(place_[i] + place_[j]).x;
         Real best(1);
-        for (const Facing& other : facing_) {
-            if (other.k == i || other.k == j || other.l == i || other.l == j) continue;
-            const Vector way = half(place_[other.k] + place_[other.l] - place_[i] - place_[j]);
-            const Real sine = wedge(own, place_[other.l] - place_[other.k]) / (own_length * other.length);
+        const auto first =
+            std::ranges::lower_bound(facing_, Real(middle_x - Real(reach_m)), {}, &Facing::middle_x);
+        for (auto other = first; other != facing_.end() && other->middle_x <= middle_x + Real(reach_m);
+             ++other) {
+            if (other->k == i || other->k == j || other->l == i || other->l == j) continue;
+            const Vector way = half(place_[other->k] + place_[other->l] - place_[i] - place_[j]);
+            const Real sine = wedge(own, place_[other->l] - place_[other->k]) / (own_length * other->length);
             best = std::min(best, Real(measure(dot(way, own) / own_length, size(wedge(own, way)) / own_length,
-                                               sine, other.length - own_length)));
+                                               sine, other->length - own_length)));
         }
         return best;
     }
@@ -193,8 +213,9 @@ class LearnedReference {
         const auto known = known_facing_.find({i, j});
         if (known != known_facing_.end()) return known->second;
         const Real d_v(p_.d_v), theta_v(p_.theta_v), d_w(p_.d_w), d_l(p_.d_l);
-        const Real best =
-            best_facing(i, j, [&](const Real& l, const Real& b, const Real& sine, const Real& longer) {
+        const double reach_m = p_.d_w + 2.0 * p_.d_v + 1e-6;
+        const Real best = best_facing(
+            i, j, reach_m, [&](const Real& l, const Real& b, const Real& sine, const Real& longer) {
                 return Real((l * l + (b - d_w) * (b - d_w)) / (d_v * d_v) +
                             sine * sine / (theta_v * theta_v) + longer * longer / (d_l * d_l));
             });
@@ -202,7 +223,8 @@ class LearnedReference {
         return best;
     }
     [[nodiscard]] Real facing_any(std::size_t i, std::size_t j) const {
-        return best_facing(i, j, [&](const Real& l, const Real& b, const Real& sine, const Real&) {
+        constexpr double kReach_m = 8.0;  // 4 m along and 6.5 m across
+        return best_facing(i, j, kReach_m, [&](const Real& l, const Real& b, const Real& sine, const Real&) {
             const Real off = std::max(Real(0), Real(b - Real(5.5))) + std::max(Real(0), Real(Real(2.5) - b));
             return Real(l * l / 16 + off * off + sine * sine / Real(0.6) / Real(0.6));
         });
@@ -226,7 +248,7 @@ class LearnedReference {
     std::vector<const Cone*> cones_;
     std::vector<Vector> place_;  ///< from the car
     Real view_{0};
-    std::vector<Facing> facing_;  ///< edges within s_crit
+    std::vector<Facing> facing_;  ///< edges within s_crit, by middle_x
     mutable std::map<std::pair<std::size_t, std::size_t>, Real> known_facing_;
 };
 

@@ -18,6 +18,8 @@ class Shrinking {
         while (remove_cones(1)) {
         }
         reset_parameters();
+        while (remove_cones(1)) {  // simpler parameters may do with fewer
+        }
         return std::move(smallest_);
     }
 

@@ -203,7 +203,7 @@ Examples
 >>> conelane.rld_parameters("tuned")
 Traceback (most recent call last):
     ...
-ValueError: parameters: there is no set 'tuned', only default, n12, context, shape, full
+ValueError: parameters: there is no set 'tuned', only default, n12, context, shape, full, learned
 )");
 }
 

@@ -107,7 +107,7 @@ TEST_F(OwnWeights, OthersAreUsed) {
 
 TEST_F(OwnWeights, FaultsNameWhatIsWrong) {
     EXPECT_EQ(fault_of(""), "weights: line 1: must be a JSON object, as `conelane train front` writes it");
-    EXPECT_EQ(fault_of(with("\"version\": 2", "\"version\": 3")), "version: must be 1 or 2");
+    EXPECT_EQ(fault_of(with("\"version\": 3", "\"version\": 4")), "version: must be 1, 2 or 3");
     EXPECT_EQ(fault_of(with("\"own_segment_known\"", "\"own_segment\"")),
               "features: 'state' has 'own_segment' at place 0, unlike the library: the weights are of "
               "another version");

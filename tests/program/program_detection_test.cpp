@@ -92,7 +92,8 @@ TEST_F(Program, DetectsByWeightsOfOnesOwn) {
         EXPECT_EQ(by_file[i].lane, by_default[i].lane);
         EXPECT_EQ(by_file[i].confidence, by_default[i].confidence);
     }
-    file_with(text_of(shipped).substr(0, 9000), "cut.json");
+    const std::string whole = text_of(shipped);
+    file_with(whole.substr(0, whole.find(',', 9000)), "cut.json");
     expect_refused("detect --method front --weights cut.json --scenes s.scenes.jsonl --out x.lanes.jsonl",
                    {"cut.json", "the file ends in the middle"});
     EXPECT_FALSE(std::filesystem::exists(path("x.lanes.jsonl")));

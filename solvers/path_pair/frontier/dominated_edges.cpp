@@ -29,9 +29,14 @@ void DominatedEdges::find(const ResidualGraph& residual, const PairRelaxation& r
     for (int kind = 0; kind < relaxation.system().kind_count; ++kind) {
         std::vector<std::uint64_t>& before = before_[to_index(kind)];
         std::vector<std::uint64_t>& after = after_[to_index(kind)];
-        before.assign(residual.arc.size() * words, ~std::uint64_t{0});
-        after.assign(residual.arc.size() * words, propagate ? ~std::uint64_t{0} : 0);
+        before.clear();
+        after.clear();
+        before.reserve(residual.arc.size() * words);
+        after.reserve(residual.arc.size() * words);
         for (int a = 0; a < residual.size(); ++a) {
+            if (clock.tick(2 * words)) return;
+            before.resize((to_index(a) + 1) * words, ~std::uint64_t{0});
+            after.resize((to_index(a) + 1) * words, propagate ? ~std::uint64_t{0} : 0);
             if (!propagate || relaxation.start(kind)[to_index(a)] < kUnreachable) {
                 std::copy_n(edges.lost_after(a), words, before.data() + to_index(a) * words);
             }

@@ -28,10 +28,14 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
         insert(at_cone_, to_index(graph.tail(2 * edges_[number])), number);
         insert(at_cone_, to_index(graph.head(2 * edges_[number])), number);
     }
-    excluded_.assign(edges_.size() * words_, 0);
+    // Rows are made one by one: megabytes that are first written at once take milliseconds without a look at
+    // the clock.
+    excluded_.clear();
+    excluded_.reserve(edges_.size() * words_);
     for (std::size_t number = 0; number < edges_.size(); ++number) {
-        if (clock.out_of_time(10 * words_)) return;
         const std::span<const std::uint64_t> row = graph.incompatible_row(edges_[number]);
+        if (clock.out_of_time(10 * words_) || clock.tick(row.size())) return;
+        excluded_.resize((number + 1) * words_, 0);
         for (std::size_t w = 0; w < row.size(); ++w) {
             for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
                 const int other = number_of_edge_[w * 64 + to_index(std::countr_zero(bits))];
@@ -39,10 +43,14 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
             }
         }
     }
-    after_.resize(residual.arc.size() * words_);
-    before_.resize(residual.arc.size() * words_);
+    after_.clear();
+    before_.clear();
+    after_.reserve(residual.arc.size() * words_);
+    before_.reserve(residual.arc.size() * words_);
     for (int a = 0; a < residual.size(); ++a) {
-        if (clock.out_of_time(2 * words_)) return;
+        if (clock.out_of_time(2 * words_) || clock.tick(2 * words_)) return;
+        after_.resize((to_index(a) + 1) * words_);
+        before_.resize((to_index(a) + 1) * words_);
         const std::uint64_t* const excluded = excluded_.data() + number(a) * words_;
         const std::uint64_t* const at_tail = at_cone_.data() + to_index(residual.tail[to_index(a)]) * words_;
         const std::uint64_t* const at_head = at_cone_.data() + to_index(residual.head[to_index(a)]) * words_;
