@@ -13,10 +13,12 @@ namespace conelane {
 /// - `shape`: the same with the costs of the lane's shape (rld-shape-context),
 /// - `n12`: accuracy of lanes found among the 12 nearest cones,
 /// - `full`: IoU of lanes found among all visible cones at 30 m,
-/// - `learned`: lanes of all visible cones, by learned costs alone (the detector rld-learned); its weights have
+/// - `learned`: lanes of all visible cones, by learned costs alone (the detector rld-learned); its weights
+/// have
 ///   their record with them.
-/// Of the others, parameters/NAME.record.json has the scenes of the tuning and the figures on tracks held out;
-/// docs/results.md compares the sets with the defaults. None is better everywhere, so none is the default.
+/// Of the others, parameters/NAME.record.json has the scenes of the tuning and the figures on tracks held
+/// out; docs/results.md compares the sets with the defaults. None is better everywhere, so none is the
+/// default.
 [[nodiscard]] std::vector<std::string_view> rld_parameter_set_names();
 
 /// The set of that name; nothing for an unknown name.
