@@ -350,8 +350,8 @@ class Checker {
             if (others.size() == 1 && is_near(cone)) sum -= near_end_benefit(cone);
             if (others.size() == 1 && learned)
                 sum += is_near(cone) ? learned->near_end(cone) : learned->far_end(cone);
-            const auto over_gap = [&, cone = cone](std::size_t other) {
-                return gaps.contains({std::min(cone, other), std::max(cone, other)});
+            const auto over_gap = [&, at = cone](std::size_t other) {
+                return gaps.contains({std::min(at, other), std::max(at, other)});
             };
             for (std::size_t a = 0; a < others.size(); ++a) {
                 for (std::size_t b = a + 1; b < others.size(); ++b) {
