@@ -57,7 +57,7 @@ std::string parameters_fault(const ParameterTag& made, const ParameterTag& check
 }  // namespace
 
 ParameterTag tag_of(const std::string& source, const RldParameters& parameters) {
-    // A file's folder is nobody's business.
+    // The tag holds the file's name without its folder.
     const std::string name = source.empty() ? kDefault : std::filesystem::path(source).filename().string();
     return {name, hash_of(parameters), parameters.pairing};
 }

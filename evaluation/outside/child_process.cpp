@@ -212,7 +212,7 @@ bool ChildProcess::has_exited() const {
 }
 
 std::string ChildProcess::reap() {
-    // The number of the group is its own until the shell is reaped, so nobody else is hit.
+    // The system reuses the group's number only after the shell is reaped.
     const auto held = hold_interruption();
     const bool by_itself = has_exited();
     ::kill(-pid_, SIGKILL);

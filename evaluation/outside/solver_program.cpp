@@ -28,7 +28,7 @@ constexpr std::uintmax_t kMaxSolutionBytes = std::uintmax_t{64} << 20U;
 constexpr double kNoCutoff = 1e300;
 constexpr double kNoLimit_ms = 1e9;  ///< as a number, since not every program reads "inf"
 
-/// Made new, so that nobody else writes there.
+/// A new folder that only this process writes to.
 fs::path make_folder() {
     std::string name = (fs::temp_directory_path() / "conelane_solver_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
@@ -72,7 +72,7 @@ std::string filled(std::string text, const std::vector<Placeholder>& values) {
     return text;
 }
 
-/// A word in braces, letters and underscores alone, that stands for nothing: most likely a slip of the pen.
+/// Refuses a word in braces, of letters and underscores alone, that is no placeholder: probably a misprint.
 /// `${NAME}` is the shell's.
 void require_known_placeholders(std::string_view command) {
     const std::vector<Placeholder> known = placeholders({}, "", "");

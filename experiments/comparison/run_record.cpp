@@ -149,7 +149,7 @@ FolderLock open_run(const fs::path& directory, const std::string& record, bool o
     remove_abandoned_files(directory);
     const std::vector<fs::path> earlier = files_of_a_run(directory);
     if (fs::exists(directory / kRunFile)) {
-        // A record that cannot be read is no reason to refuse what is to be replaced anyway.
+        // A record that cannot be read will be replaced, so it is ignored.
         std::string stored;
         try {
             stored = read_run_record(directory);

@@ -132,7 +132,7 @@ class CrossCheck {
         : options_(options), directory_(std::move(directory)) {
         for (const fs::path& file : options.scenes)
             std::ranges::move(read_scenes(file), std::back_inserter(given_));
-        (void)solvers(Formulation::tight);  // a wrong name is told before the work
+        (void)solvers(Formulation::tight);  // reports a wrong name before the work
     }
 
     CrossCheckSummary run() {
