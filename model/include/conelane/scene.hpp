@@ -48,8 +48,8 @@ struct Cone {
     Point position{0.0, 0.0};  ///< [m], map frame
     ConeColor color = ConeColor::unknown;
     double confidence = 1.0;  ///< of the detection, in [0, 1]
-    /// What is known beyond the label `color`. Where it is there, `front` looks at it alone, and all other
-    /// detectors at `color` alone.
+    /// Class probabilities. If present, `front` and RldParameters::w_color use them instead of `color`; the
+    /// other detectors use `color` alone.
     std::optional<ColorProbabilities> color_probabilities{};
 
     /// Those, or those of the label.
