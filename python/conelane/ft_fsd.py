@@ -57,6 +57,7 @@ _MISSION_OF = {
 _WITHOUT_END = 1_000_000_000  # laps of what is no dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _GUESSED_M = 5.0  # of a lane that is a guess
+_SHORT_OF_A_WALL = 2  # points of the centre line, 0.5 m each
 _MOST_CONES = 5000  # whose places are kept
 _WIDEST_MATCH_M = 6.5  # cones of both sides farther apart are no pair
 
@@ -138,7 +139,8 @@ class PathPlanner:
     - The path begins at the car's foot point on the centre line, and at the car itself only where the lane begins
       ahead of it.
     - Where the lane that is seen is shorter than `path_length_m`, the rows are closer together instead of going on
-      where no cone is. The path ends too where a cone of a side has the colour of the other one.
+      where no cone is. The path ends too where a cone of a side has the colour of the other one, and before it crosses
+      the line between two cones of a side that have the colour of that side.
     - No virtual cones are made up: the arrays with virtual cones are those of the sorted ones. In acceleration and
       skidpad the path is that of the rules, laid onto the cones, and the sorted arrays are empty.
 
@@ -250,8 +252,8 @@ class PathPlanner:
         is_fresh = self.plan.state in ("following", "finished") and self.plan.age_s == 0.0
         left = right = np.zeros((0, 2))
         if is_fresh:
-            left = self._boundary(self.plan.answer.left_ids, Color.yellow, True)
-            right = self._boundary(self.plan.answer.right_ids, Color.blue, False)
+            left = self._boundary(self.plan.answer.left_ids, Color.blue, Color.yellow, True)
+            right = self._boundary(self.plan.answer.right_ids, Color.yellow, Color.blue, False)
             self._cut_guess()
         path = self._path()
         self._calls = 0 if is_fresh else self._calls + 1
@@ -267,9 +269,10 @@ class PathPlanner:
         while len(self._seen) > _MOST_CONES:
             del self._seen[next(iter(self._seen))]
 
-    def _boundary(self, ids: IntArray, other: Color, is_first: bool) -> FloatArray:
+    def _boundary(self, ids: IntArray, own: Color, other: Color, is_first: bool) -> FloatArray:
         """Places of a boundary. Notes where it contradicts the lane by a cone of the other side's colour: there is no
-        lane where that is the first or the second cone, and else it ends beside the last cone before."""
+        lane where that is the first or the second cone, and else it ends beside the last cone before. Notes too where
+        the lane that is driven, which may be another one, crosses the line between two cones of the own colour."""
         known = [self._seen[cone] for cone in ids.tolist() if cone in self._seen]
         places = np.array([place for place, _ in known]).reshape(-1, 2)
         if is_first:
@@ -279,20 +282,25 @@ class PathPlanner:
             self._has_contradiction = True
         elif wrong:
             line, last = self.plan.centre_line[:, 1:3], places[wrong[0] - 1]
-            end = line[np.linalg.norm(line - last, axis=1).argmin()] if len(line) else last
-            # Of both sides the one that ends first.
-            if self._end is None or _along(line, end) < _along(line, self._end):
-                self._end = end
+            self._end_at(line[_along(line, last)] if len(line) else last)
+        walls = [i for i in range(len(known) - 1) if known[i][1] == own and known[i + 1][1] == own]
+        crossing = _first_crossing(self.plan.centre_line[:, 1:3], places, walls)
+        if crossing is not None:
+            self._end_at(self.plan.centre_line[max(0, crossing - _SHORT_OF_A_WALL), 1:3])
         return places
+
+    def _end_at(self, end: FloatArray) -> None:
+        """The path ends here, or where it had to end before."""
+        line = self.plan.centre_line[:, 1:3]
+        if self._end is None or _along(line, end) < _along(line, self._end):
+            self._end = end
 
     def _cut_guess(self) -> None:
         """A lane of one boundary of which nothing is trusted is a guess: its beginning alone is a path."""
         line = self.plan.centre_line
         if self.plan.answer.confidence is not None or self.plan.safe_m > 0.0 or len(line) == 0:
             return
-        end = line[np.abs(line[:, 0] - _GUESSED_M).argmin(), 1:3]
-        if self._end is None or _along(line[:, 1:3], end) < _along(line[:, 1:3], self._end):
-            self._end = end
+        self._end_at(line[np.abs(line[:, 0] - _GUESSED_M).argmin(), 1:3])
 
     def _path(self) -> FloatArray:
         line = self.plan.centre_line
@@ -338,6 +346,20 @@ def _pose(position: FloatArray, direction: Union[FloatArray, float]) -> Tuple[fl
 def _along(line: FloatArray, place: FloatArray) -> int:
     """Index of the point of a line that is nearest to a place."""
     return int(np.linalg.norm(line - place, axis=1).argmin()) if len(line) else 0
+
+
+def _first_crossing(line: FloatArray, wall: FloatArray, segments: Sequence[int]) -> Optional[int]:
+    """Index of the first point of a line after which it crosses one of these segments of a wall."""
+    chosen = np.array(segments, dtype=int)
+    a, b, c, d = line[:-1, None], line[1:, None], wall[None, chosen], wall[None, chosen + 1]
+    crosses = (_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) <= 0.0)
+    points = np.flatnonzero(crosses.any(axis=1))
+    return int(points[0]) if len(points) else None
+
+
+def _side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """1 where c lies left of the line from a to b, -1 where it lies right of it."""
+    return np.sign((b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0]))
 
 
 def _nearest(of: FloatArray, among: FloatArray) -> IntArray:
