@@ -246,6 +246,23 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
 }
 
+TEST_F(Program, CertificatesCoverLearnedCosts) {
+    make_scenes("--fp 0.5");
+    const std::string on_scenes = "certify --params learned --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run(on_scenes + "--out learned.certificates.jsonl").exit_code, 0);
+    const Outcome good = run(on_scenes + "--verify learned.certificates.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    std::string first_line = text_of(path("learned.certificates.jsonl"));
+    first_line.resize(first_line.find('\n'));
+    nlohmann::json forgery = nlohmann::json::parse(first_line);
+    forgery["bound"] = forgery["bound"].get<double>() + 1e-3;
+    file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
+    const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
+    EXPECT_EQ(bad.exit_code, 1) << bad.output;
+    EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
+}
+
 TEST_F(Program, CertificatesCoverShapeCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";
