@@ -1,11 +1,14 @@
 #include "conelane/bound_certificate.hpp"
 
 #include "model/geometry.hpp"
+#include "model/learned_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 namespace conelane {
@@ -27,15 +30,12 @@ double fourth(double value) {
 class Verification {
   public:
     Verification(const Scene& scene, const RldParameters& parameters, const BoundCertificate& certificate)
-        : scene_(scene), p_(parameters), certificate_(certificate), heading_(scene.pose.heading()) {}
+        : scene_(scene), p_(parameters), certificate_(certificate), heading_(scene.pose.heading()) {
+        if (p_.learned_costs) learned_.emplace(scene_, p_);
+    }
 
     BoundVerdict run() {
         if (p_.pairing != Pairing::near_far) violated("certificates are for the pairing near_far");
-        if (p_.w_color > 0.0) violated("certificates are for the model without colour costs");
-        if (p_.learned_costs)
-            violated("certificates of a root bound are for the model without learned costs");
-        if (p_.d_gap > p_.d_e)
-            violated("certificates of a root bound are for the model without edges over gaps");
         check_multipliers();
         check_cliques();
         if (!verdict_.violations.empty()) return std::move(verdict_);
@@ -59,13 +59,18 @@ class Verification {
         std::size_t to;
         double cost;  ///< reduced, with the multiplier of the cone `to`
     };
-    /// An edge that (27) allows.
+    struct Succession {
+        std::size_t arc;  ///< the next one
+        double cost;      ///< of the turn
+    };
+    /// An edge that (27) allows, or that is allowed over a gap.
     struct AllowedEdge {
         std::size_t i;
         std::size_t j;
         Point vector;
         double length;
         Point middle;
+        bool over_gap;
     };
 
     void violated(std::string what) { verdict_.violations.push_back(std::move(what)); }
@@ -76,15 +81,38 @@ class Verification {
     [[nodiscard]] double angle_cost(std::size_t i, std::size_t middle, std::size_t k) const {
         return fourth((interior_angle(position(i), position(middle), position(k)) - p_.theta_e) / p_.theta_t);
     }
+    /// Whether the way by the cone goes on as straight as an edge over a gap needs it.
+    [[nodiscard]] bool is_straight(std::size_t i, std::size_t middle, std::size_t k) const {
+        const double angle = interior_angle(position(i), position(middle), position(k));
+        return std::numbers::pi - angle <= p_.theta_gap + kTieTolerance;
+    }
+    [[nodiscard]] double length_of(const Edge& edge) const {
+        return (position(edge.j) - position(edge.i)).norm();
+    }
+    /// Such an edge is allowed over a gap or not at all.
+    [[nodiscard]] bool exceeds_s_crit(const Edge& edge) const {
+        return spacing_cost(length_of(edge)) > p_.s_crit + kTieTolerance;
+    }
+    /// Whether (28) or a gap forbids the turn from one edge to another one that it shares the cone with.
+    [[nodiscard]] bool is_forbidden_turn(std::size_t i, std::size_t middle, std::size_t k) const {
+        if (angle_cost(i, middle, k) > p_.t_crit + kTieTolerance) return true;
+        const bool over_gap = exceeds_s_crit({i, middle}) || exceeds_s_crit({middle, k});
+        return over_gap && !is_straight(i, middle, k);
+    }
     [[nodiscard]] double unevenness(std::size_t i, std::size_t middle, std::size_t k) const {
         const double before = (position(middle) - position(i)).norm();
         const double after = (position(k) - position(middle)).norm();
         return square((before - after) / p_.d_t);
     }
-    /// A walk that begins at the cone gains this.
-    [[nodiscard]] double near_end_benefit(std::size_t cone) const {
+    /// What a walk costs that begins at the near cone.
+    [[nodiscard]] double near_end_cost(std::size_t cone) const {
         const double off_m = std::abs(cross(heading_, position(cone) - scene_.pose.position)) - 0.5 * p_.d_w;
-        return p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
+        const double benefit = p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
+        return (learned_ ? static_cast<double>(learned_->near_end(cone)) : 0.0) - benefit;
+    }
+    /// What a walk costs that ends at the far cone.
+    [[nodiscard]] double far_end_cost(std::size_t cone) const {
+        return learned_ ? static_cast<double>(learned_->far_end(cone)) : 0.0;
     }
 
     void check_multipliers() {
@@ -97,12 +125,12 @@ class Verification {
         }
     }
 
-    /// Whether (7) or (28) forbids two edges together.
+    /// Whether (7), (28) or a gap forbids two edges together.
     [[nodiscard]] bool excluded(const Edge& a, const Edge& b) const {
         if (a == b) return false;
         for (const auto& [middle, i] : {std::pair{a.i, a.j}, std::pair{a.j, a.i}}) {
             for (const auto& [other, k] : {std::pair{b.i, b.j}, std::pair{b.j, b.i}}) {
-                if (middle == other) return angle_cost(i, middle, k) > p_.t_crit + kTieTolerance;
+                if (middle == other) return is_forbidden_turn(i, middle, k);
             }
         }
         const Segment first{position(a.i), position(a.j)};
@@ -132,23 +160,57 @@ class Verification {
 
     [[nodiscard]] double spacing_cost(double length) const { return fourth((length - p_.d_e) / p_.d_t); }
 
+    /// Whether an edge that exceeds s_crit is allowed: at one of its ends an edge within s_crit goes
+    /// straight on.
+    [[nodiscard]] bool is_over_gap(const Edge& edge) const {
+        const double length = length_of(edge);
+        if (length > p_.d_gap + kTieTolerance || length <= p_.d_e) return false;
+        for (const auto& [from, to] : {std::pair{edge.i, edge.j}, std::pair{edge.j, edge.i}}) {
+            for (std::size_t on = 0; on < scene_.cones.size(); ++on) {
+                if (on == from || on == to || length_of({to, on}) < kMinEdge) continue;
+                if (!exceeds_s_crit({to, on}) && is_straight(from, to, on)) return true;
+            }
+        }
+        return false;
+    }
+
     [[nodiscard]] std::vector<AllowedEdge> allowed_edges() const {
         std::vector<AllowedEdge> edges;
         for (std::size_t i = 0; i < scene_.cones.size(); ++i) {
             for (std::size_t j = i + 1; j < scene_.cones.size(); ++j) {
-                const Point vector = position(j) - position(i);
-                const double length = vector.norm();
-                if (length < kMinEdge || spacing_cost(length) > p_.s_crit + kTieTolerance) continue;
-                edges.push_back({i, j, vector, length, 0.5 * (position(i) + position(j))});
+                const bool is_long = exceeds_s_crit({i, j});
+                const double length = length_of({i, j});
+                if (length < kMinEdge || (is_long && !is_over_gap({i, j}))) continue;
+                edges.push_back(
+                    {i, j, position(j) - position(i), length, 0.5 * (position(i) + position(j)), is_long});
             }
         }
         return edges;
+    }
+
+    /// The faults of color that are expected of an edge: between a blue and a yellow cone, and near the car
+    /// on the side that its color is not.
+    [[nodiscard]] double color_faults(const AllowedEdge& edge, bool along_heading) const {
+        const ColorProbabilities a = scene_.cones[edge.i].probabilities();
+        const ColorProbabilities b = scene_.cones[edge.j].probabilities();
+        double faults = a.blue * b.yellow + a.yellow * b.blue;
+        const double ahead = edge.vector.dot(heading_);
+        if (!along_heading || std::abs(ahead) <= kTieTolerance) return faults;
+        const auto either = [](double of_a, double of_b) { return of_a + of_b - of_a * of_b; };
+        // The edge as seen from the car, and the car as seen from the edge.
+        const double left_m = cross(heading_, edge.middle - scene_.pose.position);
+        const double turned =
+            std::copysign(1.0, ahead) * cross(edge.vector, position(edge.i) - scene_.pose.position);
+        if (std::max(left_m, turned) < -kTieTolerance) faults += either(a.blue, b.blue);
+        if (std::min(left_m, turned) > kTieTolerance) faults += either(a.yellow, b.yellow);
+        return faults;
     }
 
     /// v_ij of formulation.md: the allowed edge that faces this one best decides.
     [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
         double best = 1.0;
         for (const AllowedEdge& other : all) {
+            if (other.over_gap) continue;
             if (other.i == edge.i || other.i == edge.j || other.j == edge.i || other.j == edge.j) continue;
             const Point way = other.middle - edge.middle;
             const double ahead_m = way.dot(edge.vector) / edge.length;
@@ -166,7 +228,7 @@ class Verification {
         for (const BoundCertificate::Clique& clique : certificate_.cliques) {
             for (const Edge& edge : clique.edges) clique_multiplier[edge] += clique.multiplier;
         }
-        leaving_.resize(scene_.cones.size());
+        std::vector<std::vector<std::size_t>> leaving(scene_.cones.size());  // arcs by their first cone
         const std::vector<AllowedEdge> edges = allowed_edges();
         for (const AllowedEdge& edge : edges) {
             const double across = std::abs(cross(edge.vector, heading_));
@@ -180,12 +242,32 @@ class Verification {
             const bool along_heading =
                 foot_point(scene_.pose.position, segment).distance_m <= p_.d_h + kTieTolerance &&
                 std::atan2(across, std::abs(edge.vector.dot(heading_))) <= p_.theta_heading + kTieTolerance;
+            if (p_.w_color > 0.0 || learned_) {
+                const double faults = color_faults(edge, along_heading);
+                cost += p_.w_color * faults;
+                if (learned_) cost += static_cast<double>(learned_->edge(edge.i, edge.j, faults));
+            }
             if (along_heading) cost -= certificate_.heading_multiplier;
             const auto multiplier = clique_multiplier.find({edge.i, edge.j});
             if (multiplier != clique_multiplier.end()) cost += multiplier->second;
             for (const auto& [from, to] : {std::pair{edge.i, edge.j}, std::pair{edge.j, edge.i}}) {
-                leaving_[from].push_back(arcs_.size());
+                leaving[from].push_back(arcs_.size());
                 arcs_.push_back({from, to, cost + certificate_.cone_multiplier[to]});
+            }
+        }
+        find_successions(leaving);
+    }
+
+    void find_successions(const std::vector<std::vector<std::size_t>>& leaving) {
+        successions_.resize(arcs_.size());
+        for (std::size_t a = 0; a < arcs_.size(); ++a) {
+            const auto& [from, middle, unused] = arcs_[a];
+            for (const std::size_t b : leaving[middle]) {
+                const std::size_t to = arcs_[b].to;
+                if (to == from || is_forbidden_turn(from, middle, to)) continue;
+                double cost = p_.w_t * angle_cost(from, middle, to) + p_.w_u * unevenness(from, middle, to);
+                if (learned_) cost += static_cast<double>(learned_->turn(from, middle, to));
+                successions_[a].push_back({b, cost});
             }
         }
     }
@@ -196,18 +278,13 @@ class Verification {
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
             const std::size_t from = arcs_[a].from;
             if (!near(from)) continue;
-            walk_[a] = certificate_.cone_multiplier[from] - near_end_benefit(from) + arcs_[a].cost;
+            walk_[a] = certificate_.cone_multiplier[from] + near_end_cost(from) + arcs_[a].cost;
         }
         for (std::size_t round = 0; round <= arcs_.size(); ++round) {
             bool shorter = false;
             for (std::size_t a = 0; a < arcs_.size(); ++a) {
                 if (walk_[a] == kNone) continue;
-                for (const std::size_t b : leaving_[arcs_[a].to]) {
-                    if (arcs_[b].to == arcs_[a].from) continue;
-                    const double angle = angle_cost(arcs_[a].from, arcs_[a].to, arcs_[b].to);
-                    if (angle > p_.t_crit + kTieTolerance) continue;
-                    const double turn =
-                        p_.w_t * angle + p_.w_u * unevenness(arcs_[a].from, arcs_[a].to, arcs_[b].to);
+                for (const auto& [b, turn] : successions_[a]) {
                     const double length = walk_[a] + turn + arcs_[b].cost;
                     if (!(length < walk_[b] - kShorter)) continue;
                     walk_[b] = length;
@@ -225,6 +302,9 @@ class Verification {
         std::vector<double> best(scene_.cones.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
             if (!near(arcs_[a].to)) best[arcs_[a].to] = std::min(best[arcs_[a].to], walk_[a]);
+        }
+        for (std::size_t f = 0; f < best.size(); ++f) {
+            if (best[f] < kNone) best[f] += far_end_cost(f);
         }
         double pair = kNone;
         for (std::size_t f = 0; f < best.size(); ++f) {
@@ -244,8 +324,9 @@ class Verification {
     const BoundCertificate& certificate_;
     Point heading_;
     std::vector<Arc> arcs_;
-    std::vector<std::vector<std::size_t>> leaving_;  ///< arcs by their first cone
-    std::vector<double> walk_;                       ///< shortest one that ends with the arc
+    std::vector<std::vector<Succession>> successions_;  ///< by arc
+    std::vector<double> walk_;                          ///< shortest one that ends with the arc
+    std::optional<LearnedReference<long double>> learned_;
     BoundVerdict verdict_;
 };
 

@@ -59,7 +59,8 @@ std::string record_of(const CrossValidationOptions& options) {
                                   {"scenes", scene_options_json(learning.scenes)},
                                   {"variants", learning.variants},
                                   {"evaluations", learning.evaluations},
-                                  {"front_steps", learning.front_steps}}
+                                  {"front_steps", learning.front_steps},
+                                  {"rld_steps", learning.rld_steps}}
         .dump();
 }
 

@@ -12,6 +12,7 @@
 #include "evaluation/files/step_score_file.hpp"
 #include "evaluation/scenes/scene_set.hpp"
 #include "experiments/training/front_training_run.hpp"
+#include "experiments/training/rld_training_run.hpp"
 #include "experiments/training/training_run.hpp"
 #include "experiments/tuning/detector_tuning.hpp"
 #include "experiments/tuning/evaluation.hpp"
@@ -36,6 +37,8 @@ constexpr const char* kPaperNet = "rank_net_paper.json";
 constexpr const char* kDelaunayBeam = "delaunay-beam.json";
 constexpr const char* kAstarLane = "astar-lane.json";
 constexpr const char* kShape = "rld-shape.json";
+constexpr const char* kLearnedRld = "rld-learned.json";
+constexpr const char* kLearnedRldCheckpoint = "rld-learned.checkpoint.json";
 constexpr const char* kFrontCheckpoint = "front.checkpoint.json";
 constexpr const char* kFrontColorsCheckpoint = "front.colors.checkpoint.json";
 
@@ -200,6 +203,35 @@ DetectorMaker make_shape(const fs::path& folder, const RunOptions& options) {
     return maker_of(find_detector("rld-shape"), learned);
 }
 
+// The learned costs of RLD, with the options of the shipped ones. Their training draws its scenes itself, as
+// that of front does.
+
+constexpr std::size_t kLearnedRldSteps = 400;
+constexpr double kLearnedRldRate = 0.02;
+
+void learn_rld(const LearningOptions& options, const fs::path& folder) {
+    const fs::path file = folder / kLearnedRld;
+    if (fs::exists(file)) return;
+    RldTrainingRunOptions run;
+    run.tracks = options.tracks;
+    run.training.units = 0;
+    run.training.steps =
+        static_cast<std::size_t>(std::lround(options.rld_steps * static_cast<double>(kLearnedRldSteps)));
+    run.training.learning_rate = kLearnedRldRate;
+    run.training.seed = options.scenes.seed;
+    run.training.threads = options.scenes.threads;
+    run.training.checkpoint = folder / kLearnedRldCheckpoint;
+    const RldTrainingRun result = run_rld_training(run, {});
+    write_rld_parameters(file, result.parameters, result.record);
+    fs::remove(run.training.checkpoint);
+}
+
+DetectorMaker make_learned_rld(const fs::path& folder, const RunOptions& options) {
+    RunOptions learned = options;
+    learned.detector.rld_parameters = read_rld_parameters(folder / kLearnedRld);
+    return maker_of(find_detector("rld-learned"), learned);
+}
+
 // The weights of front. It draws its scenes itself, so that of the options only seed, threads and whether
 // there are colors count. A set for colors is learned as the shipped one was, after the first set.
 
@@ -274,7 +306,8 @@ constexpr std::array kLearners{Learner{"front", learn_front, make_front},
                                Learner{"clc-paper", learn_clc_paper, make_paper_clc},
                                Learner{"delaunay-beam", learn_delaunay_beam, make_delaunay_beam},
                                Learner{"astar-lane", learn_astar_lane, make_astar_lane},
-                               Learner{"rld-shape", learn_shape, make_shape}};
+                               Learner{"rld-shape", learn_shape, make_shape},
+                               Learner{"rld-learned", learn_rld, make_learned_rld}};
 
 }  // namespace
 

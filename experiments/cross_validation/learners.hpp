@@ -19,6 +19,7 @@ struct LearningOptions {
     std::size_t variants = 1;         ///< of each track, for networks
     std::size_t evaluations = 60;     ///< of parameters that are tuned, on every fourth pose
     double front_steps = 1.0;  ///< of the training of `front`, as a share of those of the shipped weights
+    double rld_steps = 1.0;    ///< the same of the training of `rld-learned`
 };
 
 /// The file of the weights of front in the folder of a fold.
@@ -34,7 +35,7 @@ struct Learner {
     DetectorMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
 };
 
-/// front, clc, clc-warm, clc-paper, delaunay-beam, astar-lane and rld-shape.
+/// front, front-warm, clc, clc-warm, clc-paper, delaunay-beam, astar-lane, rld-shape and rld-learned.
 [[nodiscard]] std::span<const Learner> learners();
 
 /// None where the detector learns nothing, so answers the same in every fold.

@@ -116,9 +116,8 @@ std::vector<SearchCertificateRecord> search_certificates(const CertificateOption
 
 std::vector<CertificateRecord> root_certificates(const CertificateOptions& options,
                                                  const RldParameters& parameters) {
-    if (parameters.pairing != Pairing::near_far || parameters.w_color > 0.0) {
-        throw InvalidInput("--params", "root certificates are for the pairing near_far without colour costs");
-    }
+    if (parameters.pairing != Pairing::near_far)
+        throw InvalidInput("--params", "root certificates are for the pairing near_far");
     return certificates(options, parameters, [&](const Scene& scene) {
         return to_record(scene, certify_root_bound(make_problem(scene, parameters), options.time_limit_ms));
     });

@@ -98,6 +98,11 @@ void add_cross_validate_command(CLI::App& program) {
                     "of the training of front, as a share of those of the shipped weights")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command
+        .add_option("--rld-steps", options->run.learning.rld_steps,
+                    "of the training of rld-learned, as a share of those of the shipped costs")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);
     add_threads_option(command, options->threads,

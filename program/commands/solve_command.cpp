@@ -1,8 +1,11 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/solve_scene.hpp"
+#include "evaluation/files/input_error.hpp"
+#include "evaluation/files/lane_file.hpp"
 #include "evaluation/files/solution_file.hpp"
 #include "evaluation/outside/outside_solver.hpp"
 #include "evaluation/scenes/scene_file.hpp"
+#include "experiments/comparison/answer_check.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
@@ -10,6 +13,7 @@
 #include "solvers/registry.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +35,7 @@ struct Options {
     ParameterSource parameters;
     SolveLimits limits;
     bool warm_start = false;
+    std::string start;  ///< a file of lanes
     bool all_rows = false;
 };
 
@@ -74,6 +79,18 @@ std::string status_counts(const std::vector<SolutionRecord>& records) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// The lanes of a file by scene. Throws InputError where a scene has two.
+std::map<std::string, Lane> starting_lanes(const std::string& file) {
+    std::map<std::string, Lane> lanes;
+    for (const LaneRecord& record : read_lanes(file)) {
+        if (record.answer.status != LaneStatus::found || record.points) continue;
+        if (!lanes.emplace(record.scene, record.answer.lane).second)
+            throw InputError(file, record.line, "scene",
+                             "'" + record.scene + "' has two lanes to start from");
+    }
+    return lanes;
+}
+
 void solve_all(const Options& options) {
     const RldParameters parameters = options.parameters.load();
     const ParameterTag tag = tag_of(options.parameters.name, parameters);
@@ -82,12 +99,18 @@ void solve_all(const Options& options) {
     std::vector<SolutionRecord> records;
     records.reserve(scenes.size());
     std::optional<std::pair<Scene, LaneGraph>> previous;
+    std::map<std::string, Lane> lanes;
+    if (!options.start.empty()) lanes = starting_lanes(options.start);
+    std::size_t started = 0;
     Progress progress(name, scenes.size());
     for (const AnnotatedScene& annotated : scenes) {
         const Scene scene =
             options.nearest ? nearest_ahead(annotated.scene, *options.nearest) : annotated.scene;
         std::optional<LaneGraph> start;
         if (options.warm_start && previous) start = map_by_cone_id(previous->first, previous->second, scene);
+        if (const auto lane = lanes.find(scene.id); lane != lanes.end() && !lane->second.closed)
+            start = lane_graph_of(lane->second, scene);
+        if (start && !options.start.empty()) ++started;
         const RldReport report =
             solve_scene(*solver, scene, parameters, options.limits, start ? &*start : nullptr).report;
         SolutionRecord record{scene.id,         name,
@@ -115,6 +138,7 @@ void solve_all(const Options& options) {
             errors.add_answer(record.solver);
         }
     }
+    if (!options.start.empty()) fmt::print("{} started from a lane of {}\n", started, options.start);
     fmt::print("{} scenes: {}, in {}\n", records.size(), status_counts(records), options.out);
     report_errors(errors);
 }
@@ -150,8 +174,15 @@ void add_solve_command(CLI::App& program) {
     add_output_option(command, "--out", options->out, "*.solutions.jsonl")->required();
     add_nearest_option(command, options->nearest, "the N nearest cones ahead only; all without it");
     add_time_limit_option(command, options->limits.time_limit_ms);
-    command.add_flag("--warm-start", options->warm_start,
-                     "start from the lane graph of the scene before, its cones found again by id");
+    CLI::Option& warm_start =
+        *command.add_flag("--warm-start", options->warm_start,
+                          "start from the lane graph of the scene before, its cones found again by id");
+    command
+        .add_option("--start", options->start,
+                    "*.lanes.jsonl: start from the lanes that another method has found in these scenes; a "
+                    "closed lane and one with cones that the scene lacks start nothing, and one that RLD's "
+                    "constraints forbid is no answer")
+        ->excludes(&warm_start);
     add_parameter_options(command, options->parameters, "the defaults");
     command.callback([options] { solve_all(*options); });
 }

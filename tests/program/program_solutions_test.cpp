@@ -246,6 +246,66 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     expect_refused(on_scenes + "--verify bad.certificates.jsonl", {"bad.certificates.jsonl:1", "scene"});
 }
 
+/// A start from outside changes no optimum: lanes of another method, with cones that are not there, and none.
+TEST_F(Program, SolvesFromLanesOfAnotherMethod) {
+    make_scenes("--fp 0.3");
+    ASSERT_EQ(run("detect --method front --scenes s.scenes.jsonl --out front.lanes.jsonl").exit_code, 0);
+    const std::string solve = "solve --solver path-pair --time-limit inf --scenes s.scenes.jsonl --out ";
+    ASSERT_EQ(run(solve + "cold.jsonl").exit_code, 0);
+    const Outcome started = run(solve + "started.jsonl --start front.lanes.jsonl");
+    ASSERT_EQ(started.exit_code, 0) << started.errors;
+    EXPECT_THAT(started.output, HasSubstr(" started from a lane of front.lanes.jsonl\n"));
+    EXPECT_THAT(started.output, testing::Not(HasSubstr("\n0 started")));
+    const auto objectives = [&](const std::string& file) {
+        std::vector<std::string> all;
+        std::istringstream lines(text_of(path(file)));
+        for (std::string line; std::getline(lines, line);) {
+            const nlohmann::json record = nlohmann::json::parse(line);
+            EXPECT_EQ(record.at("status"), "optimal");
+            all.push_back(std::to_string(record.at("objective").get<double>()));
+        }
+        return all;
+    };
+    EXPECT_EQ(objectives("started.jsonl"), objectives("cold.jsonl"));
+
+    std::string lanes = text_of(path("front.lanes.jsonl"));
+    nlohmann::json first = nlohmann::json::parse(lanes.substr(0, lanes.find('\n')));
+    ASSERT_EQ(first.at("status"), "found");
+    nlohmann::json strange = first;
+    strange["left"][0] = 123456;
+    file_with(strange.dump() + "\n", "strange.lanes.jsonl");
+    const Outcome none = run(solve + "none.jsonl --start strange.lanes.jsonl");
+    EXPECT_EQ(none.exit_code, 0) << none.errors;
+    EXPECT_THAT(none.output, testing::StartsWith("0 started from a lane of strange.lanes.jsonl\n"));
+    EXPECT_EQ(objectives("none.jsonl"), objectives("cold.jsonl"));
+
+    nlohmann::json other = first;
+    other["method"] = "other";
+    file_with(first.dump() + "\n" + other.dump() + "\n", "two.lanes.jsonl");
+    expect_refused(solve + "x.jsonl --start two.lanes.jsonl", {"two.lanes.jsonl:2", "scene", "two lanes"});
+    expect_refused(solve + "x.jsonl --start nowhere.lanes.jsonl", {"nowhere.lanes.jsonl"});
+    expect_refused(solve + "x.jsonl --start front.lanes.jsonl --warm-start", {"--start", "--warm-start"});
+    expect_refused("solve --scenes s.scenes.jsonl --start front.lanes.jsonl --out front.lanes.jsonl",
+                   {"--out", "--start"});
+}
+
+TEST_F(Program, CertificatesCoverLearnedCosts) {
+    make_scenes("--fp 0.5");
+    const std::string on_scenes = "certify --params learned --scenes s.scenes.jsonl ";
+    ASSERT_EQ(run(on_scenes + "--out learned.certificates.jsonl").exit_code, 0);
+    const Outcome good = run(on_scenes + "--verify learned.certificates.jsonl");
+    EXPECT_EQ(good.exit_code, 0) << good.output;
+    EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
+    std::string first_line = text_of(path("learned.certificates.jsonl"));
+    first_line.resize(first_line.find('\n'));
+    nlohmann::json forgery = nlohmann::json::parse(first_line);
+    forgery["bound"] = forgery["bound"].get<double>() + 1e-3;
+    file_with(forgery.dump() + "\n", "forged.certificates.jsonl");
+    const Outcome bad = run(on_scenes + "--verify forged.certificates.jsonl");
+    EXPECT_EQ(bad.exit_code, 1) << bad.output;
+    EXPECT_THAT(bad.output, HasSubstr("0 verified, 1 failed"));
+}
+
 TEST_F(Program, CertificatesCoverShapeCosts) {
     make_scenes("--fp 0.5");
     const std::string on_scenes = "certify --nearest 20 --scenes s.scenes.jsonl ";

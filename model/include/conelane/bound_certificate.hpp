@@ -10,14 +10,14 @@
 
 namespace conelane {
 
-/// Lagrange multipliers that prove a lower bound of (29), shape costs included, for the pairing near_far and
-/// without color costs. Every lane graph visits each cone at most once, holds at most one edge of each
+/// Lagrange multipliers that prove a lower bound of (29) with all costs that parameters can add to it, for
+/// the pairing near_far. Every lane graph visits each cone at most once, holds at most one edge of each
 /// clique and at least two edges along the heading (9). So with non-negative multipliers m,
 ///     cost >= cost + sum_v m_v (visits_v - 1) + sum_q m_q (edges_q - 1) + m_h (2 - along_heading),
 /// and the right-hand side is a sum over two walks from near to far cones.
 struct BoundCertificate {
     struct Clique {
-        std::vector<Edge> edges;  ///< pairwise excluded by (7) or (28)
+        std::vector<Edge> edges;  ///< pairwise excluded by (7), (28) or a gap
         double multiplier;
     };
     std::vector<double> cone_multiplier;  ///< by cone of the scene

@@ -23,7 +23,7 @@ using testing::Not;
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
-    "--range 30 --every 40 --front-steps 0.002 --out cv --methods ";
+    "--range 30 --every 40 --front-steps 0.002 --rld-steps 0.01 --out cv --methods ";
 
 std::vector<std::string> courses_learned(const std::string& weights) {
     return nlohmann::json::parse(weights).at("training").at("tracks").get<std::vector<std::string>>();
@@ -32,7 +32,7 @@ std::vector<std::string> courses_learned(const std::string& weights) {
 class CrossValidation : public ProgramFixture {};
 
 TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
-    const Outcome outcome = run(kFolds + "front,clc,delaunay-beam,rld-pair");
+    const Outcome outcome = run(kFolds + "front,clc,delaunay-beam,rld-pair,rld-learned");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/step_scores.json"))),
                 testing::ElementsAre("curvy", "straight"));
@@ -42,13 +42,15 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 testing::ElementsAre("circle", "straight"));
     EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/front.json"))),
                 testing::UnorderedElementsAre("curvy", "straight"));
+    EXPECT_THAT(courses_learned(text_of(path("cv/folds/a/rld-learned.weights.json"))),
+                testing::UnorderedElementsAre("curvy", "straight"));
     EXPECT_THAT(outcome.output, Not(HasSubstr("learned from"))) << "nothing in the table was learned from";
 
     // Each course is driven by the weights of the fold that holds it out, and by no others.
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
     options.limits.time_limit_ms = 400.0;
-    for (const std::string detector : {"clc", "front"}) {
+    for (const std::string detector : {"clc", "front", "rld-learned"}) {
         const std::vector<LaneRecord> lanes = read_lanes(path("cv/" + detector + ".lanes.jsonl"));
         ASSERT_EQ(lanes.size(), scenes.size());
         for (std::size_t i = 0; i < scenes.size(); ++i) {

@@ -11,7 +11,7 @@ conelane(compare --tracks generated:straight generated:circle --methods rld-cbc,
 conelane(sweep --tracks generated:straight generated:circle --methods rld-cbc,rld-pair,clc --sizes 6,12 --every 40
          --out ${RESULTS}/sweep)
 set(scenes ${RESULTS}/scenes.scenes.jsonl)
-conelane(study optimality --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
+conelane(study optimality --params default,shape --scenes ${scenes} --out ${RESULTS}/optimality.jsonl)
 conelane(study backends --warm-start --permutations 1 --gap-limits 0.1,1 --scenes ${scenes} --sizes 6 --out ${RESULTS}/backends.jsonl)
 conelane(study anytime --scenes ${scenes} --limit 6 --limits 0.1,400 --out ${RESULTS}/anytime.jsonl)
 conelane(study growth --scenes ${scenes} --sizes 6,12 --limit 6 --out ${RESULTS}/growth.jsonl)

@@ -9,6 +9,7 @@
 #include "solvers/path_pair/path_pair_solver.hpp"
 #include "solvers/path_pair/search/branch_and_bound.hpp"
 #include "tests/support/clocks/fake_search_clock.hpp"
+#include "tests/support/learned_costs.hpp"
 #include "tests/support/random_scenes.hpp"
 #include "tests/support/six_cone_lane.hpp"
 
@@ -320,6 +321,99 @@ TEST(PathPairCertificate, RestsOnEveryShapeCost) {
     }
     EXPECT_GT(finite, 20);
     EXPECT_THAT(refused, testing::Each(testing::Gt(finite * 3 / 4)));
+}
+
+/// Cones of random colors; every third one has probabilities.
+Scene colored_scene(std::uint64_t seed, std::size_t cones) {
+    Scene scene = tests::random_scene(seed, cones);
+    boost::random::mt19937_64 random(seed + 1000);
+    boost::random::uniform_real_distribution<double> any(0.0, 0.5);
+    for (std::size_t i = 0; i < scene.cones.size(); ++i) {
+        scene.cones[i].color = i % 2 == 0 ? ConeColor::blue : ConeColor::yellow;
+        scene.cones[i].confidence = 0.5 + any(random);
+        if (i % 3 != 0) continue;
+        const double blue = any(random);
+        const double yellow = any(random);
+        scene.cones[i].color_probabilities =
+            ColorProbabilities{.unknown = 1.0 - blue - yellow, .blue = blue, .yellow = yellow};
+    }
+    return scene;
+}
+
+/// Also with learned costs, edges over gaps and costs of color the verifier finds the root's bound again, and
+/// refuses a bound that is higher or proven by other costs.
+TEST(PathPairCertificate, OfLearnedCostsIsVerifiedAndCannotBeForged) {
+    const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
+    int bounded = 0;
+    int gaps = 0;
+    std::vector<int> refused(6, 0);
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        SCOPED_TRACE(testing::Message() << "seed " << seed);
+        const Scene scene = colored_scene(seed, 14);
+        RldParameters parameters;
+        parameters.d_gap = 9.0;
+        parameters.theta_gap = 0.5;
+        parameters.w_color = 0.3;
+        parameters.use_confidence = true;
+        parameters.learned_costs = tests::random_learned_costs(seed, seed % 2 == 0 ? 0 : 5);
+        const BoundCertificate certificate = certify_root_bound(make_problem(scene, parameters));
+        const BoundVerdict verdict = verify_bound(scene, parameters, certificate);
+        EXPECT_THAT(verdict.violations, testing::IsEmpty());
+        ASSERT_TRUE(verdict.bound);
+        const RldReport optimum = solve(*solver, scene, parameters);
+        if (!optimum.objective || !std::isfinite(*verdict.bound)) continue;
+        ASSERT_EQ(optimum.status, SolveStatus::optimal);
+        ++bounded;
+        EXPECT_NEAR(*verdict.bound, certificate.bound, 1e-6);
+        EXPECT_LE(*verdict.bound, *optimum.objective + 1e-9);
+        BoundCertificate higher = certificate;
+        higher.bound = *verdict.bound + 1e-5;
+        EXPECT_THAT(verify_bound(scene, parameters, higher).violations, testing::SizeIs(1));
+        const LaneGraphProblem problem = make_problem(scene, parameters);
+        gaps += std::ranges::any_of(optimum.lane_graph->edges, [&](const Edge& edge) {
+            return (scene.cones[edge.i].position - scene.cones[edge.j].position).norm() > 6.0;
+        });
+
+        // Costs of one kind each that are cheaper than those that the bound is of.
+        for (std::size_t k = 0; k < refused.size(); ++k) {
+            RldParameters cheaper = parameters;
+            LearnedCosts costs = *parameters.learned_costs;
+            if (k < kLearnedParts.size()) {
+                LearnedNetwork& network = costs.of(kLearnedParts[k]);
+                network.linear[0] -= 0.2;
+            } else if (k == kLearnedParts.size()) {
+                cheaper.w_color = 0.0;
+            } else {
+                costs.of(LearnedPart::edge).linear[12] -= 0.3;  // color_cost
+            }
+            cheaper.learned_costs = std::make_shared<const LearnedCosts>(std::move(costs));
+            if (!verify_bound(scene, cheaper, certificate).violations.empty()) ++refused[k];
+        }
+    }
+    EXPECT_GT(bounded, 40);
+    EXPECT_GT(gaps, 5);
+    EXPECT_THAT(refused, testing::Each(testing::Gt(bounded / 3)));
+}
+
+/// A clique of a certificate may rest on a gap: two edges that meet at an angle that only edges within s_crit
+/// may have. Without gaps they may go together nowhere, since one of them is not allowed.
+TEST(PathPairCertificate, CliquesMayRestOnGaps) {
+    // Six metres straight on to a pair of cones 2.8 m apart, and a third cone at an angle of 1 rad from
+    // straight on.
+    Scene scene;
+    const std::vector<Point> at{{0.0, 0.0}, {7.0, 0.0}, {9.8, 0.0}, {8.5, 2.34}};
+    for (const Point& position : at)
+        scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
+    RldParameters parameters;
+    parameters.d_gap = 9.0;
+    parameters.theta_gap = 0.5;
+    parameters.t_crit = 100.0;
+    parameters.d_min = 0.1;
+    BoundCertificate certificate{std::vector<double>(4, 0.0), {{{{0, 1}, {1, 3}}, 0.1}}, 0.0, -100.0};
+    EXPECT_THAT(verify_bound(scene, parameters, certificate).violations, testing::IsEmpty());
+    certificate.cliques.front().edges = {{0, 1}, {1, 2}};
+    EXPECT_THAT(verify_bound(scene, parameters, certificate).violations,
+                testing::ElementsAre(testing::HasSubstr("may go together")));
 }
 
 /// Bounds of one step each leave everything to branching, on ends first and then on edges.
