@@ -14,7 +14,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-6;
 constexpr double kMinEdge = 1e-100;  // [m], as in formulation.md
-// A walk that is shorter by less than this is not shorter.
+// A walk counts as shorter only if it is shorter by more than this.
 constexpr double kShorter = 1e-12;
 
 double square(double value) {
@@ -81,7 +81,7 @@ class Verification {
         const double after = (position(k) - position(middle)).norm();
         return square((before - after) / p_.d_t);
     }
-    /// A walk that begins at the cone gains this.
+    /// Reward of a walk that begins at this cone.
     [[nodiscard]] double near_end_benefit(std::size_t cone) const {
         const double off_m = std::abs(cross(heading_, position(cone) - scene_.pose.position)) - 0.5 * p_.d_w;
         return p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
@@ -145,7 +145,7 @@ class Verification {
         return edges;
     }
 
-    /// v_ij of formulation.md: the allowed edge that faces this one best decides.
+    /// v_ij of formulation.md: the cost of the allowed edge that faces this one best.
     [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
         double best = 1.0;
         for (const AllowedEdge& other : all) {
@@ -190,7 +190,7 @@ class Verification {
         }
     }
 
-    /// The rounds of Bellman and Ford; false where they do not end.
+    /// Bellman-Ford rounds; false if a negative cycle keeps them from ending.
     bool shortest_walks() {
         walk_.assign(arcs_.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -219,8 +219,8 @@ class Verification {
         return false;
     }
 
-    /// The cheapest two walks to far cones within d_max of each other, less the constant part of the relaxed
-    /// constraints.
+    /// The cost of the two cheapest walks to far cones within d_max of each other, minus the constant part of
+    /// the relaxed constraints.
     [[nodiscard]] double combine() const {
         std::vector<double> best(scene_.cones.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -245,7 +245,7 @@ class Verification {
     Point heading_;
     std::vector<Arc> arcs_;
     std::vector<std::vector<std::size_t>> leaving_;  ///< arcs by their first cone
-    std::vector<double> walk_;                       ///< shortest one that ends with the arc
+    std::vector<double> walk_;                       ///< the shortest walk that ends with the arc
     BoundVerdict verdict_;
 };
 
