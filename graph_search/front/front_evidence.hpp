@@ -36,7 +36,7 @@ class FrontEvidence {
 
     double bonus_;
     std::vector<std::pair<ConeId, std::uint8_t>> remembered_;  ///< by id
-    std::vector<std::uint8_t> sides_;                          ///< of each cone of the map
+    std::vector<std::uint8_t> sides_;                          ///< by cone of the map: a bit for each side
 };
 
 }  // namespace conelane
