@@ -58,7 +58,7 @@ char mps_sense(const BinaryProgram::RowBounds& row) {
     return is_finite_lower(row.lower) ? 'G' : 'N';
 }
 
-/// MPS wants the matrix by columns: (row, value) for each.
+/// MPS lists the matrix by columns: (row, value) for each.
 std::vector<std::vector<std::pair<std::size_t, double>>> entries_by_column(const BinaryProgram& program) {
     std::vector<std::vector<std::pair<std::size_t, double>>> entries(program.columns.size());
     for (std::size_t r = 0; r < program.rows.size(); ++r) {
@@ -118,7 +118,7 @@ void write_mps(std::ostream& out, const BinaryProgram& program, std::string_view
 
 namespace {
 
-/// Terms of one LP row, a line each few of them: some readers limit the length of a line.
+/// Terms of one LP row, a few in each line: some readers limit the length of a line.
 class LpTerms {
   public:
     explicit LpTerms(std::ostream& out) : out_(out) {}
