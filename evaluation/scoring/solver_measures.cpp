@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPar10 = 10.0;
 
-/// The number of runs that every solver has.
+/// The number of runs, which is the same for every solver.
 std::size_t common_size(std::span<const std::vector<SolverRun>> by_solver) {
     const std::size_t runs = by_solver.empty() ? 0 : by_solver.front().size();
     for (const std::vector<SolverRun>& one : by_solver) {

@@ -66,7 +66,7 @@ std::vector<Track> generated(const std::string& spec, std::string_view names) {
     return tracks;
 }
 
-/// N of every `cone_map_N.yaml` and `boundaries_N.yaml`, so that one without the other is noticed.
+/// All N of `cone_map_N.yaml` and of `boundaries_N.yaml`, so that a file without its partner is noticed.
 std::set<int> fsd_numbers(const fs::path& directory) {
     std::set<int> numbers;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
@@ -106,7 +106,7 @@ std::vector<Track> fsd(const std::string& spec, const std::string& where) {
     return tracks;
 }
 
-/// The track of a file, or those of all files in a folder that end like one, in the order of their names.
+/// The track of a file, or of all files in a folder with this extension, sorted by name.
 std::vector<Track> of_files(const std::string& spec, const fs::path& where, std::string_view ending,
                             Track (*read)(const fs::path&)) {
     if (!fs::is_directory(where)) return {read(where)};
