@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// Takes one element after the other lap by lap: lap k of the whole is the next lap of part k mod count.
+/// Takes the laps from the parts in turn: lap k of the whole is the next lap of part k mod count.
 template <typename T>
 std::vector<T> interleave(std::span<const std::vector<std::size_t>> lap_starts_of_part,
                           std::vector<std::vector<T>>& parts) {

@@ -29,7 +29,7 @@ std::string instance_name(const SizeAndScene& instance) {
     return fmt::format("'{} n={}'", instance.second->scene.id, size_name(instance.first));
 }
 
-/// ARFF takes names with blanks and slashes in quotes.
+/// ARFF requires quotes around names with blanks and slashes.
 std::string quoted(const std::string& name) {
     return "'" + name + "'";
 }

@@ -39,7 +39,7 @@ bool holds_out(const HeldOut& fold, const std::string& track) {
     return std::ranges::find(fold.tracks, track) != fold.tracks.end();
 }
 
-/// Sums of values over scenes by rate.
+/// Sums of values over scenes, by rate.
 using ByRate = std::map<double, LapFigure>;
 
 void add_held_out(ByRate& sums, const HeldOut& fold, const std::vector<std::string>& only,
@@ -89,7 +89,7 @@ void require_held_out_tracks(const SceneSet& set, const ConfidenceColorOptions& 
     }
 }
 
-/// The fold's parameters under each weight of what is known.
+/// The fold's parameters with each value of the weight.
 std::vector<RldParameters> choices(const SimulatedKnowledge& knowledge, const HeldOut& fold,
                                    const ConfidenceColorOptions& options) {
     std::vector<RldParameters> choices;
@@ -207,7 +207,7 @@ ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file) {
         scenes.ranges_m = numbers_of(json.member("range"));
         scenes.every_m = json.member("every").number();
         if (const auto names = json.find("condition")) {
-            scenes.conditions = strings_of(*names);  // hold all that is disturbed
+            scenes.conditions = strings_of(*names);  // they include all disturbances
         } else {
             scenes.noise_sigma_m = json.member("noise").number();
             const JsonNode pose_noise = json.member("pose_noise");

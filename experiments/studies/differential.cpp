@@ -28,7 +28,7 @@ constexpr std::size_t kMinConesDrawn = 12;
 constexpr std::size_t kMaxConesDrawn = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What the solver proved and found: the optimum is in [lower, upper].
+/// The proven interval: the optimum is in [lower, upper].
 struct Range {
     double lower = -kInfinity;
     double upper = kInfinity;
@@ -49,7 +49,7 @@ RldParameters parameters_of(const DifferentialCase& drawn) {
     return parameters;
 }
 
-/// What the checker or the solver says against the answer; empty where nothing is.
+/// The objection of the checker or the solver to the answer; empty if there is none.
 std::string objection(const RldReport& report, const Scene& cones, const RldParameters& parameters) {
     if (report.status == SolveStatus::error) return report.message;
     if (!report.lane_graph) return {};

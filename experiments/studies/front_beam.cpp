@@ -27,7 +27,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Scores that differ by less are equal: sums in another order.
+/// Scores that differ by less are equal: the order of the sums may differ.
 constexpr double kSameScore = 1e-4;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
@@ -41,7 +41,7 @@ class Width {
         row_.drop = search.drop;
     }
 
-    /// The highest score of a lane; minus infinity where there is none.
+    /// The highest score of a lane; minus infinity if there is none.
     double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
         const auto begin = std::chrono::steady_clock::now();
         SearchBudget budget;

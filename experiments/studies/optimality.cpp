@@ -31,12 +31,12 @@
 namespace conelane::experiments {
 namespace {
 
-/// The parameters are of the objective that lanes are measured by; most detectors know none.
+/// Lanes are measured by the objective with these parameters; most detectors have none.
 std::unique_ptr<LaneDetector> made(const KnownDetector& detector, const OptimalityOptions& options) {
     return make_detector(detector, options_used_by(detector, {options.parameters, {}, options.nearest}));
 }
 
-/// One lap with the state that a detector carries along it.
+/// One lap, with the state that a detector keeps along it.
 class Lap {
   public:
     Lap(const TrackBoundariesByName& tracks, const OptimalityOptions& options)
@@ -164,7 +164,7 @@ nlohmann::ordered_json to_json(const OptimalityRow& row, const OptimalityOptions
     return json;
 }
 
-/// What the rows of one rate of false positives add up to.
+/// Sums over the rows of one rate of false positives.
 struct Sums {
     std::size_t scenes = 0, proven = 0, candidates = 0, feasible = 0, compared = 0, equal = 0;
     std::size_t optimum_successes = 0, candidate_successes = 0;

@@ -21,7 +21,7 @@ class Study;
 
 struct OptimalityOptions {
     std::string detector = "clc";        ///< one that enumerates
-    std::optional<std::size_t> nearest;  ///< cone set of both; all cones where absent
+    std::optional<std::size_t> nearest;  ///< cone set of both; all cones if absent
     RldParameters parameters;
     double time_limit_ms = 400.0;  ///< of the exact search, a scene
     unsigned threads = 1;
@@ -29,7 +29,7 @@ struct OptimalityOptions {
 
 /// A lane under RLD's objective and against the ground truth.
 struct JudgedLane {
-    std::optional<double> objective;  ///< (29); absent where RLD's constraints forbid the lane
+    std::optional<double> objective;  ///< (29); absent if RLD's constraints forbid the lane
     Category category = Category::none;
     double iou = 0.0;
 };
@@ -45,16 +45,16 @@ struct OptimalityRow {
     std::optional<JudgedLane> candidate;  ///< the feasible one of least objective; of equal ones the first
     std::optional<JudgedLane> choice;     ///< the lane that the detector's own ranking chose
 
-    /// (candidate - optimum) / max(1, |optimum|), at least 0; where the optimum is proven and a candidate
-    /// feasible.
+    /// (candidate - optimum) / max(1, |optimum|), at least 0; only if the optimum is proven and a candidate
+    /// is feasible.
     [[nodiscard]] std::optional<double> gap() const;
     /// The gap is within the solvers' tolerance.
     [[nodiscard]] bool is_optimal() const;
 };
 
-/// A row per scene that has a ground truth, in order. Throws InvalidInput where the detector does not
-/// enumerate, and naming the scene where a candidate has a lower objective than an optimum said to be proven
-/// or the independent checker rejects the optimum or the best candidate.
+/// A row for each scene with a ground truth, in order. Throws InvalidInput if the detector does not
+/// enumerate. Also, naming the scene, if a candidate has a lower objective than a proven optimum, or if the
+/// independent checker rejects the optimum or the best candidate.
 [[nodiscard]] std::vector<OptimalityRow> optimality_rows(std::span<const AnnotatedScene> scenes,
                                                          const TrackBoundariesByName& tracks,
                                                          const OptimalityOptions& options);

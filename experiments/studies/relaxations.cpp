@@ -21,7 +21,7 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::string_view kExact = "path-pair";
-/// What the scenes of one row add up to.
+/// Sums over the scenes of one row.
 class RowSums {
   public:
     RowSums(std::size_t cones, const RldSolverEntry& entry, const RelaxationOptions& options)
@@ -30,7 +30,7 @@ class RowSums {
         row_.solver = entry.name;
     }
 
-    /// `least`: the proven least cost; nothing in the exact solver's own row, which then gives it.
+    /// `least`: the proven least cost; absent in the exact solver's own row, which determines it.
     std::optional<double> add(const AnnotatedScene& annotated, std::optional<double> least,
                               AnswerErrors& errors) {
         const Scene scene = nearest_ahead(annotated.scene, row_.cones);
