@@ -326,8 +326,7 @@ RaceCourse skidpad_course() {
             const Point direction(std::sin(angle_rad), -side * std::cos(angle_rad));
             const Point inner = centre + kSkidpadInner_m * direction;
             const Point outer = centre + kSkidpadOuter_m * direction;
-            // The car drives the right circle clockwise: its inner cones are on the right, so they are
-            // yellow.
+            // In the right circle, the inner cones are on the right of the car, so they are yellow.
             add_cone(course, inner.x(), inner.y(), side < 0.0 ? ConeColor::yellow : ConeColor::blue);
             // Outer cones inside the lane of entry, exit or the other circle are left out.
             if (std::abs(outer.y()) > kSkidpadHalfWidth_m + 0.1 && side * outer.y() > 0.0) {

@@ -21,7 +21,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// What `compare` and `sweep` share.
+/// What `compare` and `sweep` have in common.
 struct CompareOptions {
     ComparisonOptions comparison;
     std::vector<std::string> detectors;
@@ -122,7 +122,7 @@ void add_compare_command(CLI::App& program) {
         if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
         if (*full && command.count("--time-limit") == 0)
             options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
-        // Disturbances that are asked for one by one are a condition of their own.
+        // Disturbances that are given one by one form a condition of their own.
         const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
                                       command.count("--miss") + command.count("--persist") >
                                   0;

@@ -19,7 +19,7 @@ struct CrossCheckCommandOptions {
     std::size_t repetitions = 1;
 };
 
-/// How many cases differ.
+/// The number of cases that differ.
 std::size_t run(const CrossCheckCommandOptions& options) {
     if (options.replay.empty()) {
         const CrossCheckSummary summary = cross_check(options.cross_check, options.directory);

@@ -31,7 +31,7 @@ struct DriveOptions {
     std::optional<std::string> id;
     std::optional<std::string> detector;
     DrivableOptions drivable;
-    FollowOptions follow;  ///< what it shares with the others is set from those
+    FollowOptions follow;  ///< the values that the other modes share are copied into it
 };
 
 std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
@@ -125,7 +125,7 @@ void drive_all(const DriveOptions& options) {
 
 }  // namespace
 
-/// The options that only --follow has.
+/// The options that only --follow uses.
 void add_follow_options(CLI::App& command, FollowOptions& options) {
     CLI::Option* const follow = command.add_option(
         "--follow", options.frames,

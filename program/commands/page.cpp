@@ -24,7 +24,7 @@ fs::path page_in(const fs::path& directory) {
 }  // namespace
 
 void require_own_page(const fs::path& directory) {
-    // As report/page.py writes it, near the beginning.
+    // The mark that report/page.py writes near the beginning.
     constexpr std::string_view kTitle = "<title>conelane: ";
     constexpr std::size_t kBeginning = 2000;
     const fs::path page = page_in(directory);
@@ -51,7 +51,7 @@ void write_page(const fs::path& directory) {
     } catch (const PackageRefused&) {
         fmt::print("all of it in {}, but no page\n", directory.string());
         constexpr int kFailed = 2;
-        throw CLI::RuntimeError(kFailed);  // it has said why
+        throw CLI::RuntimeError(kFailed);  // it has printed the reason
     } catch (const std::exception&) {
         fmt::print("all of it in {}, but no page\n", directory.string());
         throw;

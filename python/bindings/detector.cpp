@@ -37,7 +37,7 @@ std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) 
     return std::filesystem::path(text.cast<std::string>());
 }
 
-/// The options of a detector; `recipe` is nullptr where there is no such detector, which make_detector says.
+/// The options of a detector. `recipe` is nullptr for an unknown detector, which make_detector reports.
 DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given) {
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
@@ -93,7 +93,7 @@ class DetectorObject {
         lane.record.scene = lane.scene->id;
         lane.record.detector = name_;
         lane.record.nearest = nearest_;
-        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
         {
             const std::scoped_lock lock(mutex_);
             const auto start = std::chrono::steady_clock::now();
@@ -102,7 +102,7 @@ class DetectorObject {
             lane.record.latency_ms = took.count();
         }
         if (lane.record.answer.status == LaneStatus::error)
-            validate(*lane.scene);  // throws what is wrong with it
+            validate(*lane.scene);  // throws if the scene is invalid
         return lane;
     }
 

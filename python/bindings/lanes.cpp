@@ -35,7 +35,7 @@ Indices boundary_indices(const LaneObject& lane, bool left) {
     return array(indices_of(left ? ids.left : ids.right, lane.scene->cones, left ? "left" : "right"));
 }
 
-/// The answer as one of cones: those of a lane that is made of positions are made for it.
+/// The answer with cones: for a lane of positions, cones are made.
 std::pair<LaneAnswer, Scene> as_cones(const LaneObject& lane) {
     LaneAnswer answer = lane.record.answer;
     Scene scene{lane.scene->id, lane.scene->pose, {}};

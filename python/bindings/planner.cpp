@@ -43,7 +43,7 @@ class PlannerObject {
     [[nodiscard]] PlanObject update(const Frame& frame, std::optional<double> time_limit_ms) {
         const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
         PlanObject result;
-        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
         const std::scoped_lock lock(mutex_);
         const auto start = std::chrono::steady_clock::now();
         result.plan = planner_->update(frame, {.time_limit_ms = limit_ms});

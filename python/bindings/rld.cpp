@@ -19,7 +19,7 @@
 namespace conelane::python {
 namespace {
 
-/// A solved scene and its lane, empty where there is none.
+/// A solved scene and its lane, which is empty if there is none.
 struct SolutionObject {
     RldReport report;
     double total_ms = 0.0;
