@@ -1,5 +1,5 @@
-// Outputs of several files: all of them are written, or all are as they were, be the disk full or the program
-// ended by a signal. Nothing that the program did not write is replaced without being asked for.
+// Outputs of several files: all are written, or all stay unchanged, whether the disk is full or a signal ends
+// the program. Files that the program did not write are not replaced without a request.
 
 #include "evaluation/files/atomic_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
@@ -39,7 +39,7 @@ class WholeOutputs : public Program {
         return files;
     }
 
-    /// Starts the program and ends it by the signal once a file whose name holds `part` is in the folder.
+    /// Starts the program and sends the signal once the folder has a file whose name contains `part`.
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {
         const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
@@ -75,7 +75,7 @@ TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
     AtomicFile b(path("b"));
     AtomicFile c(path("c"));
     for (AtomicFile* file : {&a, &b, &c}) file->stream() << "new";
-    fs::create_directory(path("c"));  // no file can have this name now
+    fs::create_directory(path("c"));  // no file can get this name now
     EXPECT_THAT(error_of([&] {
                     commit_together(std::array{&a, &b, &c});
                 }),
@@ -106,7 +106,7 @@ TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNone) {
     EXPECT_EQ(contents("disk"), before) << "the old pair";
 }
 
-/// Few programs at first, and more of other names.
+/// Few programs at first, then more with other names.
 constexpr const char* kInstances =
     "instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --seed 3 --out made";
 constexpr const char* kMoreInstances =
@@ -140,7 +140,7 @@ TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
         EXPECT_THAT(files.at("conelane.test"), HasSubstr(name));
     }
     EXPECT_EQ(programs, 2U);
-    // What no list names is of nobody knows which library.
+    // A program that no list names may belong to any library.
     file_with("x", "made/stray.tight.mps.gz");
     expect_refused(kInstances, {"made", "stray.tight.mps.gz", "conelane.test"});
     fs::remove(path("made/conelane.test"));
@@ -200,7 +200,7 @@ TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
     EXPECT_FALSE(fs::exists(path("page.html")));
 }
 
-/// /dev/full takes nothing.
+/// /dev/full rejects every write.
 TEST_F(WholeOutputs, AFailureSaysWhy) {
     make_scenes("");
     for (const char* command : {"detect --method clc", "solve --solver path-pair", "certify",

@@ -80,7 +80,7 @@ TEST(DrivableLane, EndsWhereItsBoundariesMeet) {
         EXPECT_GT(point.width_right_m, 0.2);
         EXPECT_LT(point.position.x(), 15.0);
     }
-    // A closed lane with a narrow place is open, from the car to there.
+    // A closed lane with a narrow place is open: it runs from the car to that place.
     Course closed = circle(12.0, 1.0, 2.0, 2.0 * kPi, true);
     Cone& inner = closed.scene.cones[closed.lane.left.size() / 2];
     inner.position = Point(0.0, 12.0) + (inner.position - Point(0.0, 12.0)) * 13.4 / 10.4;

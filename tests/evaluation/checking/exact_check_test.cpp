@@ -1,4 +1,4 @@
-// Programs and lane graphs recomputed in rational arithmetic: by hand, on solved scenes, and forged.
+// Programs and lane graphs recomputed in rational arithmetic: small ones by hand, solved scenes, forged ones.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -74,7 +74,7 @@ TEST(ExactProgram, AColumnWithoutMeaningIsRefused) {
     EXPECT_THROW((void)point_of(program_of(1.0, 1.0, 0.0, 1.0), {}, {}), std::invalid_argument);
 }
 
-/// The optimum of a scene that has one.
+/// The optimum of a scene, which must have one.
 struct Solved {
     Scene scene;
     RldParameters parameters;
@@ -97,8 +97,9 @@ std::vector<Solved> solved_scenes(bool shape_costs) {
     return all;
 }
 
-// The objective of the program at the solver's answer, exactly, is what the solver says and what the checker
-// computes from the scene in extended precision; every row holds to the tolerance of the limits.
+// The exact objective of the program at the solver's answer equals the solver's objective and the one that
+// the checker computes from the scene in extended precision. Every row holds within the tolerance of the
+// limits.
 TEST(ExactLaneGraph, AnswersAreFeasibleAndCostWhatIsStated) {
     for (const bool shape_costs : {false, true}) {
         const std::vector<Solved> all = solved_scenes(shape_costs);
@@ -120,7 +121,7 @@ TEST(ExactLaneGraph, AnswersAreFeasibleAndCostWhatIsStated) {
     }
 }
 
-/// Of a lane graph with one edge fewer or one edge more the rows say so, in either formulation.
+/// With one edge fewer or one edge more, a lane graph violates rows of either formulation.
 TEST(ExactLaneGraph, ForgeriesViolateARow) {
     std::vector<Solved> some = solved_scenes(false);
     some.resize(8);
@@ -150,7 +151,7 @@ TEST(ExactLaneGraph, ForgeriesViolateARow) {
     }
 }
 
-/// A pair of boundaries and beside it a circle of cones, which rows on demand alone forbid.
+/// A pair of boundaries and a circle of cones beside it, which only rows on demand forbid.
 TEST(ExactLaneGraph, ACycleViolatesTheRowsOnDemand) {
     Scene scene;
     for (const double y : {1.75, -1.75}) {
@@ -160,7 +161,7 @@ TEST(ExactLaneGraph, ACycleViolatesTheRowsOnDemand) {
     for (const auto& [x, y] : {std::pair{2.0, 12.0}, {5.2, 12.0}, {5.2, 15.2}, {2.0, 15.2}})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
     RldParameters parameters;
-    parameters.theta_t = 1.5;  // right angles are allowed
+    parameters.theta_t = 1.5;  // allows right angles
     const LaneGraph lane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     EXPECT_EQ(recompute_exactly(scene, parameters, Formulation::tight, lane)->violation, 0.0);
     LaneGraph with_cycle = lane;
@@ -189,7 +190,7 @@ TEST(ExactLaneGraph, AnEdgeThatTheProgramDoesNotHaveIsRefused) {
 
 using CheckExactly = ProgramFixture;
 
-// An objective that is off by less than the checker allows doubles, yet by more than they round.
+// An objective whose error is below the checker's tolerance, but above the rounding of doubles.
 TEST_F(CheckExactly, TheCommandSeesWhatTheCheckerLetsPass) {
     ASSERT_EQ(run("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl").exit_code, 0);
     ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);

@@ -371,8 +371,8 @@ TEST(Summary, KeepsFailuresInEveryMean) {
     EXPECT_DOUBLE_EQ(summary.latency.share_within_budget, 0.75);
 }
 
-/// Twenty scenes: 5 points of the centre line in each, off by 1 cm more from one to the next, and a heading
-/// that is off by 1 mrad more from scene to scene.
+/// Twenty scenes with 5 points of the centre line each. The offset grows by 1 cm from point to point, and the
+/// heading error by 1 mrad from scene to scene.
 TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
     std::vector<SceneScore> scores(20);
     for (int i = 0; i < 20; ++i) {

@@ -85,7 +85,7 @@ TEST_F(Summaries, SayUsableLanesByConditionAndRateLatencyAndWhatWentWrong) {
             }
         }
     }
-    scored_.front().failure = LaneFailure::nothing_found;  // of the clean paper scenes one
+    scored_.front().failure = LaneFailure::nothing_found;  // of `paper`, without false positives
     scored_.front().score.category = Category::none;
     EXPECT_THAT(
         lines(text()),

@@ -19,7 +19,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two families of a course each, and one that is always learned from; as little work as shows the way.
+/// Two families of one course each, and a course that is always learned from, with as little work as
+/// possible.
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
@@ -44,7 +45,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 testing::UnorderedElementsAre("curvy", "straight"));
     EXPECT_THAT(outcome.output, Not(HasSubstr("learned from"))) << "nothing in the table was learned from";
 
-    // Each course is driven by the weights of the fold that holds it out, and by no others.
+    // Each course is driven with the weights of the fold that holds it out, and with no others.
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
     options.limits.time_limit_ms = 400.0;

@@ -45,7 +45,7 @@ TEST_F(RaceCommand, MissionsNeedNoTracks) {
     }
 }
 
-// Weights of zeros find other lanes than the shipped ones: where they are used shows in what was driven.
+// Weights of zeros give other lanes than the shipped ones, so the driven path shows which were used.
 TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     std::filesystem::create_directories(path("folds") / "a");
     std::filesystem::create_directories(path("folds") / "b");

@@ -1,5 +1,5 @@
-// What path-pair makes before its first bound: in a dense scene that takes milliseconds, so the clock is
-// looked at all along, and at any look it may strike.
+// The work of path-pair before its first bound takes milliseconds in a dense scene. So the clock is checked
+// throughout, and the time may end at any check.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/scene.hpp"
@@ -45,7 +45,7 @@ TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
     ArcGraph graph;
     EXPECT_TRUE(graph.build(problem, clock));
     const int looks = clock.looks();
-    // So many steps of a nanosecond at least, and a look after each 50 000 of them.
+    // At least this number of steps of a nanosecond, with a check after each 50 000 of them.
     EXPECT_GT(looks, static_cast<int>((10 * problem.conflicts.size() + 20 * problem.turns.size()) / 50'000));
 
     for (int last = 1; last <= looks; ++last) {
@@ -113,7 +113,7 @@ TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
     EXPECT_EQ(clock.looks(), looks) << "there is room";
 }
 
-/// A limit in steps, unlike one in time, ends a search in the same place each time.
+/// A limit in steps, unlike a limit of time, ends a search at the same place each time.
 TEST(PathPairWork, ALimitOfWorkEndsTheSearchInTheSamePlace) {
     const LaneGraphProblem problem = dense_problem();
     std::vector<RldReport> reports;

@@ -1,4 +1,4 @@
-// The parts of path-pair's search that need no scene: its clock, its queue of nodes, steps and stages of
+// The parts of path-pair's search that need no scene: its clock, its queue of nodes, and steps and stages of
 // multipliers.
 
 #include "solvers/path_pair/bound/multipliers.hpp"
