@@ -14,7 +14,7 @@ namespace conelane {
 /// units has two empty lists. Throws InvalidInput naming the key, or the line that is not JSON.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view json);
 
-/// The same from a file. Throws InvalidInput naming the file too, also where it cannot be read.
+/// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file);
 
 }  // namespace conelane

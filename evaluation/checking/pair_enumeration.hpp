@@ -39,7 +39,7 @@ class PairEnumeration {
     };
     struct Step {
         std::size_t to;
-        std::size_t arc;  ///< kNoArc where the leg ends
+        std::size_t arc;  ///< kNoArc if the leg ends
         Exact cost;       ///< without multipliers
         Exact reduced;
     };

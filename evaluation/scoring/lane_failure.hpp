@@ -53,8 +53,8 @@ enum class LaneFailure {
 inline constexpr std::size_t kLaneFailureCount = 10;
 [[nodiscard]] std::string_view to_string(LaneFailure failure);
 
-/// `score` is what score(), score_outline() or score_centre_line() said of the lane; `lane` is empty where
-/// the answer has no boundaries. Nothing where the lane is usable or that is unknown. Precondition: the scene
+/// `score` is what score(), score_outline() or score_centre_line() said of the lane; `lane` is empty if
+/// the answer has no boundaries. Nothing if the lane is usable or that is unknown. Precondition: the scene
 /// counts.
 [[nodiscard]] std::optional<LaneFailure> lane_failure(const AnnotatedScene& scene, const LaneOutline& lane,
                                                       const SceneScore& score,

@@ -237,7 +237,7 @@ class Truth {
     Pose pose_;
     const TrackBoundaries* boundaries_;
     LaneOutline ground_truth_;
-    std::vector<Point> driven_;  ///< empty where there is a ground truth
+    std::vector<Point> driven_;  ///< empty if there is a ground truth
     double length_m_ = 0.0;
 };
 

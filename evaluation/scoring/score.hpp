@@ -73,7 +73,7 @@ struct EnumerationScore {
 struct SceneScore {
     Category category = Category::none;
     bool error = false;  ///< the detector failed, or the checker rejected what it found
-    /// 0 where there is no lane; absent where the ground truth or the answer has no boundaries.
+    /// 0 if there is no lane; absent if the ground truth or the answer has no boundaries.
     std::optional<double> iou;
     double lane_length_m = 0.0;
     double ground_truth_length_m = 0.0;
@@ -81,11 +81,11 @@ struct SceneScore {
     std::optional<double> divergence_distance_m;  ///< absent if the lane does not diverge or it is unknown
     std::optional<Accuracy> accuracy;             ///< absent if the cone set has no ground truth
     /// Within kRldTimeLimit_ms a gap of at most kRldAbsoluteGap, or the proof that there is no lane (which
-    /// RecordScorer fills in); absent where the answer states no objective.
+    /// RecordScorer fills in); absent if the answer states no objective.
     std::optional<bool> solved_to_optimality;
     std::optional<EnumerationScore> enumeration;
     double latency_ms = 0.0;
-    /// Against the ground truth's centre line; absent where the lane is not usable or was not held against
+    /// Against the ground truth's centre line; absent if the lane is not usable or was not held against
     /// it.
     std::optional<CentreLineError> centre_line_error;
     // The detector's statements about its lane; absent if it found none or makes none.
@@ -97,7 +97,7 @@ struct SceneScore {
 
     /// The headline: whether the lane can be driven by. It was found, does not diverge below 20 m, and, where
     /// it does not diverge at all, is at least min(kUsableLength_m, kTooShortShare of the ground truth's
-    /// length) long. Absent where divergence is unknown.
+    /// length) long. Absent if divergence is unknown.
     [[nodiscard]] std::optional<bool> usable() const;
     [[nodiscard]] bool success() const { return is_success(category); }
     [[nodiscard]] bool accurate() const { return accuracy && accuracy->accurate(); }

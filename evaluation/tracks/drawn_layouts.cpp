@@ -56,7 +56,7 @@ std::vector<Corner> legs(int count, double length_m, double pitch_m, Draw& draw)
     return corners;
 }
 
-/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing where that is
+/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing if that is
 /// less than `least_radius_m`.
 std::optional<std::vector<Corner>> loop(int count, double radius_m, double least_radius_m, Draw& draw) {
     constexpr double kMaxRadius_m = 16.0;

@@ -11,7 +11,7 @@
 namespace conelane::experiments {
 
 /// The edges between consecutive cones of each boundary; of a closed lane also those from last to first.
-/// Nothing where the lane names a cone that is not in the scene, or one twice in a row.
+/// Nothing if the lane names a cone that is not in the scene, or one twice in a row.
 [[nodiscard]] std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene);
 
 /// Checks the answer of an RLD detector by the independent checker: every constraint, the stated objective,

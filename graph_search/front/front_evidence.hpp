@@ -17,7 +17,7 @@ namespace conelane {
 /// cones left aside, which lost overlap.
 class FrontEvidence {
   public:
-    /// `bonus`: score for each cone, at least 0. Throws InvalidInput where it is not.
+    /// `bonus`: score for each cone, at least 0. Throws InvalidInput if it is not.
     explicit FrontEvidence(double bonus);
 
     /// Replaces the remembered lane.

@@ -13,7 +13,7 @@
 
 namespace conelane {
 
-/// What the color of a cone says, seen from a side; all 0 where no cone of the scene has one.
+/// What the color of a cone says, seen from a side; all 0 if no cone of the scene has one.
 struct ConeColors {
     float own = 0.0F;      ///< probability of the color of that side
     float against = 0.0F;  ///< of the other side's

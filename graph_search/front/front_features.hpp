@@ -12,7 +12,7 @@
 namespace conelane {
 
 // The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
-// Features of colors stand last, and are all 0 where no cone of the scene has one.
+// Features of colors stand last, and are all 0 if no cone of the scene has one.
 inline constexpr std::size_t kStateColorFeatures = 5;
 inline constexpr std::size_t kExtendColorFeatures = 6;
 inline constexpr std::size_t kStopColorFeatures = 2;

@@ -22,7 +22,7 @@ inline constexpr double kMaxSegment_m = 11.5;
 inline constexpr double kMaxLengthAmongFew_m = 15.5;
 inline constexpr double kShortSegment_m = 5.8;
 
-/// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 where both are 0. An approximation
+/// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 if both are 0. An approximation
 /// to 2e-5 rad without the C library, hence the same on any machine.
 [[nodiscard]] double front_angle(double cross, double dot);
 
@@ -79,7 +79,7 @@ struct EdgeNeighbourhood {
     std::array<float, 2> nearest_of_color{};
 };
 
-/// What the color of a cone says; all 0 where that is unknown.
+/// What the color of a cone says; all 0 if that is unknown.
 struct ConeSide {
     std::array<float, 2> of_side{};  ///< probability that it stands on the left (blue), on the right (yellow)
     float orange = 0.0F;             ///< that it is a small or a big orange one

@@ -14,7 +14,7 @@ namespace conelane {
 /// is not JSON.
 [[nodiscard]] FrontWeights parse_front_weights(std::string_view json);
 
-/// The same from a file. Throws InvalidInput naming the file too, also where it cannot be read.
+/// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] FrontWeights read_front_weights(const std::filesystem::path& file);
 
 }  // namespace conelane

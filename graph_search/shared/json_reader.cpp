@@ -15,7 +15,7 @@ namespace {
 /// Deepest nesting of values, which is also the depth of the recursion.
 constexpr int kMaxDepth = 64;
 
-/// The double nearest to a number of JSON; infinite where it is out of range.
+/// The double nearest to a number of JSON; infinite if it is out of range.
 double double_of(std::string_view number) {
     double value = 0.0;
 #if defined(__cpp_lib_to_chars)

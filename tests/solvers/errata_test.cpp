@@ -44,7 +44,7 @@ RldReport solve_corrected(const LaneGraphProblem& problem) {
 const Scene kStaggered =
     scene_of({{2.6, 1.5}, {5.8, 1.5}, {9.0, 1.5}, {1.0, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
 
-/// (7) printed: a_ij + a_kl <= 1 where MinDist > d_min. Meant: MinDist < d_min.
+/// (7) printed: a_ij + a_kl <= 1 if MinDist > d_min. Meant: MinDist < d_min.
 TEST(Errata, Equation7AsPrintedForbidsFacingEdges) {
     LaneGraphProblem problem = paper_problem(kStaggered);
     const RldReport corrected = solve_corrected(problem);

@@ -20,7 +20,7 @@ struct DrivenCourse {
     std::vector<Cone> cones;           ///< ids from 0, true colors
     std::function<Pose(double)> pose;  ///< of the car after so many metres from the start
     double finish_m = 0.0;             ///< where the last line is crossed
-    double lap_m = 0.0;                ///< once around; 0 where the course does not come round
+    double lap_m = 0.0;                ///< once around; 0 if the course does not come round
 };
 
 inline Pose between(const Pose& a, const Pose& b, double share) {

@@ -235,7 +235,7 @@ void FrontierGraph::open(int f) {
     again_ |= arc / 64 < to_index(moving_) / 64;
 }
 
-/// Every walk up to a frontier loses these edges: one more walk comes to `to`. True where the set shrinks.
+/// Every walk up to a frontier loses these edges: one more walk comes to `to`. True if the set shrinks.
 bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
@@ -243,7 +243,7 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     return intersect_with_union(dominated_.row(to_index(to)), dominated_.row(to_index(from)), own, words);
 }
 
-/// Lowers the forward costs of the frontiers after this one. False where there are too many.
+/// Lowers the forward costs of the frontiers after this one. False if there are too many.
 bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const Frontier here = frontier(f);
     const int other = relaxation_->other(here.moving_kind);

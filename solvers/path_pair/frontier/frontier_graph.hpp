@@ -36,7 +36,7 @@ class FrontierGraph {
     };
     struct Step {
         int to;       ///< the next frontier
-        int arc;      ///< by which; -1 where the moving leg ends
+        int arc;      ///< by which; -1 if the moving leg ends
         double turn;  ///< cost of the turn into it
     };
 
@@ -108,7 +108,7 @@ class FrontierGraph {
     /// of excluded edges against them.
     enum class Walks { up_to, on_from };
     /// The dominated edges of every frontier by its walks up to it or on from it, and steps by one no longer
-    /// kept. False where the time is up.
+    /// kept. False if the time is up.
     template <Walks kWalks>
     bool drop_steps_by_dominated(const EdgeSets& edges);
     /// The same rows of the set of all edges.

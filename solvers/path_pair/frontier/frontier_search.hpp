@@ -17,7 +17,7 @@ namespace conelane::path_pair {
 
 /// Pairs of legs by labels on the frontiers. A label is the beginnings of both legs up to a frontier, with
 /// the edges that they have lost. Frontier by frontier, cheapest first; a label is dropped where
-///   - its reduced cost and the cheapest walk on reach the cutoff, also where the walk must do without the
+///   - its reduced cost and the cheapest walk on reach the cutoff, also if the walk must do without the
 ///     edges that one of its arcs has lost, or
 ///   - another label of the frontier dominates it: that one costs no more (true costs, without
 ///     multipliers), has
@@ -48,7 +48,7 @@ class FrontierSearch {
   private:
     struct Label {
         int before;  ///< the label that it continues, -1 for the first of a chain
-        int arc;     ///< by which; -1 where a leg ended
+        int arc;     ///< by which; -1 if a leg ended
         int frontier;
         int along_heading;  ///< edges, at most 2
         int next;           ///< of the labels that wait at the frontier
