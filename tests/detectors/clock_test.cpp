@@ -117,7 +117,7 @@ double max_gap_ms(std::string_view name, const Scene& scene, double ample_ms) {
 /// memory are returned to the system, so that no try profits from memory of an earlier one.
 /// `rld-learned` also has edges over gaps: freeing its problem of hundreds of cones takes up to 2
 /// ms at the end.
-TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
+TEST(Clocks, DetectorsCheckTheClockEveryMillisecond) {
     ASSERT_EQ(mallopt(M_MMAP_THRESHOLD, 1 << 17), 1);
     const std::vector<Scene> scenes = crowded_scenes();
     std::size_t max_cones = 0;
@@ -135,7 +135,7 @@ TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
 
 /// A ring of 800 cones around one cone, with edges from that one alone: a third of a million turns at one
 /// cone, which take most of the time. 250 of 300 readings of the clock are among them.
-TEST(Clocks, TheMakingOfAProblemLooksAtItsAmongTurns) {
+TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
     Scene scene;
     scene.cones.push_back({0, {0.0, 0.0}});
     for (int k = 0; k < 800; ++k) {
@@ -155,7 +155,7 @@ TEST(Clocks, TheMakingOfAProblemLooksAtItsAmongTurns) {
 
 /// The processor is away for 40 of 60 s, at any reading of the clock: more than half of the time, which is
 /// the limit of the beam search of `clc`. An enumeration that is complete afterwards still counts as proven.
-TEST(Clocks, NoneIsProvenThoughHalfOfTheTimeIsGone) {
+TEST(Clocks, AProofHoldsThoughHalfOfTheTimeIsGone) {
     int none = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         const Scene scene = tests::random_scene(seed, 10);
@@ -177,7 +177,7 @@ TEST(Clocks, NoneIsProvenThoughHalfOfTheTimeIsGone) {
 }
 
 /// The clock is read after each expanded state, not once for each level.
-TEST(Clocks, FrontReadsItsAfterEachState) {
+TEST(Clocks, FrontChecksTheClockAfterEachState) {
     const FrontWeights weights = tests::random_front_weights(1);
     FrontCost cost(weights);
     FrontSearch search;

@@ -166,7 +166,7 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     }
 };
 
-TEST_P(DetectorContract, WhatIsNotValidIsAnErrorThatNamesIt) {
+TEST_P(DetectorContract, InvalidInputIsAnErrorThatNamesIt) {
     struct Fault {
         std::string key;
         void (*make)(Scene&, DetectionLimits&);
@@ -267,7 +267,7 @@ TEST_P(DetectorContract, LanesAreTheSameFarFromTheOrigin) {
     EXPECT_NE(detect(strewn(10, 1e6)).status, LaneStatus::error);
 }
 
-TEST_P(DetectorContract, HugeLimitsAreNoneAndThoseBelowZeroAreOver) {
+TEST_P(DetectorContract, HugeLimitsNeverExpireAndNegativeOnesHaveExpired) {
     const Scene scene = tests::random_scene(3, 8);
     const LaneAnswer expected = detect(scene);
     for (const double limit_ms : {1e12, 1e18, 1e300, std::numeric_limits<double>::max()}) {

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), []
     return words;
 });
 
-TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
+TEST(DoubledCones, ASceneWithoutThemStaysUnchanged) {
     DoubledCones doubles(kDoubledCone_m);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = tests::straight_front_scene(10);

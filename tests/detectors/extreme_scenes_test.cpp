@@ -93,7 +93,7 @@ TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
 }
 
 /// Found by cross-check: for this infeasible program, CBC's preprocessing returns a point.
-TEST(ExtremeScenes, APointThatCbcMakesUpIsNoAnswer) {
+TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
     Scene scene;
     scene.pose.yaw_rad = 2.281;
     scene.cones = {{8, {5.8825, 4.6447}}, {1, {-1.9522, 1.3658}}, {0, {-2.0448, 6.9194}},
@@ -136,7 +136,7 @@ TEST(ExtremeScenes, AHugeCostHidesNoBetterLane) {
 
 /// Two boundaries of a kilometre across the car's way, 10 m apart, are the only lane. The one whose midpoint
 /// is 1.25 m from the car costs 1.2 * (1000 / 1.25)^4, and the other one far less.
-TEST(ExtremeScenes, ADearLaneIsFoundWhereThereIsNoOther) {
+TEST(ExtremeScenes, AnExpensiveLaneIsFoundIfItIsTheOnlyOne) {
     Scene scene;
     for (const Point& place : {Point(0.75, 499), Point(0.75, -501), Point(10.75, 499), Point(10.75, -501)})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
@@ -157,7 +157,7 @@ TEST(ExtremeScenes, ADearLaneIsFoundWhereThereIsNoOther) {
 
 /// The parameters allow edges of kilometres, and the weights are at the end of their range: costs of 1e26. A
 /// solver that cannot handle them says so.
-TEST(ExtremeScenes, CostsThatNoLibraryTakesAreAnErrorNotTheEnd) {
+TEST(ExtremeScenes, CostsThatNoLibraryAcceptsAreAnError) {
     Scene scene;
     for (const double y : {-40'000.0, 40'000.0}) {
         for (const double x : {0.25, 0.75, 1.25})

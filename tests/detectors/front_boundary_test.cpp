@@ -137,7 +137,7 @@ TEST(FrontBoundary, EndsBeforeItCrossesItself) {
     EXPECT_EQ(boundary.back(), last + 1);
 }
 
-TEST(FrontBoundary, LeavesAsideWhatIsOffIt) {
+TEST(FrontBoundary, LeavesOutConesBesideIt) {
     std::vector<Point> cones;
     for (int i = 0; i < 7; ++i) cones.emplace_back(1.0 + 4.0 * i, 1.8);
     cones.emplace_back(13.5, 12.0);
@@ -148,7 +148,7 @@ TEST(FrontBoundary, LeavesAsideWhatIsOffIt) {
     EXPECT_EQ(boundary->cones, (std::vector<ConeId>{0, 1, 2, 3, 4, 5, 6}));
 }
 
-TEST(FrontBoundary, WhatIsNoSmoothChainBesideTheCarIsNone) {
+TEST(FrontBoundary, OnlySmoothChainsBesideTheCarAreBoundaries) {
     for (const std::vector<Point>& cones : std::vector<std::vector<Point>>{
              {{1, 1.8}, {5, 1.8}},                       // only two
              {{1, 1.8}, {2, 1.8}, {7.5, 1.8}},           // uneven spacing
@@ -182,7 +182,7 @@ TEST(FrontBoundary, AMirroredSceneHasTheMirroredBoundary) {
     EXPECT_EQ(search(scene).value().cones, cones);
 }
 
-TEST(FrontBoundary, IsSeldomMadeOfNoise) {
+TEST(FrontBoundary, IsRarelyMadeOfNoise) {
     boost::random::mt19937_64 random(5);
     boost::random::uniform_real_distribution<double> ahead_m(0.0, 30.0);
     boost::random::uniform_real_distribution<double> left_m(-30.0, 30.0);

@@ -95,7 +95,7 @@ TEST(Check, ThePairingSaysWhichEndsAPathMayHave) {
 }
 
 /// At 1.6 m ahead, the cones of one boundary are beside the middles of the other boundary's edges.
-TEST(Check, BoundariesKeepTheirDistanceButWhereTwoConesFaceEachOther) {
+TEST(Check, BoundariesKeepTheirDistanceExceptBetweenFacingCones) {
     RldParameters parameters;
     parameters.d_min = 3.5;
     EXPECT_THAT(violations(six_cone_lane(1.6), parameters), IsEmpty());
@@ -198,7 +198,7 @@ TEST(Check, UnevenSpacingCosts) {
     EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing + 2.0 * std::pow(1.0 / 1.7, 2), kRounding);
 }
 
-TEST(CheckClaim, IsHeldAgainstWhatIsRecomputed) {
+TEST(CheckClaim, IsComparedWithTheRecomputedValues) {
     const auto claimed = [](const Claim& claim) {
         return check(six_cone_lane(), {}, kLane, claim).violations;
     };

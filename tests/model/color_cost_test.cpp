@@ -60,7 +60,7 @@ TEST(ColorCost, OfAnEdgeOfBothColorsIsOneFarAwayAndTwoBesideTheCar) {
 }
 
 /// Blue with 0.7 and yellow with 0.1 at one end, with 0.4 and 0.5 at the other.
-TEST(ColorCost, OfProbabilitiesIsWhatIsExpected) {
+TEST(ColorCost, OfProbabilitiesIsTheExpectedCost) {
     const auto cost = [](const Point& from, const Point& to) {
         Scene scene;
         scene.cones = {{1, from, ConeColor::yellow}, {2, to, ConeColor::yellow}};  // labels have no effect

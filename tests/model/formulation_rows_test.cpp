@@ -84,7 +84,7 @@ TEST(PaperRows, AnInlierHasAnEdge) {
     EXPECT_THAT(violated("inlier_has_edge", {{0, 1}, {3, 4}, {4, 5}}, kAll), testing::SizeIs(1));
 }
 
-TEST(PaperRows, AConeHasTwoEdgesAtMostAndNoneWhereItIsNoInlier) {
+TEST(PaperRows, AConeHasAtMostTwoEdgesAndNoneIfItIsNoInlier) {
     std::vector<Edge> rungs = kLane;
     rungs.push_back({1, 4});
     EXPECT_THAT(violated("degree_at_most_two", rungs, kAll), testing::SizeIs(2)) << "1 and 4";

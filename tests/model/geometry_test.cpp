@@ -49,7 +49,7 @@ TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {
     EXPECT_FALSE(segment_distance({{0, 0}, {4, 0}}, {{1, 3}, {5, 3}}).between_ends);
 }
 
-TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveNone) {
+TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveDistanceZero) {
     const SegmentDistance crossing = segment_distance({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}});
     EXPECT_DOUBLE_EQ(crossing.distance_m, 0.0);
     EXPECT_FALSE(crossing.between_ends);

@@ -39,7 +39,7 @@ std::string text_of(const BinaryProgram& program) {
 class ModelUpdate : public testing::TestWithParam<Formulation> {};
 
 /// Sizes repeat and change, so that both ways of updating are taken.
-TEST_P(ModelUpdate, EqualsAProgramBuiltAnew) {
+TEST_P(ModelUpdate, EqualsANewProgram) {
     const EdgeExtent extent = parts(GetParam()).extent;
     const RldParameters parameters;
     const LaneGraphProblem first = make_problem(tests::random_scene(0, 8), parameters, extent);
@@ -56,7 +56,7 @@ TEST_P(ModelUpdate, EqualsAProgramBuiltAnew) {
 INSTANTIATE_TEST_SUITE_P(Formulations, ModelUpdate, testing::Values(Formulation::tight, Formulation::paper),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
-TEST(MapByConeId, FindsConesAgainAndLeavesOutWhatIsGone) {
+TEST(MapByConeId, FindsConesAgainAndDropsMissingOnes) {
     Scene before;
     before.cones = {{7, {0, 0}}, {3, {3, 0}}, {9, {6, 0}}};
     Scene after;

@@ -78,7 +78,7 @@ TEST(LaneGraphProblem, ConfidencesOfBothConesScaleTheBenefit) {
 }
 
 /// Cone 1 is 4.55 m from the car, which is as far as the edge 1 - 2 is.
-TEST(LaneGraphProblem, WhatIsOnALimitIsWithinIt) {
+TEST(LaneGraphProblem, AValueOnItsLimitIsWithinIt) {
     RldParameters parameters;
     parameters.d_h = parameters.d_near = 4.55;
     const LaneGraphProblem problem = make_problem(six_cone_lane(), parameters);
@@ -100,7 +100,7 @@ TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
     EXPECT_EQ(edge_number(candidates, 0, 6), candidates.edges.size());
 }
 
-TEST(LaneGraphProblem, EdgesConflictThatAreTooCloseButWhereTwoConesFaceEachOther) {
+TEST(LaneGraphProblem, EdgesThatAreTooCloseConflictExceptBetweenFacingCones) {
     RldParameters parameters;
     parameters.d_min = 3.5;
     EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));

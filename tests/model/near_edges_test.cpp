@@ -117,7 +117,7 @@ TEST(NearEdges, ShareNoCone) {
 }
 
 // Every pair within reach or crossing is found, and far fewer pairs than all are examined.
-TEST(NearEdges, LeaveOutNoneThatComesCloserOrCrosses) {
+TEST(NearEdges, IncludeAllThatComeCloserOrCross) {
     RandomPoints points(2);
     std::size_t pairs = 0;
     std::size_t looked_at = 0;

@@ -106,7 +106,7 @@ TEST(ProblemLimits, AreTheNumbersThatStandThere) {
 }
 
 /// 5000 cones within a few metres: the edges alone would be millions.
-TEST(ProblemLimits, MemoryIsTheReasonWhereThereIsTimeEnough) {
+TEST(ProblemLimits, StopsByMemoryIfThereIsEnoughTime) {
     const LimitedProblem limited = make_problem(strewn(5000, 8.0), {}, EdgeExtent::candidates, Deadline());
     EXPECT_FALSE(limited.problem);
     EXPECT_EQ(limited.stopped_by, StopReason::memory);

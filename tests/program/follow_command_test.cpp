@@ -183,7 +183,7 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
 }
 
-TEST_F(FollowCommand, NamesWhatIsWrongAndLeavesNothing) {
+TEST_F(FollowCommand, NamesErrorsAndWritesNothing) {
     file_with(lines_of(frames(3.0)), "run.frames.jsonl");
     const std::string run = "--follow run.frames.jsonl ";
     expect_refused(run, {"--out"});

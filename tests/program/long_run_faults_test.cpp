@@ -160,7 +160,7 @@ class KilledRun : public LongRun, public testing::WithParamInterface<const char*
 
 // Killed repeatedly during each solver, by a signal that cannot be caught and by Ctrl-C; each run resumes
 // where the one before stopped. In the end, the result is that of an undisturbed run.
-TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
+TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
     const std::string detector = GetParam();
     constexpr int kEvery_m = 3;
     ASSERT_EQ(run(compare(detector, "whole", kEvery_m)).exit_code, 0);
@@ -254,7 +254,7 @@ TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
     EXPECT_EQ(results("killed"), results("whole"));
 }
 
-TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
+TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
     ASSERT_EQ(run(compare("rld-cbc", "whole")).exit_code, 0);
     const fs::path part = path("shared/rld-cbc.n014.lanes.jsonl.part");
     // The first run is stopped in the middle of its work; if it ended too early, another one is started.
@@ -336,7 +336,7 @@ TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
 }
 
 /// Each file of a finished comparison, cut short in the middle of a line, as after a power failure.
-TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
+TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     const auto cut = [&](const std::string& name, std::size_t length) {
         fs::remove_all(path("cut"));

@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-TEST_F(OutsideDetectors, AProgramThatIsNotThereGivesErrorsAtOnce) {
+TEST_F(OutsideDetectors, AMissingProgramGivesErrorsAtOnce) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome outcome = run(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
     EXPECT_EQ(outcome.exit_code, 1) << "nothing was answered";
@@ -256,7 +256,7 @@ TEST_F(OutsideDetectors, ASignalEndsTheProgramToo) {
     EXPECT_TRUE(has_ended("pid"));
 }
 
-TEST_F(OutsideDetectors, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
+TEST_F(OutsideDetectors, AStoppedComparisonResumesAndAChangedCommandIsAnother) {
     const std::string detectors = " --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") + "'";
     run_well(kLaps + std::string("whole") + detectors);
     std::filesystem::copy(path("whole"), path("stopped"));
@@ -349,7 +349,7 @@ TEST_F(FinishedLanes, ThatMissAnAnswerCountItAsAnError) {
     EXPECT_THAT(table_, HasSubstr("the lanes file has no answer to this scene"));
 }
 
-TEST_F(FinishedLanes, ThatAreWrongAreRefusedBeforeTheWork) {
+TEST_F(FinishedLanes, AreRefusedBeforeTheWorkIfInvalid) {
     const auto refuse = [&](const std::vector<json>& theirs, const std::vector<std::string>& names) {
         write_theirs(theirs);
         expect_refused("score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json rows",
@@ -398,7 +398,7 @@ TEST_F(FinishedLanes, ThatChangeAreAnotherComparison) {
         {"r/mine.lanes.jsonl", "directory of the results"});
 }
 
-TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
+TEST_F(OutsideDetectors, TheirCardsAreInTheRecordAndTheRows) {
     file_with("cat >/dev/null\n", "silent.sh");
     file_with(
         R"({"name": "Silence", "address": "https://example.org", "licence": "MIT", "colour_used": true,)"
@@ -417,7 +417,7 @@ TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
     for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["card"], card);
 }
 
-TEST_F(OutsideDetectors, WhatIsNoDetectorIsRefused) {
+TEST_F(OutsideDetectors, InvalidDetectorsAreRefused) {
     run_well("scenes --tracks generated:circle --every 30 --out s.scenes.jsonl");
     const std::string detect = "detect --scenes s.scenes.jsonl --out x.lanes.jsonl --method ";
     for (const char* detector : {"exec:", "exec:name", "exec:=true", "exec:name=", "exec:a/b=true",

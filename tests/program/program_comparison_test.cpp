@@ -37,7 +37,7 @@ std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
 constexpr const char* kTwoTracks =
     "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
 
-TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
+TEST_F(Program, CompareWritesATableAndItsData) {
     const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
@@ -91,7 +91,7 @@ TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
 }
 
 // Centre lines are 25 m long, so those of poses 40 m apart cannot be compared.
-TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
+TEST_F(Program, SteadinessIsKnownIfPosesHaveACommonStretch) {
     for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {
         SCOPED_TRACE(every);
         const std::string folder = std::string("every_") + every;
@@ -117,7 +117,7 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
     for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
 }
 
-TEST_F(Program, AStoppedComparisonGoesOn) {
+TEST_F(Program, AStoppedComparisonResumes) {
     ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
     // The files of a run that was killed while writing: some lines, the last one incomplete.
     std::filesystem::copy(path("whole"), path("stopped"));
@@ -133,7 +133,7 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // detectors, conditions, rates
 }
 
-TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
+TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
     const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
     ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
     const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");

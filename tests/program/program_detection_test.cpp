@@ -75,7 +75,7 @@ TEST_F(Program, OptionsThatADetectorDoesNotUseAreRefused) {
         << "one of the methods has RLD parameters";
 }
 
-TEST_F(Program, DetectsByWeightsOfOnesOwn) {
+TEST_F(Program, DetectsWithOwnWeights) {
     make_scenes("--fp 0");
     const std::string shipped = (source_directory() / "graph_search/weights/front.json").string();
     const auto lanes = [&](const std::string& options) {

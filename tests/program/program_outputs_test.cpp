@@ -65,7 +65,7 @@ TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
 }
 
 /// Through another name, links or the companion: no input is overwritten.
-TEST_F(Program, AnOutputIsNoInput) {
+TEST_F(Program, AnOutputMustNotBeAnInput) {
     make_scenes("--fp 0.2");
     const std::string scenes = text_of(path("s.scenes.jsonl"));
     std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));

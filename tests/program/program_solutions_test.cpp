@@ -182,7 +182,7 @@ TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
 
 /// Claims made with other parameters, another pairing or other cones are refused in one line, before they are
 /// checked. Claims that do not say how they were made are checked as they are.
-TEST_F(Program, ClaimsThatWereMadeOtherwiseAreNamed) {
+TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
     make_scenes("--fp 0.2");
     const std::string on = " --nearest 12 --params shape --scenes s.scenes.jsonl ";
     ASSERT_EQ(run("solve --solver path-pair" + on + "--out c.jsonl").exit_code, 0);

@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
+TEST_F(Program, TrainsFrontAndResumes) {
     const std::string command =
         "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
         "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "

@@ -69,7 +69,7 @@ class WholeOutputs : public Program {
     }
 };
 
-TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
+TEST_F(WholeOutputs, StayUnchangedIfOneNameCannotBeGiven) {
     file_with("old a", "a");
     AtomicFile a(path("a"));
     AtomicFile b(path("b"));
@@ -90,7 +90,7 @@ TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
         << "what was kept aside is left";
 }
 
-TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNotWritten) {
     const SmallDisk disk(path("disk"), "200k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
     const std::string scenes = "scenes --tracks generated:kidney --out disk/s.scenes.jsonl --every ";
@@ -112,7 +112,7 @@ constexpr const char* kInstances =
 constexpr const char* kMoreInstances =
     "instances --tracks generated:curvy --fp 0.5 --every 30 --nearest 12,16 --seed 3 --out made";
 
-TEST_F(WholeOutputs, OfInstancesThatASignalEndedAreNone) {
+TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
     for (const int signal : {SIGINT, SIGTERM}) {
         interrupt(kMoreInstances, signal, "made", ".mps.gz");
         EXPECT_THAT(contents("made"), testing::IsEmpty());
@@ -148,7 +148,7 @@ TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
     expect_refused(kInstances, {"made", "straight"});
 }
 
-TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNotWritten) {
     const SmallDisk disk(path("made"), "24k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
     const Outcome full = run(kMoreInstances);
@@ -190,7 +190,7 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0) << "its own page is replaced";
 }
 
-TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNotWritten) {
     ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
     const SmallDisk disk(path("disk"), "64k");

@@ -40,7 +40,7 @@ TEST_F(Words, AListWithAnEmptyPartIsRefused) {
     expect_refused("sweep --sizes , --out r", {"--sizes: ',' is a list with an empty part"});
 }
 
-TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
+TEST_F(Words, ACountThatIsNotAWholeNumberIsRefused) {
     for (const char* count : {"2.5", "0", "-1", "many", "100001", "99999999999999999999", "12x"}) {
         expect_refused(
             "scenes --tracks generated:circle --out s.scenes.jsonl --nearest=" + std::string(count),
@@ -53,7 +53,7 @@ TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
     expect_refused("study growth --scenes s.scenes.jsonl --sizes 2.5", {"--sizes: '2.5'"});
 }
 
-TEST_F(Words, ANameThatIsNoCommandIsAnsweredByThoseThereAre) {
+TEST_F(Words, AnUnknownCommandListsTheCommands) {
     expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "memory"});
     expect_refused("study nope --scenes s.scenes.jsonl --out x", {"study: there is no 'nope'", "optimality"});
     expect_refused("nope", {"there is no 'nope'", "compare", "solve"});

@@ -41,7 +41,7 @@ TEST(AnswerVerification, AcceptsTheLaneAndKnowsItsCost) {
     EXPECT_NEAR(answer.objective, -4.0, 1e-9);
 }
 
-TEST(AnswerVerification, NamesWhatIsBroken) {
+TEST(AnswerVerification, NamesTheBrokenConstraint) {
     RldParameters wide;
     wide.t_crit = 1e6;
     wide.d_min = 1.0;
@@ -128,7 +128,7 @@ RldReport told(const std::function<void(RldReport&)>& falsify, const LaneGraph* 
     return Liar(report).solve(make_problem(tests::six_cone_lane(), {}), {}, start);
 }
 
-TEST(VerifiedSolver, PassesWhatIsTrue) {
+TEST(VerifiedSolver, PassesTrueClaims) {
     const RldReport report = told([](RldReport&) {});
     EXPECT_EQ(report.status, SolveStatus::optimal);
     EXPECT_EQ(report.message, "");
@@ -159,7 +159,7 @@ TEST(VerifiedSolver, MakesAnErrorOfEveryWrongClaim) {
 }
 
 /// A feasible start refutes claims, and is then the answer.
-TEST(VerifiedSolver, HoldsClaimsAgainstTheStart) {
+TEST(VerifiedSolver, ComparesClaimsWithTheStart) {
     const LaneGraph shorter{{{1, 2}, {3, 4}, {4, 5}}};
     const std::vector<std::pair<std::string, std::function<void(RldReport&)>>> lies{
         {"the start is one",

@@ -59,7 +59,7 @@ TEST(Unevenness, IsTheSquaredDifferenceInUnitsOfTheSpacingThreshold) {
     EXPECT_EQ(unevenness(4.0, 3.0, parameters), 0.25);
 }
 
-TEST(FacingCost, IsNothingWhereALaneHasItsWidth) {
+TEST(FacingCost, IsZeroIfTheLaneHasTheExpectedWidth) {
     const Scene lane = scene_of({{2, 2}, {5, 2}, {2, -2}, {5, -2}});
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 0, 1), 0.0, 1e-12);
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 2, 3), 0.0, 1e-12);
@@ -133,7 +133,7 @@ TEST(ShapeCosts, AddUpOnALaneByHand) {
     EXPECT_NEAR(*check(lane, parameters, graph).objective, expected, 1e-12);
 }
 
-TEST(ShapeCosts, OffMeansNoneAtAll) {
+TEST(ShapeCosts, AreZeroIfSwitchedOff) {
     const Scene scene = tests::random_scene(3, 9);
     RldParameters other_thresholds;
     other_thresholds.d_w = 3.0;

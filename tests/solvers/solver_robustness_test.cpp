@@ -120,7 +120,7 @@ TEST_P(SolverRobustness, ALimitThatHasPassedStopsAtOnce) {
 
 /// The integers of a clock, a backend's seconds and its milliseconds overflow long before a double. The
 /// answer of a heuristic must be the one without a limit.
-TEST_P(SolverRobustness, AHugeFiniteLimitIsNone) {
+TEST_P(SolverRobustness, AHugeFiniteLimitIsNoLimit) {
     const RldReport unlimited = solver->solve(problem_of(four_cones()), {});
     if (GetParam().entry->exact) {
         ASSERT_EQ(unlimited.status, SolveStatus::optimal) << unlimited.message;
@@ -163,7 +163,7 @@ TEST_P(SolverRobustness, AllConesAtOnePlace) {
 }
 
 /// The last cone's edges cost 10^29; the printed formulation lists them.
-TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrNotFelt) {
+TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrHasNoEffect) {
     Scene scene = four_cones();
     scene.cones.push_back({4, {1e15, 0.0}});
     const LaneGraphProblem problem = problem_of(scene);
@@ -285,7 +285,7 @@ TEST(FailingBackend, ARelaxationThatThrowsIsAnErrorToo) {
     EXPECT_EQ(solver->solve(problem, {}, &kFourConesLane).lane_graph, kFourConesLane);
 }
 
-TEST(FailingBackend, OutOfMemoryIsHandedOn) {
+TEST(FailingBackend, OutOfMemoryIsPassedOn) {
     const LaneGraphProblem problem = make_problem(four_cones(), {});
     const auto solver = make_relaxation_solver(
         [](const LaneGraphProblem&, const std::vector<double>&,

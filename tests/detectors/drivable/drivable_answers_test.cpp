@@ -71,7 +71,7 @@ TEST(DrivableAnswers, ALaneBeyondWhatCanBeDrivenAtAllIsNotFound) {
 
 /// Frame 176 of the run fsg_19_2_laps. Its map lacks cones at a bend: the left boundary continues along the
 /// other one, once around the course and back to the car.
-TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapWhereItCannotBeDrivenElse) {
+TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapIfItCannotBeDriven) {
     Course course = tests::course_of({{2.0, 1.75}, {6.0, 1.75}, {10.0, 1.75}, {18.0, -1.75}}, {});
     // The part beside the car, from the cone behind the gap on.
     for (const double x : tests::range(-18.0, 0.0, 3.0)) course.add({-x, -1.75}, true);
@@ -83,7 +83,7 @@ TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapWhereItCannotBeDri
     EXPECT_NEAR(answer.trusted_m.value_or(-1.0), 8.0, 0.05);
 }
 
-TEST(DrivableAnswers, WhatIsNotFoundStaysAsItIs) {
+TEST(DrivableAnswers, OtherAnswersStayUnchanged) {
     LaneAnswer said;
     said.status = LaneStatus::none;
     EXPECT_EQ(answered(said, swapped().scene).status, LaneStatus::none);
@@ -101,7 +101,7 @@ TEST(DrivableAnswers, TrustIsKeptWhereItIsKnown) {
     }
 }
 
-TEST(DrivableAnswers, ElseALaneIsTrustedForTenMetresAsFarAsItWasSeenWithoutAGap) {
+TEST(DrivableAnswers, WithoutAProbabilityTrustEndsAtAGapOrAfterTenMetres) {
     const auto trusted_m = [](const std::vector<double>& left_x, const std::vector<double>& right_x) {
         const Course course = tests::straight(left_x, right_x);
         const LaneAnswer answer = answered(found(course.lane), course.scene);

@@ -35,7 +35,7 @@ Boundaries about_the_axis(const std::vector<Point>& left) {
     return {left, right};
 }
 
-TEST(DrivableLaneLimits, ALaneOfLessThanEightyCentimetresIsNone) {
+TEST(DrivableLaneLimits, ALaneBelowEightyCentimetresIsUnusable) {
     const Boundaries wide = about_the_axis({{0, 0.45}, {4, 0.45}, {8, 0.45}});
     EXPECT_NEAR(drivable(wide.lane, wide.scene).length_m, 8.0, 1e-6);
     const Boundaries narrow = about_the_axis({{0, 0.35}, {4, 0.35}, {8, 0.35}});
@@ -46,7 +46,7 @@ TEST(DrivableLaneLimits, ALaneOfLessThanEightyCentimetresIsNone) {
 
 /// 0.6 m wide up to x = 2, then wider by 0.6 m each metre. Rungs are 0.25 m apart, and 0.4 m from the middle
 /// to either boundary are reached at x = 2.39, between two of them.
-TEST(DrivableLaneLimits, ALaneThatIsNoneAtTheCarIsNoneWhatComesNext) {
+TEST(DrivableLaneLimits, ALaneThatIsUnusableAtTheCarHasNoPoints) {
     Boundaries funnel = about_the_axis({{0, 0.3}, {2, 0.3}, {6, 1.5}, {24, 1.5}});
     funnel.scene.pose.position.x() = 2.3;
     const DrivableLane none = drivable(funnel.lane, funnel.scene);

@@ -99,7 +99,7 @@ void expect_refused(const Course& course, const std::string& key, const Drivable
     }
 }
 
-TEST(DrivableLane, RefusesWhatIsNoLaneOfTheScene) {
+TEST(DrivableLane, RefusesInvalidLanes) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     const Course good = straight(range(0.0, 20.0, 4.0), range(0.0, 20.0, 4.0));

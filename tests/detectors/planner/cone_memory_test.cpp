@@ -185,7 +185,7 @@ TEST(ConeMemory, OneConeThatMovesIsNoShift) {
     EXPECT_FALSE(memory.observe(frame(moved)));
 }
 
-TEST(ConeMemory, TheOrderOfAFrameDecidesNothing) {
+TEST(ConeMemory, TheOrderOfAFrameHasNoEffect) {
     ConeMemory one;
     ConeMemory other;
     std::mt19937 random(2);

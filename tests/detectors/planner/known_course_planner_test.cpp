@@ -153,7 +153,7 @@ TEST(KnownCoursePlanner, RowsAcrossTheExitShortenWhatIsLeft) {
     }
 }
 
-TEST(KnownCoursePlanner, IsLostWhereTheConesStopToSpeakForTheRegistration) {
+TEST(KnownCoursePlanner, IsLostIfTheConesStopSupportingTheRegistration) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 1);

@@ -182,7 +182,7 @@ TEST(LaneChoice, AWrongLaneIsLeftAfterAsManyFramesAsSpokeForItAndNoMore) {
     EXPECT_TRUE(choice.take(right, right));
 }
 
-TEST(LaneChoice, WhatIsNearlyAtItsEndHoldsNothingBack) {
+TEST(LaneChoice, ALaneNearItsEndDoesNotResist) {
     LaneChoice choice{LaneChoiceSettings{}};
     const DrivableLane lane = straight_line({0.0, 0.0}, 0.0, 20.0);
     for (int i = 0; i < 5; ++i) (void)choice.take(lane, i == 0 ? DrivableLane{} : lane);

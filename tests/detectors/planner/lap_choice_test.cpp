@@ -45,11 +45,11 @@ class SureChoice : public testing::Test {
     DrivableLane other_ = line(0.5);
 };
 
-TEST_F(SureChoice, IsHeldAgainstFramesThatAreLittleSure) {
+TEST_F(SureChoice, IsKeptAgainstUncertainFrames) {
     EXPECT_GT(frames_until_left(other_, 0.3, 0.0), 10);
 }
 
-TEST_F(SureChoice, IsLeftForFramesThatAreSure) {
+TEST_F(SureChoice, IsLeftForCertainFrames) {
     const int frames = frames_until_left(other_, 0.95, 0.0);
     EXPECT_GT(frames, 1);
     EXPECT_LE(frames, static_cast<int>(std::ceil(settings_.max_support / 0.95)));

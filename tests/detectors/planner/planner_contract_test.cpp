@@ -151,7 +151,7 @@ TEST_P(PlannerContract, TheOrderOfConesAndWhereTimeBeginsChangeNothing) {
     }
 }
 
-TEST_P(PlannerContract, WithoutConesItBridgesAndIsLostThen) {
+TEST_P(PlannerContract, WithoutConesItBridgesAndIsThenLost) {
     const auto planner = make();
     Frame none;
     none.pose = course_.pose(0.0);

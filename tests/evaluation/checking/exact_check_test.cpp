@@ -38,7 +38,7 @@ BinaryProgram program_of(double c_0, double c_1, double lower, double upper) {
 
 // 0.1 and 0.2 are the fractions 3602879701896397 / 2^55 and 3602879701896397 / 2^54. Their sum is
 // 10808639105689191 / 2^55; the nearest double is 10808639105689192 / 2^55 = 0.30000000000000004.
-TEST(ExactProgram, DoublesAreTheFractionsThatTheyStandFor) {
+TEST(ExactProgram, ReadsDoublesAsExactFractions) {
     const ExactProgramReport report =
         recompute_exactly(program_of(0.1, 0.2, 0.0, 0.3), std::vector{1.0, 1.0});
     const Rational unit = Rational(1) / Rational(boost::multiprecision::cpp_int(1) << 55);
@@ -100,7 +100,7 @@ std::vector<Solved> solved_scenes(bool shape_costs) {
 // The exact objective of the program at the solver's answer equals the solver's objective and the one that
 // the checker computes from the scene in extended precision. Every row holds within the tolerance of the
 // limits.
-TEST(ExactLaneGraph, AnswersAreFeasibleAndCostWhatIsStated) {
+TEST(ExactLaneGraph, AnswersAreFeasibleAndHaveTheStatedCost) {
     for (const bool shape_costs : {false, true}) {
         const std::vector<Solved> all = solved_scenes(shape_costs);
         ASSERT_GT(all.size(), 10U);
@@ -191,7 +191,7 @@ TEST(ExactLaneGraph, AnEdgeThatTheProgramDoesNotHaveIsRefused) {
 using CheckExactly = ProgramFixture;
 
 // An objective whose error is below the checker's tolerance, but above the rounding of doubles.
-TEST_F(CheckExactly, TheCommandSeesWhatTheCheckerLetsPass) {
+TEST_F(CheckExactly, TheCommandFindsErrorsBelowTheCheckersTolerance) {
     ASSERT_EQ(run("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl").exit_code, 0);
     ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
     const std::string check = "check --scenes s.scenes.jsonl --solutions ";

@@ -70,7 +70,7 @@ TEST(LaneGraphSearch, WithThePairingOfThePaperAPathOfFarConesMayComeFirst) {
     EXPECT_EQ(result.witness->edges, (std::vector<Edge>{{0, 1}, {2, 3}}));
 }
 
-TEST(LaneGraphSearch, SaysWhereTheTimeRanOut) {
+TEST(LaneGraphSearch, ReportsThatTheTimeRanOut) {
     const LaneGraphSearchResult result = search_lane_graph(tests::random_scene(3, 60), {}, 0.0);
     EXPECT_FALSE(result.complete);
     EXPECT_FALSE(result.witness);

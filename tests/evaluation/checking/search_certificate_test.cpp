@@ -360,7 +360,7 @@ Scene colored(Scene scene, std::uint64_t seed) {
 
 /// Whatever is changed in the multipliers, a verified bound is true. A lane graph that is not the best, or a
 /// claim of no lane graph where there is one, is never verified.
-TEST(SearchCertificate, OfPathPairIsVerifiedAndNothingElseIs) {
+TEST(SearchCertificate, OnlyTrueClaimsAreVerified) {
     int optima = 0;
     int infeasible = 0;
     int worse = 0;
@@ -473,7 +473,7 @@ TEST(SearchCertificate, ClaimsNothingOfCostsBeyondTheLargestBound) {
 }
 
 /// A search that is stopped has proven a bound, and its certificate claims exactly this bound.
-TEST(SearchCertificate, OfAStoppedSearchIsOfItsBound) {
+TEST(SearchCertificate, OfAStoppedSearchProvesItsBound) {
     const SearchCertificate nothing = certify_search(make_problem(straight_lane(), {}), 0.0);
     EXPECT_EQ(verify(nothing, straight_lane()).kind, Kind::refused);
     SearchCertificate certificate = straight_proof();
@@ -513,7 +513,7 @@ TEST_F(SearchCertificateFile, IsReadAsItWasWritten) {
     EXPECT_EQ(missing, 4711);
 }
 
-TEST_F(SearchCertificateFile, NamesTheLineAndKeyOfWhatIsWrong) {
+TEST_F(SearchCertificateFile, NamesTheLineAndKeyOfAnError) {
     const auto refusal = [&](const std::string& line) {
         const std::filesystem::path file = file_with("\n" + line + "\n", "bad.jsonl");
         try {

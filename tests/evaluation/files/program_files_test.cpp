@@ -92,7 +92,7 @@ End
 )");
 }
 
-TEST(ProgramFiles, NamesMustTellColumnsApart) {
+TEST(ProgramFiles, NamesMustBeUnique) {
     BinaryProgram program = small_program();
     program.add_column({"y", {1}}, 0.0, true);
     std::ostringstream out;
@@ -184,7 +184,7 @@ TEST(SolutionFiles, OfMiplibAndGurobi) {
 }
 
 /// Values that a format does not have may be in lines =KEY= of any format, also after its last line.
-TEST(SolutionFiles, RemarksTellTheRest) {
+TEST(SolutionFiles, RemarksGiveValuesThatAFormatLacks) {
     const SolutionFile gurobi = read(
         "# Objective value = -2\ny_1 1\nz_1_2 0.5\n=status= optimal\n=bound= -2.25\n"
         "=nodes= 12\n=ms= 3.5\n=solver= Gurobi 11.0\n");

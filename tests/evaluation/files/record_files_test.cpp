@@ -204,7 +204,7 @@ TEST_F(SolutionFileTest, NamesBadRecords) {
 class ParameterTagTest : public FileTest {};
 
 /// A name is for people. Values distinguish parameters, and a file may be replaced under its name.
-TEST_F(ParameterTagTest, TellsParametersApartByTheirValues) {
+TEST_F(ParameterTagTest, DistinguishesParametersByTheirValues) {
     RldParameters parameters;
     const ParameterTag made = tag_of("folder/own.json", parameters);
     EXPECT_EQ(made.name, "own.json");
@@ -229,7 +229,7 @@ TEST_F(ParameterTagTest, TellsParametersApartByTheirValues) {
               "f:3: parameters: made by other values than 'own.json' has now");
 }
 
-TEST_F(ParameterTagTest, WhatIsNotSaidIsNoDifference) {
+TEST_F(ParameterTagTest, AMissingValueIsNoDifference) {
     const ParameterTag now = tag_of("", {});
     EXPECT_NO_THROW(require_same_basis({{}, {}}, {now, 12U}, "f", 1)) << "a file of an earlier version";
     EXPECT_NO_THROW(require_same_basis({now, 12U}, {now, {}}, "f", 1));

@@ -103,7 +103,7 @@ TEST(PointSnapping, OfRandomScenesEveryConeIsFoundAgain) {
 }
 
 /// A spiral is only long, but a star through its own middle is a tangle.
-TEST(Tangles, AreToldFromLongLanes) {
+TEST(Tangles, AreDistinguishedFromLongLanes) {
     std::vector<Point> spiral;
     std::vector<Point> star;
     for (int i = 0; i < 100; ++i) {
@@ -115,7 +115,7 @@ TEST(Tangles, AreToldFromLongLanes) {
 }
 
 /// Every answer of a program that is not refused can be scored, even if it makes no sense.
-TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
+TEST(ForeignLanes, EveryAcceptedAnswerCanBeScored) {
     SceneOptions options;
     options.false_positive_rates = {0.3};
     options.ranges_m = {30.0};
@@ -193,7 +193,7 @@ class OutsideProgramTest : public FileTest {
     }
 };
 
-TEST_F(OutsideProgramTest, AnswersAndGoesWithItsInput) {
+TEST_F(OutsideProgramTest, AnswersAndEndsWithItsInput) {
     OutsideProgram program("shell", shell(kNone), kShort);
     for (int i = 0; i < 3; ++i) {
         const LaneRecord record = program.answer(three_pairs());

@@ -264,7 +264,7 @@ class Claims : public FileTest {
 };
 
 /// A known lane graph refutes the claim; without one, it cannot be refuted here.
-TEST_F(Claims, ThatThereIsNoneIsRefutedByAStart) {
+TEST_F(Claims, InfeasibilityIsRefutedByAStart) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
     // With a cutoff, the claim that nothing is below it is true of an optimum.
     OutsideSolver conversation(detector(child("claims-none 1 always")), {});

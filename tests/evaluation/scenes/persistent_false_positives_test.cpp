@@ -97,7 +97,7 @@ TEST(PersistentFalsePositives, BytesDependNeitherOnThreadsNorOnOtherScenes) {
     EXPECT_EQ(bytes({alone.front()}), bytes({*same}));
 }
 
-TEST(PersistentFalsePositives, MoreThanThereAreIdsAreRefused) {
+TEST(PersistentFalsePositives, MoreThanTheNumberOfIdsAreRefused) {
     SceneOptions wanted = options({0.99}, {30.0});
     wanted.persistent = true;
     try {

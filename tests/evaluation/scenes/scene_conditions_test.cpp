@@ -72,7 +72,7 @@ TEST(SceneConditions, AnOptionReplacesItsPartAndTheNameSaysSo) {
 }
 
 /// The standard deviations and the share of missed cones are those in measures.md.
-TEST(SceneConditions, CarAndHarshDisturbAsMuchAsTheySay) {
+TEST(SceneConditions, CarAndHarshHaveTheirDocumentedDisturbances) {
     struct Expected {
         const char* name;
         double noise_m;

@@ -67,7 +67,7 @@ TEST(SceneGeneration, FalsePositivesFillTheHalfDiscAndOnlyIt) {
     EXPECT_GE(scenes_made, 10);
 }
 
-TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
+TEST(SceneGeneration, DisturbancesHaveTheRequestedSpread) {
     const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
     SceneOptions wanted = options({0.0}, {15.0});
     wanted.pose_noise_lateral_m = 0.3;

@@ -66,7 +66,7 @@ TEST(SceneGeneration, IdsShowRateRangeAndDisturbances) {
                          "toy/pose_0000/fp_0.125/range_12.5" + rest));
 }
 
-TEST(SceneGeneration, IdsAndOrderTellNothing) {
+TEST(SceneGeneration, IdsAndOrderRevealNothing) {
     std::vector<Pose> poses;
     for (double x = 3.0; x < 60.0; x += 1.1) poses.push_back({{x, 0.0}, 0.0});
     SceneOptions wanted = options({0.0, 0.5}, {30.0});

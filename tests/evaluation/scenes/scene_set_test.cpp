@@ -110,7 +110,7 @@ std::vector<Point> ring(double radius_m, double from_rad, double to_rad, int con
     return all;
 }
 
-TEST(DegenerateTruth, LanesOfAnyShapeAreNone) {
+TEST(DegenerateTruth, LanesOfAnyShapeAreNotDegenerate) {
     constexpr double kTurn = 2.0 * std::numbers::pi;
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}}));
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}, {10, -2}})) << "one ends earlier";
@@ -121,7 +121,7 @@ TEST(DegenerateTruth, LanesOfAnyShapeAreNone) {
         << "the other way";
 }
 
-TEST(DegenerateTruth, ABoundaryThatGoesOnBesideAnotherLegIsOne) {
+TEST(DegenerateTruth, ABoundaryThatContinuesBesideAnotherLegIsDegenerate) {
     // The left boundary ends after 15 m; the right one turns around its end and comes back on its other side.
     const std::vector<Point> left{{0, 0}, {5, 0}, {10, 0}, {15, 0}};
     std::vector<Point> right{{0, -3}, {5, -3}, {10, -3}, {15, -3}, {20, -3}, {22, 0}, {20, 3}};

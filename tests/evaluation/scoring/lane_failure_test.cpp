@@ -195,7 +195,7 @@ TEST(LaneFailure, ACentreLineAloneDoesNotTellWhy) {
               LaneFailure::stopped_early);
 }
 
-TEST(LaneFailure, EachHasANameOfItsOwn) {
+TEST(LaneFailure, AllHaveDifferentNames) {
     std::set<std::string> names;
     for (std::size_t i = 0; i < kLaneFailureCount; ++i) names.emplace(to_string(static_cast<LaneFailure>(i)));
     EXPECT_EQ(names.size(), kLaneFailureCount);

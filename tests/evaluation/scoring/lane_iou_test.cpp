@@ -42,7 +42,7 @@ TEST(LaneArea, IsThatBetweenTheBoundaries) {
     EXPECT_DOUBLE_EQ(lane_length_m({{{0, 0}, {4, 0}}, {{0, -3}, {8, -3}}}), 6.0);
 }
 
-TEST(LaneArea, IsNoneWithSwappedSides) {
+TEST(LaneArea, IsZeroWithSwappedSides) {
     EXPECT_DOUBLE_EQ(lane_area_m2(with_swapped_sides(straight(10))), 0.0);
 }
 

@@ -318,7 +318,7 @@ TEST(Score, OnlyScenesWithTwoConesOnEachSideCount) {
     EXPECT_THROW((void)scored(scene, {{1, 2}, {101, 102}}), InvalidInput);
 }
 
-TEST(Score, DegenerateLanesAreScoredAsTheyStand) {
+TEST(Score, DegenerateLanesAreScoredAsTheyAre) {
     const AnnotatedScene scene = straight_scene();
     for (const Lane& lane : std::vector<Lane>{{{1}, {101}},
                                               {{1, 2, 3}, {}},
@@ -390,7 +390,7 @@ TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
     EXPECT_NEAR(summary.unsteady_share.value(), 4.0 / 19.0, 1e-12);
 }
 
-TEST(Summary, LeavesOutWhatNoDetectorStates) {
+TEST(Summary, LeavesOutMeasuresThatNoDetectorStates) {
     const AnnotatedScene scene = straight_scene();
     const std::vector<SceneScore> scores{score(scene, found(*scene.ground_truth), 1.0, 3, &kTrack)};
     const ScoreSummary summary = summarise(scores);

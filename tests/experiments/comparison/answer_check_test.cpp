@@ -83,7 +83,7 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
     expect_rejected(unseen, scene);
 }
 
-TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
+TEST(CheckAnswer, ChecksTheUncutLaneOfALaneWithContext) {
     const AnnotatedScene scene = straight_scene();
     const KnownDetector& detector = find_detector("rld-context");
     LaneRecord right{scene.scene.id, "rld-context",
@@ -109,7 +109,7 @@ TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     expect_rejected(leaping, scene);
 }
 
-TEST(CheckAnswer, LeavesWhatHasNoLane) {
+TEST(CheckAnswer, LeavesRecordsWithoutALane) {
     const AnnotatedScene scene = straight_scene();
     LaneRecord none{"a", "rld-pair", {}, 1.0, {}};
     none.answer.status = LaneStatus::none;
@@ -118,7 +118,7 @@ TEST(CheckAnswer, LeavesWhatHasNoLane) {
     EXPECT_FALSE(none.checked);
 }
 
-TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
+TEST(Run, ChecksRldAnswersOnTheirOwnConeSet) {
     SceneOptions options;
     options.false_positive_rates = {0.3};
     options.ranges_m = {30.0};

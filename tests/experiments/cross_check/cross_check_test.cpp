@@ -164,7 +164,7 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
 }
 
 /// A lane graph at its true cost, called optimal: only the other solver's better one refutes it.
-TEST(CrossCheckJudge, AnOptimumThatIsNoneIsFound) {
+TEST(CrossCheckJudge, AFalseOptimumIsFound) {
     const CrossCheckVerdict verdict = judge_with([](RldReport& report, const Scene& scene, double) {
         Scene fewer = scene;
         std::erase_if(fewer.cones, [](const Cone& cone) { return cone.id == 2 || cone.id == 5; });
@@ -178,7 +178,7 @@ TEST(CrossCheckJudge, AnOptimumThatIsNoneIsFound) {
 }
 
 /// An answer without a proof contradicts nothing, but the case stays undecided.
-TEST(CrossCheckJudge, WhatClaimsNothingIsUndecided) {
+TEST(CrossCheckJudge, AnswersWithoutAProofAreUndecided) {
     const CrossCheckVerdict verdict = judge_with([](RldReport& report, const Scene&, double) {
         report.status = SolveStatus::feasible;
         report.bound = -100.0;
@@ -208,7 +208,7 @@ TEST(Shrinking, KeepsTheConesAndTheParametersThatMatter) {
     EXPECT_LT(asked, 200);
 }
 
-TEST(Shrinking, EndsWhereTheTrialsDo) {
+TEST(Shrinking, EndsWithItsTrials) {
     CrossCheckCase drawn;
     drawn.scene = tests::random_scene(5, 24);
     int asked = 0;

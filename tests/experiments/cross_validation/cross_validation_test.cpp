@@ -61,7 +61,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
     }
 }
 
-TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
+TEST_F(CrossValidation, ResumesAfterAStop) {
     ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam").exit_code, 0);
     const std::string net = text_of(path("cv/folds/a/rank_net_paper.json"));
     const std::string lanes = text_of(path("cv/delaunay-beam.lanes.jsonl"));
@@ -85,7 +85,7 @@ TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
     EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
 }
 
-TEST_F(CrossValidation, RefusesFoldsThatAreNone) {
+TEST_F(CrossValidation, RefusesInvalidFolds) {
     const auto errors = [&](const std::string& options) {
         const Outcome outcome = run("cross-validate --every 40 --methods rld-pair --out cv " + options);
         EXPECT_EQ(outcome.exit_code, 2) << options;

@@ -190,7 +190,7 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     EXPECT_LT(*relaxed.bound, *instance->optimum.best - 1.0);
 }
 
-TEST_F(Instances, WhatNoEngineCanFinishIsOpen) {
+TEST_F(Instances, AnUnfinishedProgramIsOpen) {
     InstanceOptions options = slice_of_stored();
     options.time_limit_ms = 1e-6;
     std::vector<InstanceScene> scenes = instance_scenes(options);

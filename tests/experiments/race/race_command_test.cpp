@@ -72,7 +72,7 @@ TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     }
 }
 
-TEST_F(RaceCommand, WeightsThatNobodyTakesOrThatAreNoneAreRefused) {
+TEST_F(RaceCommand, UnusedOrInvalidWeightsAreRefused) {
     file_with(front_weights_json(shipped_front_options().weights, "{}"), "front.json");
     file_with("{}", "wrong.json");
     const std::string kidney = "race --tracks generated:kidney --out out ";
@@ -103,7 +103,7 @@ TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
     expect_refused("race --tracks generated:kidney --methods truth --out taken", {"taken"});
 }
 
-TEST_F(RaceCommand, WhereOneFileCannotBeWrittenNoneIs) {
+TEST_F(RaceCommand, IfOneFileCannotBeWrittenNoneIs) {
     std::filesystem::create_directories(path("out") / "table.txt");
     const Outcome outcome = run("race --tracks generated:kidney --methods truth --out out");
     EXPECT_EQ(outcome.exit_code, 2);

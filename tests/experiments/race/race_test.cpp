@@ -557,7 +557,7 @@ TEST(Drivers, ADetectorDrivesAGeneratedCourseWithAndWithoutIds) {
     }
 }
 
-TEST(Drivers, NamesThatAreNoneAreRefused) {
+TEST(Drivers, UnknownNamesAreRefused) {
     EXPECT_THROW(static_cast<void>(race_detectors({"nobody"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(race_detectors({"front,front"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(race_detectors({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);

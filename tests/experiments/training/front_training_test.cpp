@@ -386,7 +386,7 @@ TEST(FrontTraining, GivesTheSameWeightsOnAnyNumberOfThreadsAndOthersFromAnotherS
     EXPECT_FALSE(train_front(courses(), {}, options, {}) == weights);
 }
 
-TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
+TEST(FrontTraining, ResumesFromItsCheckpoint) {
     const auto folder = std::filesystem::temp_directory_path() / "conelane_front_training_test";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);

@@ -178,7 +178,7 @@ TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed)
     EXPECT_FALSE(train_rld(courses(), options, {}) == costs);
 }
 
-TEST(RldTraining, GoesOnFromWhereItWasEnded) {
+TEST(RldTraining, ResumesFromItsCheckpoint) {
     const auto folder = std::filesystem::temp_directory_path() / "conelane_rld_training_test";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
@@ -218,7 +218,7 @@ TEST(RldTraining, BeginsWithTheCostsOfTheParameters) {
     EXPECT_THROW((void)train_rld(courses(), options, {}), InvalidInput);
 }
 
-TEST(RldTraining, RefusesWhatIsOutOfRange) {
+TEST(RldTraining, RefusesOptionsOutOfRange) {
     const auto refused = [](const auto& change) {
         RldTrainingOptions options = quick();
         change(options);

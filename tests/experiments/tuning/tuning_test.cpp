@@ -60,7 +60,7 @@ TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
     EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below its range";
 }
 
-TEST(ParameterRanges, MovesWhatLiesOutsideToItsBorder) {
+TEST(ParameterRanges, MovesValuesOutsideToTheBorder) {
     RldParameters start;
     start.s_crit = 1.0;
     start.d_min = 3.5;

@@ -176,7 +176,7 @@ TEST(ClcContract, AFoundLaneTellsWhetherALimitCutTheSearch) {
     EXPECT_EQ(late.stopped_by, StopReason::time);
 }
 
-TEST(ClcContract, HugeLimitsAreNoneAndNegativeOnesAreOver) {
+TEST(ClcContract, HugeLimitsNeverExpireAndNegativeOnesHaveExpired) {
     const Scene scene = tests::random_scene(3, 30);
     for (const auto& [name, options] : variants()) {
         SCOPED_TRACE(name);

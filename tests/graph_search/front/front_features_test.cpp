@@ -488,7 +488,7 @@ void require_scores_of_what_is_seen(const Scene& scene) {
     EXPECT_NEAR(scores.back(), FrontNetwork(weights.stop).score(with_state(stop)), kRounding);
 }
 
-TEST(FrontCost, ScoresAreOfWhatIsSeen) {
+TEST(FrontCost, ScoresAreTheNetworksValues) {
     Scene scene = tests::straight_front_scene(3);
     require_scores_of_what_is_seen(scene);
     for (std::size_t i = 0; i < scene.cones.size(); ++i) scene.cones[i].color = i % 3 == 0 ? kBlue : kYellow;

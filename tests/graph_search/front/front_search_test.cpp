@@ -316,7 +316,7 @@ TEST(FrontMap, AnglesAreExactToTwentyMillionths) {
     EXPECT_EQ(front_angle(0.0, 0.0), 0.0);
 }
 
-TEST(FrontMap, KnowsWhatLiesAboutAWay) {
+TEST(FrontMap, ComputesWhatIsAroundAWay) {
     Scene scene;
     scene.cones = {{0, {0.0, 0.0}}, {1, {4.0, 0.0}}, {2, {2.0, 0.5}}, {3, {2.0, -1.0}}, {4, {8.0, 0.0}}};
     FrontMap map;
@@ -355,7 +355,7 @@ TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
     EXPECT_FLOAT_EQ(farthest_m(), 11.4F);
 }
 
-TEST(FrontNetwork, IsWhatItsFormulaSays) {
+TEST(FrontNetwork, EqualsItsFormula) {
     const FrontWeights weights = random_front_weights(3);
     const FrontNetworkWeights& w = weights.stop;
     const FrontNetwork network(w);
@@ -565,7 +565,7 @@ TEST(FrontDetector, ADeadlineGivesTheBestLaneSoFar) {
 }
 
 /// Found by fuzzing: as float, such a segment has no length, so its direction was not a number.
-TEST(FrontDetector, TwoConesAllButAtOnePlaceAreNoSegment) {
+TEST(FrontDetector, TwoConesAlmostAtOnePlaceAreNoSegment) {
     Scene scene{.id = "nearly one place", .pose = {{0.0, 0.0}, 0.6}, .cones = {}};
     scene.cones = {{1, {0.0, 0.0}},
                    {2, {6.291347651660108, 2.476074458886653}},

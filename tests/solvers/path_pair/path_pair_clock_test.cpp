@@ -38,7 +38,7 @@ std::vector<char> near_cones(const ArcGraph& graph) {
     return near;
 }
 
-TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
+TEST(PathPairClock, IsCheckedWhileTheArcGraphIsMade) {
     const LaneGraphProblem problem = dense_problem();
     ASSERT_GT(problem.edges.size(), 1500U);
     tests::FakeSearchClock clock;
@@ -55,7 +55,7 @@ TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
     }
 }
 
-TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
+TEST(PathPairClock, IsCheckedWhileTheResidualGraphIsMade) {
     const LaneGraphProblem problem = dense_problem();
     SearchClock no_limit;
     ArcGraph graph;
@@ -77,7 +77,7 @@ TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
     }
 }
 
-TEST(PathPairClock, IsLookedAtWhileAVectorIsFilled) {
+TEST(PathPairClock, IsCheckedWhileAVectorIsFilled) {
     constexpr std::size_t kCount = 300'000;
     tests::FakeSearchClock clock;
     std::vector<int> values{1, 2};
@@ -92,7 +92,7 @@ TEST(PathPairClock, IsLookedAtWhileAVectorIsFilled) {
     EXPECT_EQ(striking.looks(), 3);
 }
 
-TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
+TEST(PathPairClock, IsCheckedWhileAVectorGrows) {
     std::vector<int> values;
     for (int i = 0; i < 300'000; ++i) values.push_back(i);
     values.shrink_to_fit();

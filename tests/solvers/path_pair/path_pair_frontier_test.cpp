@@ -151,7 +151,7 @@ LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
 }
 
 /// Of a problem of all pairs those edges that a lane graph may have, and of their turns the allowed ones.
-TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
+TEST(PathPairArcGraph, HasTheAllowedEdgesAndTurns) {
     const LaneGraphProblem all = make_problem(tests::random_scene(3, 9), {}, EdgeExtent::all_pairs);
     const LaneGraphProblem allowed = make_problem(tests::random_scene(3, 9), {});
     ArcGraph graph;
@@ -175,7 +175,7 @@ TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
 
 /// 500 cones without an edge: if the time ends at any check, the last of which is among the far cones, there
 /// is no graph.
-TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
+TEST(PathPairArcGraph, AnInterruptedBuildGivesNoGraph) {
     Scene scene;
     for (int cone = 0; cone < 500; ++cone)
         scene.cones.push_back({static_cast<ConeId>(cone), Point(100.0 + 100.0 * cone, 0.0)});
@@ -348,7 +348,7 @@ TEST(PathPairFrontierGraph, TheEarlierLegMoves) {
     EXPECT_GT(both_go_on, 20);
 }
 
-TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
+TEST(PathPairFrontierGraph, DropsOnlyWhatReachesTheLimit) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Frontiers s(random_problem(seed, 14), seed);
@@ -363,7 +363,7 @@ TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
     }
 }
 
-TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
+TEST(PathPairFrontierGraph, GivesUpAtItsLimit) {
     Frontiers s(random_problem(3, 20), 3);
     EXPECT_FALSE(s.build(kUnreachable, 2));
     EXPECT_TRUE(s.build());
@@ -509,7 +509,7 @@ TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
 }
 
 /// If the time ends at any check, the search does not claim to be complete.
-TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
+TEST(PathPairFrontierSearch, StopsAtEveryCheckOfTheClock) {
     int stopped_on_the_way = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Frontiers s(random_problem(seed, 24), seed);
@@ -533,7 +533,7 @@ TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
     EXPECT_GT(stopped_on_the_way, 5);
 }
 
-TEST(PathPairFrontierSearch, StopsWhereToldTo) {
+TEST(PathPairFrontierSearch, StopsAtItsLimit) {
     Frontiers s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
     s.frontiers.find_onward(kUnreachable);

@@ -185,7 +185,7 @@ TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
 
 /// The time ends at each check of the clock in turn: a claimed complete search is complete, and the bound is
 /// valid. It never falls, and rises on the way if nodes branch.
-TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
+TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
     int cut_short = 0;
     int rises = 0;
     std::uint64_t run = 0;

@@ -262,7 +262,7 @@ TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
 /// Its own lane graph stays a lane graph when windows improve it, whether one of its paths lists far ends
 /// first or not. In these three scenes, a search that takes a start's paths in their given direction, and
 /// does not check where the paths of an incumbent end, answers with one near end and three far ones.
-TEST(PathPairWindows, AStartIsImprovedAsWhatItIs) {
+TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
     struct Drawn {
         std::uint64_t seed;
         double d_near_m;
