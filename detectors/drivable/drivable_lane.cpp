@@ -42,12 +42,12 @@ constexpr std::size_t kMissedReach = 2;  ///< rungs to either side of a missed o
 void validate(const DrivableOptions& options) {
     const auto require = [](double value, double least, double most, const char* key) {
         if (value >= least && value <= most) return;
-        throw InvalidInput(key, "is not in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
+        throw InvalidInput(key, "must be in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
     };
     require(options.step_m, 0.01, 100.0, "step_m");
     require(options.smoothing_m, 0.25, 5.0, "smoothing_m");
     require(options.default_width_m, 1.0, kMaxLaneWidth_m, "usual_width_m");
-    if (!(options.max_gap_m > 0.0)) throw InvalidInput("longest_gap_m", "is not above 0");
+    if (!(options.max_gap_m > 0.0)) throw InvalidInput("max_gap_m", "must be above 0");
 }
 
 struct Sides {
@@ -96,7 +96,7 @@ Sides positions(const Lane& lane, const Scene& scene) {
 
 void require_boundary(const LaneBoundary& boundary, bool closed, const char* key) {
     if (closed && boundary.vertices().size() < 3) {
-        throw InvalidInput(key, "has fewer than three cones, yet the lane is closed");
+        throw InvalidInput(key, "has fewer than three cones, but the lane is closed");
     }
     if (boundary.length_m() > kMaxBoundary_m) throw InvalidInput(key, "is longer than 20 km");
 }

@@ -20,7 +20,7 @@ namespace conelane {
 namespace {
 
 void validate(const PlannerOptions& options) {
-    if (options.laps && *options.laps < 1) throw InvalidInput("laps", "is not at least 1");
+    if (options.laps && *options.laps < 1) throw InvalidInput("laps", "must be at least 1");
     validate_shared(options);
 }
 

@@ -37,7 +37,7 @@ std::vector<std::string> unique_names(const std::vector<Named>& all, const std::
     for (const Named& named : all) {
         names.push_back(to_string(named.label));
         if (!seen.insert(names.back()).second) {
-            throw InvalidInput(key, "two of the name " + names.back());
+            throw InvalidInput(key, "two have the name " + names.back());
         }
     }
     return names;
@@ -46,7 +46,7 @@ std::vector<std::string> unique_names(const std::vector<Named>& all, const std::
 struct Names {
     explicit Names(const BinaryProgram& program)
         : columns(unique_names(program.columns, "columns")), rows(unique_names(program.rows, "rows")) {
-        if (columns.empty()) throw InvalidInput("columns", "a file needs one at least");
+        if (columns.empty()) throw InvalidInput("columns", "a file needs at least one");
     }
     std::vector<std::string> columns;
     std::vector<std::string> rows;
@@ -177,7 +177,7 @@ void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view 
             out << ' ' << number(column.lower) << " <= " << names.columns[c] << " <= " << number(column.upper)
                 << '\n';
         } else if (column.lower != 0.0 || column.upper != 1.0) {
-            throw InvalidInput(names.columns[c], "is integer, yet not between 0 and 1");
+            throw InvalidInput(names.columns[c], "is an integer column, but not between 0 and 1");
         }
     }
     out << "Binaries\n";

@@ -130,7 +130,7 @@ std::vector<Track> load_tracks(const std::string& spec) {
     if (what.empty())
         fail(spec,
              "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE, eufs:FILE or ftlog:FILE, "
-             "where a FILE may be a folder of such");
+             "and instead of a FILE, a folder with such files");
     try {
         if (kind == "generated") return generated(spec, what);
         if (kind == "fsd") return fsd(spec, what);

@@ -69,7 +69,7 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
         const fs::path file = compared.outside->source;
         std::error_code ignored;
         if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))
-            throw InputError(file, 0, "", "lies in the directory of the results, which are written there");
+            throw InputError(file, 0, "", "is in the directory of the results, whose files would replace it");
         lanes.emplace(compared.name, read_finished_lanes(*compared.outside, scenes));
     }
     return lanes;

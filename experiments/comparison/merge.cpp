@@ -52,7 +52,7 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
         ordered_json record = ordered_json::parse(read_run_record(directory));
         const fs::path file = directory / "run.json";
         if (!record.contains("shard") || !record["shard"].is_array() || record["shard"].size() != 2) {
-            throw InputError(file, 0, "shard", "is missing: no shard of a run");
+            throw InputError(file, 0, "shard", "is missing: the directory is not a shard of a run");
         }
         const auto index = record["shard"][0].get<std::size_t>();
         const auto count = record["shard"][1].get<std::size_t>();
@@ -93,7 +93,8 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
     for (const fs::path& shard : shards) {
         std::error_code ignored;
         if (fs::equivalent(shard, directory, ignored)) {
-            throw InputError(directory, 0, "", "is one of the shards, so the whole cannot go there");
+            throw InputError(directory, 0, "",
+                             "is one of the shards; the joined run needs another directory");
         }
     }
     const ShardedRun run = sort_shards(shards);

@@ -95,7 +95,7 @@ class CaseLog {
             if (number == 1) {
                 const auto stored = nlohmann::ordered_json::parse(line, nullptr, false);
                 if (stored != record)
-                    throw InputError(file_, 1, "", "holds a run of other options or another program");
+                    throw InputError(file_, 1, "", "holds a run with other options or of another program");
                 continue;
             }
             with_json_line(line, file_, number, [&](const JsonNode& json) {

@@ -64,7 +64,7 @@ std::string record_of(const CrossValidationOptions& options) {
 }
 
 void check(const CrossValidationOptions& options) {
-    if (options.families.size() < 2) throw InvalidInput("family", "there must be two at least");
+    if (options.families.size() < 2) throw InvalidInput("family", "there must be at least two");
     std::set<std::string> names;
     for (const CourseFamily& family : options.families) {
         if (!names.insert(family.name).second)

@@ -132,10 +132,12 @@ std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, 
         }
         if (const std::optional<OutsideDetector> outside = find_outside_detector(text)) {
             if (!outside->is_program()) {
-                throw InvalidInput("--methods", "'" + text + "' answers no frames of a race");
+                throw InvalidInput("--methods", "'" + text + "' cannot answer the frames of a race");
             }
             if (with_planner == WithPlanner::only) {
-                throw InvalidInput("--planner", "a program from outside has none: '" + outside->name + "'");
+                throw InvalidInput(
+                    "--planner",
+                    "'" + outside->name + "' is a program from outside, which cannot have a planner");
             }
             all.push_back({outside->name, outside->source, false, false,
                            std::make_shared<OutsideProgramPool>(outside->name, outside->source)});

@@ -289,7 +289,7 @@ class BackendsStudy : public Study {
 
     StudyResult run() override {
         if (!std::ranges::is_sorted(options_.gap_limits_ms, std::less_equal()))
-            throw InvalidInput("--gap-limits", "must ascend");
+            throw InvalidInput("--gap-limits", "must be in ascending order");
         options_.parameters = input_.parameters.load();
         options_.backends = backends_asked_for();
         if (all_visible_) options_.sizes.push_back(kAllVisible);
@@ -343,7 +343,7 @@ class BackendsStudy : public Study {
         std::vector<std::string> labels;
         for (const Backend& backend : all) {
             if (std::ranges::find(labels, backend.label()) != labels.end())
-                throw InvalidInput("--solvers", "two are called " + backend.label());
+                throw InvalidInput("--solvers", "two backends have the name " + backend.label());
             labels.push_back(backend.label());
         }
         return all;
@@ -371,7 +371,7 @@ class BackendsStudy : public Study {
         }
         std::string lines;
         for (const auto& [backend, version] : versions)
-            lines += fmt::format("{}: {}\n", backend, version.empty() ? "tells no version" : version);
+            lines += fmt::format("{}: {}\n", backend, version.empty() ? "version unknown" : version);
         lines += provenance().machine + '\n';
         if (reference_ms.empty()) return lines;
         return lines + fmt::format(

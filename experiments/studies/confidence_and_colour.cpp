@@ -171,7 +171,7 @@ class ConfidenceAndColorStudy : public Study {
         command.add_option("--only", only_, "names of the tracks that count; all without it");
         command.add_option("--every", every_m_, "travel between poses instead of the record's [m]");
         add_seed_option(command, seed_, "base seed instead of the record's");
-        add_threads_option(command, threads_, "nothing is timed");
+        add_threads_option(command, threads_, "number of threads; nothing is timed");
     }
 
     StudyResult run() override {

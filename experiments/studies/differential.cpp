@@ -99,15 +99,15 @@ class DifferentialStudy : public Study {
         : Study(
               {"differential", "do path-pair and another exact solver ever contradict each other?",
                "Case k of a seed draws a scene, its 12 to 40 nearest cones, the pairing and the costs. Both "
-               "solve it; every lane graph passes the independent checker. They differ where a bound that "
-               "one has proven is above what the other has found, by more than 1e-6."}) {}
+               "solve it; every lane graph passes the independent checker. They differ if the proven bound "
+               "of one is above the objective of the other by more than 1e-6."}) {}
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl")->required();
-        command.add_option("--seed", options_.seed, "of the cases")->capture_default_str();
+        command.add_option("--seed", options_.seed, "seed of the cases")->capture_default_str();
         command.add_option("--first", options_.first, "number of the first case, to cut a run into parts")
             ->capture_default_str();
-        command.add_option("--cases", options_.cases, "how many")
+        command.add_option("--cases", options_.cases, "number of cases")
             ->check(whole_number(1, 10'000'000))
             ->capture_default_str();
         command.add_option("--reference", options_.reference, "the other solver, an exact one of any size")

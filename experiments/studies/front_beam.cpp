@@ -158,9 +158,10 @@ class FrontBeamStudy : public Study {
                "how often does the beam of front miss the lane of the highest score, and what does the judge "
                "add to the score?",
                "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
-               "is the widest search, but for --exhaustive. Best score: as high as that of any row. Proven: "
-               "nothing was left out, so no lane that the rules allow has a higher score. Any usable: among "
-               "the best 20 lanes, which the judge chooses from. *.tracks.json beside the scenes has the "
+               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
+               "found. "
+               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
+               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
                "boundaries."}) {}
 
     void add_options(CLI::App& command) override {

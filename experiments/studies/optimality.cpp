@@ -97,7 +97,8 @@ class Lap {
         require_accepted(check(cones, options_.parameters, *lane_graph_of(*best, cones), {false, least, {}}),
                          cones.id, "candidate");
         if (row.status == SolveStatus::infeasible) {
-            throw InvalidInput(cones.id, "a candidate is feasible where none was proven to be");
+            throw InvalidInput(cones.id,
+                               "a candidate is feasible, but the exact search proved that there is none");
         }
         if (row.status == SolveStatus::optimal && least < *row.optimum->objective - kObjectiveTolerance) {
             throw InvalidInput(
@@ -203,7 +204,7 @@ class OptimalityStudy : public Study {
         command.add_option("--method", options_.detector, "a method that enumerates")->capture_default_str();
         add_nearest_option(command, options_.nearest, "the N nearest cones ahead only; all without it");
         add_time_limit_option(command, options_.time_limit_ms);
-        add_threads_option(command, options_.threads, "nothing is timed");
+        add_threads_option(command, options_.threads, "number of threads; nothing is timed");
     }
 
     StudyResult run() override {

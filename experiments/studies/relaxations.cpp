@@ -105,14 +105,13 @@ nlohmann::ordered_json to_json(const RelaxationRow& row) {
 class RelaxationsStudy : public Study {
   public:
     RelaxationsStudy()
-        : Study(
-              {"relaxations",
-               "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
-               "cost in accuracy?",
-               "The nearest cones of each scene that has as many and holds a ground truth among them; every "
-               "solver that proves nothing, and path-pair, which gives the optimum; one thread. Times are "
-               "wall clock with the making of the problem. Gap: (objective - optimum) / max(1, |optimum|), "
-               "over the answers."}) {}
+        : Study({"relaxations",
+                 "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
+                 "cost in accuracy?",
+                 "The nearest cones of each scene that has enough cones and a ground truth among them; every "
+                 "solver that proves nothing, and path-pair, which gives the optimum; one thread. Times are "
+                 "wall clock, including making the problem. Gap: (objective - optimum) / max(1, |optimum|), "
+                 "over the answers."}) {}
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);

@@ -108,7 +108,7 @@ const TunableDetector& find_tunable_detector(std::string_view name) {
         names += (names.empty() ? "" : ", ") + std::string(known.name);
     }
     throw InvalidInput("method",
-                       fmt::format("'{}' has no parameters that are tuned so, only {} have", name, names));
+                       fmt::format("'{}' has no parameters for this command, only {} have", name, names));
 }
 
 DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values, const SceneSet& set,

@@ -82,7 +82,7 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
                                                  const std::set<std::string>& tracks,
                                                  const WeightRoundsOptions& options) {
     if (options.rounds > 0 && start.w_b <= 0.0) {
-        throw InvalidInput("w_b", "must be positive where weights are fitted: it is their unit");
+        throw InvalidInput("w_b", "must be positive to fit weights: it is their unit");
     }
     std::vector<KnownScene> known;
     for (const AnnotatedScene& scene : evaluation.scenes()) {

@@ -103,7 +103,7 @@ void FrontStarts::list(const FrontMap& map, const FrontRules& rules) {
             const Point& r = map.position(cones[kRight][right]);
             const double width_m = (l - r).norm();
             if (width_m < rules.narrowest_m || width_m > rules.widest_start_m) continue;
-            if (l.y() <= r.y()) continue;  // the left cone would be to the right of the other
+            if (l.y() <= r.y()) continue;  // the sides would be swapped
             pairs.push_back({left, right});
         }
     }

@@ -295,14 +295,14 @@ void add_check_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "check",
         "recomputes solutions independently of the solvers; exit code 1 on a failure.\n"
-        "Proven for each lane graph: every constraint, the objective, and that the bound is not above it. An "
-        "`infeasible` passes where a search of the checker's own or multipliers confirm it from the scene "
-        "alone, "
-        "or else another exact solver does; one that nothing confirms fails. Not proven: that a bound holds. "
-        "`optimal` passes where the bound meets the objective and no lane graph of the file or of the ground "
-        "truth is better; see `certify` for proofs of bounds. A scene without an answer fails; stopped and "
-        "error "
-        "claim nothing and are counted apart.");
+        "Checked for each lane graph: every constraint, the objective, and that the bound is not above it. "
+        "`infeasible` passes if it is confirmed: by the checker's own search or by multipliers from the "
+        "scene "
+        "alone, or else by another exact solver. Bounds are not proven: `optimal` passes if the bound meets "
+        "the "
+        "objective and no lane graph of the file or of the ground truth is better; see `certify` for proofs "
+        "of bounds. A scene without an answer fails. `stopped` and `error` claim nothing and are counted "
+        "separately.");
     auto options = std::make_shared<CheckOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();

@@ -163,7 +163,7 @@ void add_merge_command(CLI::App& program) {
     auto directory = std::make_shared<std::string>();
     auto overwrite = std::make_shared<bool>(false);
     command.add_option("shards", *shards, "directories of all shards, in any order")->required();
-    command.add_option("--out", *directory, "directory of the whole")->required();
+    command.add_option("--out", *directory, "directory of the joined comparison")->required();
     add_overwrite_flag(command, *overwrite);
     command.callback([shards, directory, overwrite] {
         require_own_page(*directory);

@@ -90,7 +90,7 @@ Answering detector_of(DetectOptions& options) {
     }
     if (outside->is_lanes_file())
         throw InvalidInput("--method",
-                           "'" + options.detector + "' holds lanes already, none can be detected");
+                           "'" + options.detector + "' is a finished lanes file: there is nothing to detect");
     refuse_weights("the program '" + outside->name + "'");
     if (outside->is_solver()) return {outside->name, maker_of_solver(*outside, options.run)};
     options.parameters.require_not_given("the program '" + outside->name + "' has");

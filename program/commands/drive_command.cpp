@@ -51,13 +51,12 @@ std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
     if (options.format == "json" || records.size() == 1) return records;
     const LaneRecord& second = records[1];
     if (second.scene != records[0].scene) {
-        throw InputError(
-            options.lanes, second.line, "scene",
-            "is a second one, of which --format " + options.format + " needs --id to choose one");
+        throw InputError(options.lanes, second.line, "scene",
+                         "is a second scene, but --format " + options.format + " writes one lane: see --id");
     }
     throw InputError(options.lanes, second.line, "method",
-                     "is a second answer to scene '" + second.scene + "', of which --format " +
-                         options.format + " holds one: see --method");
+                     "is a second answer to scene '" + second.scene + "', but --format " + options.format +
+                         " writes one lane: see --method");
 }
 
 DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOptions& options) {

@@ -39,7 +39,7 @@ struct ProgramSource {
 
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
-    command.add_option("--id", source.id, "of the scene")->required();
+    command.add_option("--id", source.id, "id of the scene")->required();
     command.add_option("--formulation", source.formulation)
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();

@@ -104,7 +104,7 @@ void add_plot_command(CLI::App& program) {
         ->required();
     command.add_option("--lanes", options->lanes,
                        "*.lanes.jsonl, the lanes to draw; without it only the scene");
-    command.add_option("--id", options->id, "the scene")->required();
+    command.add_option("--id", options->id, "id of the scene")->required();
     add_output_option(command, "--out", options->out, "X.svg or X.png")
         ->required()
         ->check(CLI::Validator(

@@ -98,7 +98,7 @@ void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
                   std::optional<Mission> mission, const std::shared_ptr<const WeightsBytes>& weights) {
     for (const Track& track : load_tracks(spec)) {
         if (!track.closed || !track.driven.empty()) {
-            fmt::print(stderr, "conelane: {} is no closed course with boundaries: left out\n", track.name);
+            fmt::print(stderr, "conelane: {} is left out: not a closed course with boundaries\n", track.name);
             continue;
         }
         courses.push_back({circuit(track), weights});
@@ -345,13 +345,14 @@ void add_race_command(CLI::App& program) {
                      "acceleration and skidpad: each seed draws another course within the rules");
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
-    command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
+    command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
+        ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--speed", options->race.speed_mps, "[m/s]")
+    command.add_option("--speed", options->race.speed_mps, "speed of the car [m/s]")
         ->check(number_in(0.5, 40.0))
         ->capture_default_str();
-    command.add_option("--seed", options->seeds, "a race for each")->delimiter(',');
+    command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
     command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")
         ->check(number_in(0.0, 1000.0))
         ->capture_default_str();
@@ -386,7 +387,7 @@ void add_race_command(CLI::App& program) {
                     "races in replay.jsonl: unfinished (and the first one), all or none")
         ->check(CLI::IsMember({"unfinished", "all", "none"}))
         ->capture_default_str();
-    add_threads_option(command, options->threads, "same results with any number");
+    add_threads_option(command, options->threads, "number of threads; the results do not depend on it");
     command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
         ->required();
     command.callback([options] { run_races(*options); });

@@ -139,7 +139,7 @@ CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,
-        "of each track to train on too: stretched, every second one driven the other way", 0);
+        "number of variants of each track to train on too: stretched, every second one reversed", 0);
     add_scene_options(command, run.scenes);
     add_number_option(command, "--hold-out-every", run.hold_out_every_m,
                       "travel between poses on the tracks held out [m]");

@@ -182,7 +182,7 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     EXPECT_EQ(full.exit_code, 2) << full.output;
     EXPECT_THAT(full.errors,
                 HasSubstr("disk/r/report.html: cannot be written to its end: No space left on device"));
-    EXPECT_THAT(full.output, HasSubstr("all of it in disk/r, but no page"));
+    EXPECT_THAT(full.output, HasSubstr("results: disk/r, without a page"));
     EXPECT_FALSE(fs::exists(path("disk/r/report.html")));
     disk.grow("64m");
     EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0);

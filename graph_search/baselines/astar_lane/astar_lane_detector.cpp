@@ -327,7 +327,7 @@ std::span<const ParameterField<AstarLaneParameters>> astar_lane_fields() {
 void validate(const AstarLaneParameters& parameters) {
     require_in_range(parameters, astar_lane_fields());
     if (parameters.max_steps < 1 || parameters.max_steps > kMaxSteps)
-        throw InvalidInput("most_steps", "must be between 1 and " + std::to_string(kMaxSteps));
+        throw InvalidInput("max_steps", "must be between 1 and " + std::to_string(kMaxSteps));
 }
 
 std::unique_ptr<LaneDetector> make_astar_lane_detector(const AstarLaneParameters& parameters) {

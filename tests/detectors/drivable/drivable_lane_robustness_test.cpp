@@ -128,7 +128,7 @@ TEST(DrivableLane, RefusesInvalidLanes) {
     }
     for (const double smoothing : {0.2, 5.1, nan})
         expect_refused(good, "smoothing_m", {.smoothing_m = smoothing});
-    for (const double gap : {0.0, nan}) expect_refused(good, "longest_gap_m", {.max_gap_m = gap});
+    for (const double gap : {0.0, nan}) expect_refused(good, "max_gap_m", {.max_gap_m = gap});
 }
 
 TEST(DrivableLane, AnyLaneGivesFiniteNumbers) {

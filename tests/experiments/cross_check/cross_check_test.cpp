@@ -315,7 +315,7 @@ TEST_F(CrossCheckRun, AnotherRunInTheFolderIsRefusedAndStays) {
     const std::string before = lines("cases");
     some.seed = 4;
     EXPECT_EQ(error_of([&] { (void)cross_check(some, path("cases")); }),
-              "cases/cases.jsonl:1: holds a run of other options or another program");
+              "cases/cases.jsonl:1: holds a run with other options or of another program");
     EXPECT_EQ(lines("cases"), before);
     some.solvers = {"lp-rounding"};
     EXPECT_THROW((void)cross_check(some, path("other")), InvalidInput);
