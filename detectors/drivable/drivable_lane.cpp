@@ -46,7 +46,7 @@ void validate(const DrivableOptions& options) {
     };
     require(options.step_m, 0.01, 100.0, "step_m");
     require(options.smoothing_m, 0.25, 5.0, "smoothing_m");
-    require(options.default_width_m, 1.0, kMaxLaneWidth_m, "usual_width_m");
+    require(options.default_width_m, 1.0, kMaxLaneWidth_m, "default_width_m");
     if (!(options.max_gap_m > 0.0)) throw InvalidInput("max_gap_m", "must be above 0");
 }
 

@@ -35,7 +35,7 @@ inline constexpr double kAtStart_m = 2.0;
 ///   median step of the ground truth of both sides;
 /// - stopped_early: it is not.
 ///
-/// A lane held against a driven path, and an answer that is a centre line alone, have no boundaries to look
+/// A lane compared with a driven path, and an answer that is only a centre line, have no boundaries to look
 /// at: where they diverge the cause is wrong_start below kAtStart_m and leaves_path from there on, else
 /// stopped_early.
 enum class LaneFailure {

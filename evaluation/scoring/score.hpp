@@ -85,7 +85,7 @@ struct SceneScore {
     std::optional<bool> solved_to_optimality;
     std::optional<EnumerationScore> enumeration;
     double latency_ms = 0.0;
-    /// Against the ground truth's centre line; absent if the lane is not usable or was not held against
+    /// Against the ground truth's centre line; absent if the lane is not usable or not compared with
     /// it.
     std::optional<CentreLineError> centre_line_error;
     // The detector's statements about its lane; absent if it found none or makes none.

@@ -128,7 +128,7 @@ GapIntegrals gap_integrals(std::span<const Knowledge> steps, double known_best, 
 }
 
 Variability variability_of(std::span<const double> times_ms) {
-    if (times_ms.size() < 2) throw InvalidInput("times", "must be two at least");
+    if (times_ms.size() < 2) throw InvalidInput("times", "must be at least two");
     const auto [least, most] = std::ranges::minmax(times_ms);
     return {standard_deviation(times_ms) / mean(times_ms), most / least};
 }

@@ -176,7 +176,7 @@ export interface Conelane {
   }[];
   /** Names that `course` takes. */
   readonly courses: string[];
-  /** How many times an error ended the module; it starts anew with the next call. */
+  /** How many times an error ended the module; it starts again with the next call. */
   readonly restarts: number;
 
   /** The lane of a scene. Methods whose name ends by -warm carry the lane of the last scene on, until `reset`. */

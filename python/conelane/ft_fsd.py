@@ -54,7 +54,7 @@ _MISSION_OF = {
     MissionTypes.skidpad: "skidpad",
     MissionTypes.autocross: "autocross",
 }  # all others drive laps
-_WITHOUT_END = 1_000_000_000  # laps of what is no dynamic event
+_WITHOUT_END = 1_000_000_000  # laps of a mission that is not a dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _GUESSED_M = 5.0  # of a lane that is a guess
 _SHORT_OF_A_WALL = 2  # points of the centre line, 0.5 m each

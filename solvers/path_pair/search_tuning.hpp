@@ -8,7 +8,7 @@ namespace conelane {
 
 // Numbers of path-pair's search. They decide how long it takes, never what is proven: every claimed optimum
 // is an optimum with any of them. "Row ..." names the row of the table "What was tried" in exact-search.md
-// that has the measurement. Numbers without a row, but for limits of memory, are those of its row "other
+// that has the measurement. Numbers without a row, except limits of memory, are those of its row "other
 // steps, patience, ...": others took within 3 % either way, or were better by one objective and worse by the
 // other.
 

@@ -335,7 +335,7 @@ TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
     disk.make_read_only(false);
 }
 
-/// Each file of a finished comparison, cut short in the middle of a line, as after a power failure.
+/// Each file of a finished comparison, truncated in the middle of a line, as after a power failure.
 TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     const auto cut = [&](const std::string& name, std::size_t length) {

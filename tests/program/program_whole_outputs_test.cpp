@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 class WholeOutputs : public Program {
   protected:
-    /// Every file of a folder by its name, but for the lock.
+    /// Every file of a folder by its name, except the lock.
     [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
         std::map<std::string, std::string> files;
         if (!fs::exists(path(folder))) return files;

@@ -9,7 +9,7 @@
 
 namespace conelane::path_pair {
 
-// Vectors of up to millions of values, written or copied piece by piece with looks at the clock between: a
+// Vectors of up to millions of values, written or copied piece by piece, with checks of the clock between: a
 // vector that grows by itself copies all of them in one go, which takes milliseconds.
 
 namespace timed_growth {

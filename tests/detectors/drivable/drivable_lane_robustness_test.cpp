@@ -128,6 +128,8 @@ TEST(DrivableLane, RefusesInvalidLanes) {
     }
     for (const double smoothing : {0.2, 5.1, nan})
         expect_refused(good, "smoothing_m", {.smoothing_m = smoothing});
+    for (const double width : {0.9, 6.6, nan})
+        expect_refused(good, "default_width_m", {.default_width_m = width});
     for (const double gap : {0.0, nan}) expect_refused(good, "max_gap_m", {.max_gap_m = gap});
 }
 
