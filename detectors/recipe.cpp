@@ -21,7 +21,7 @@ namespace {
 
 /// Cone-set size of the RLD paper's on-board runs.
 constexpr std::size_t kRldConeSet = 12;
-/// More do not make lanes more accurate.
+/// More cones do not make lanes more accurate.
 constexpr std::size_t kRldContext = 24;
 
 std::unique_ptr<RldSolver> path_pair() {
@@ -50,13 +50,13 @@ std::unique_ptr<LaneDetector> astar_lane() {
     return make_astar_lane_detector(tuned_astar_lane_parameters());
 }
 
-/// The costs of the shape were set by hand with these in view.
+/// Courses in view when the costs of the shape were set by hand.
 constexpr std::array<std::string_view, 7> kShapeCourses{"fsd_1", "fsd_2", "fsd_4", "fsd_5",
                                                         "fsd_6", "fsd_7", "fsd_9"};
-/// Those of the records beside the parameters.
+/// Courses named by the records of the parameters.
 constexpr std::array<std::string_view, 8> kDelaunayBeamCourses{
     "fsd_1", "fsd_4", "fsd_5", "fsd_7", "fsd_9", "pacsim_FSE22", "pacsim_FSG19", "eufs_small_track"};
-/// The same, and those with which in view hitting a cone got a cost.
+/// The same, and the courses in view when hitting a cone got a cost.
 constexpr std::array<std::string_view, 12> kAstarLaneCourses{"fsd_1",
                                                              "fsd_2",
                                                              "fsd_4",
@@ -132,7 +132,7 @@ std::set<std::string> courses_of(std::string_view weight_file) {
     return courses;
 }
 
-/// Shows its detector the nearest cones only.
+/// Gives its detector only the nearest cones.
 class NearestCones : public LaneDetector {
   public:
     NearestCones(std::unique_ptr<LaneDetector> detector, std::size_t nearest)

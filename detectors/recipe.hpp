@@ -18,11 +18,11 @@ namespace conelane {
 
 struct FrontOptions;
 
-/// RLD: a solver, the cones it is shown, the costs it minimises.
+/// RLD: a solver, the cones that it sees, the costs that it minimises.
 struct RldRecipe {
     std::unique_ptr<RldSolver> (*make_solver)();
     ConeSet cones;
-    bool shape_costs = false;             ///< adds the costs of a lane's shape where the parameters have none
+    bool shape_costs = false;             ///< adds the costs of a lane's shape if the parameters have none
     std::string_view parameter_set = {};  ///< of rld_parameter_set, in place of the defaults
 };
 
@@ -31,12 +31,12 @@ struct FrontRecipe {
     FrontOptions (*options)();
 };
 
-/// Any other detector: what makes it.
+/// Any other detector: the function that makes it.
 struct OtherRecipe {
     std::unique_ptr<LaneDetector> (*make)();
 };
 
-/// What a detector has learned from. It has no default: no detector of a table can lack it.
+/// The courses that a detector has learned from. It has no default, so that no detector can lack it.
 class LearnedFrom {
   public:
     using WeightFiles = std::span<const std::string_view* const>;
@@ -55,14 +55,14 @@ class LearnedFrom {
     std::span<const std::string_view> courses_;
 };
 
-// For tables of detectors.
+// Text for tables of detectors.
 inline constexpr std::array kFrontWeights{&kFrontFile};
 inline constexpr std::array kLearnedRldWeights{&kLearnedWeightsFile};
 inline constexpr std::array kPaperClcWeights{&kRankNetPaperFile};
 inline constexpr std::array kClcRankWeights{&kRankNetExtendedFile};
 inline constexpr std::array kClcWeights{&kRankNetExtendedFile, &kStepScoresFile};
 
-/// How a detector of a name is made, and all that is known of it.
+/// How to make a detector of that name, and its properties.
 struct DetectorRecipe {
     std::string_view name;
     std::string_view description;
@@ -80,21 +80,21 @@ struct DetectorRecipe {
 /// The detectors of the library.
 [[nodiscard]] std::span<const DetectorRecipe> detector_recipes();
 
-/// The courses that a detector has learned from, by the names that tracks have: those that the records of its
-/// weights name, and those that were in view when its parameters were set. Empty where it has seen none.
+/// The courses that a detector has learned from, by the names of the tracks: those in the records of its
+/// weights, and those in view when its parameters were set. Empty if it has learned from none.
 [[nodiscard]] std::set<std::string> training_courses(const DetectorRecipe& recipe);
 
-/// The options without those that the detector does not use: for where several detectors get the same.
+/// The options without those that the detector does not use: for one set of options and several detectors.
 [[nodiscard]] DetectorOptions options_used_by(const DetectorRecipe& recipe, DetectorOptions options);
 
 /// Throws InvalidInput naming the option that is out of range, not used or cannot be read.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_detector(const DetectorRecipe& recipe,
                                                           const DetectorOptions& options = {});
 
-/// The cones that the detector is shown and answers for under these options.
+/// The cones that the detector sees and answers for under these options.
 [[nodiscard]] ConeSet cone_set(const DetectorRecipe& recipe, const DetectorOptions& options);
 
-/// The parameters that it minimises by; the defaults where the recipe is no RLD.
+/// The parameters of its objective; the defaults if the recipe is not RLD.
 [[nodiscard]] RldParameters rld_parameters(const DetectorRecipe& recipe, const DetectorOptions& options);
 
 }  // namespace conelane

@@ -62,7 +62,7 @@ class RldDetector : public LaneDetector {
                 .report;
         if (options_.warm_start && report.lane_graph) previous_ = Solution{seen, *report.lane_graph};
         LaneAnswer answer;
-        // A backend that fails keeps a start that is feasible: a lane, and nothing is said of its optimality.
+        // A backend that fails keeps a feasible start: a lane without a statement about its optimality.
         answer.status = report.lane_graph ? LaneStatus::found : lane_status(report.status);
         answer.message = report.message;
         answer.stopped_by = report.stopped_by;

@@ -21,7 +21,7 @@ RldParameters parameters_of(std::string_view file) {
     RldParameters parameters;
     const auto keys =
         read_parameters(file, fields, parameters, [&](JsonReader& json, const std::string& key) {
-            if (key == "learned_costs") {  // the one weights file that is embedded
+            if (key == "learned_costs") {  // the only embedded weights file
                 json.skip();
                 parameters.learned_costs = parse_learned_costs(kLearnedWeightsFile);
                 return true;

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// `solve_scene` for a scene that `validate` has accepted, which is not checked again.
+/// `solve_scene` for a scene that `validate` has accepted: it is not validated again.
 [[nodiscard]] SolvedScene solve_valid_scene(RldSolver& solver, const Scene& scene,
                                             const RldParameters& parameters, const SolveLimits& limits,
                                             const LaneGraph* start = nullptr);

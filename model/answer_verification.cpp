@@ -36,7 +36,7 @@ class Verification {
         return name(problem_.edges[edge].i, problem_.edges[edge].j);
     }
 
-    /// Every edge of the answer once, at most two at a cone, each listed and allowed by (27).
+    /// (27): each edge is listed, allowed, and chosen once. At most two edges meet at a cone.
     bool take_edges() {
         const std::size_t n = problem_.cone_count;
         chosen_.assign(problem_.edges.size(), 0);
@@ -71,7 +71,7 @@ class Verification {
         return fail("cone " + std::to_string(cone) + " has more than two edges");
     }
 
-    /// (28); and every cone with two edges has its turn paid for.
+    /// (28). Adds the cost of the turn at every cone with two edges.
     bool check_turns() {
         std::size_t turns = 0;
         for (const ProblemTurn& turn : problem_.turns) {
@@ -98,7 +98,7 @@ class Verification {
         return true;
     }
 
-    /// Two paths and nothing else (2)-(5), with the ends that (11) to (17) and the pairing ask for.
+    /// (2)-(5): exactly two paths, whose ends keep (11)-(17) and the pairing.
     bool walk_paths() {
         std::vector<char> seen(problem_.cone_count, 0);
         std::size_t paths = 0;

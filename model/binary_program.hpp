@@ -14,8 +14,8 @@
 
 namespace conelane {
 
-/// Name of a column or row: a symbol or family with up to three indices, spelt "f_3_1_7". The family outlives
-/// the program (a string literal).
+/// Name of a column or row: a symbol or family with up to three indices, written "f_3_1_7". `family` must
+/// outlive the program: it is a string literal.
 struct Label {
     struct Index {
         std::int32_t first = -1;  ///< -1 if absent
@@ -60,7 +60,7 @@ struct BinaryProgram {
 
     int add_column(const Label& label, double objective, bool integer, double lower = 0.0,
                    double upper = 1.0);
-    /// Drops all rows from this one on.
+    /// Removes this row and all later ones.
     void truncate_rows(std::size_t first);
 };
 
@@ -68,10 +68,10 @@ struct BinaryProgram {
 /// that loads it takes several times as much.
 inline constexpr std::size_t kMaxProgramEntries = 4'000'000;
 
-/// Writes rows into a program; terms of the same column add up.
+/// Writes rows into a program. Terms of the same column are added up.
 class RowWriter {
   public:
-    /// With a deadline, `stop` tells when it has passed, or the program has reached its largest size.
+    /// With a deadline, `stop` tells whether it has passed or the program has reached its largest size.
     explicit RowWriter(BinaryProgram& program, const Deadline* deadline = nullptr);
 
     /// Whether to stop. A caller that writes many rows checks this between them. Rows written after it is
@@ -88,9 +88,9 @@ class RowWriter {
     const Deadline* deadline_;
     int until_clock_ = 0;
     std::optional<StopReason> struck_;
-    std::vector<int> position_;  ///< position of a column in the open row, -1 if it has none
+    std::vector<int> position_;  ///< position of a column in the open row, -1 if absent
 };
 
-inline constexpr double kInfinity = 1e300;  ///< an absent row bound
+inline constexpr double kInfinity = 1e300;  ///< the bound of a row without a limit
 
 }  // namespace conelane

@@ -17,7 +17,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-6;
 constexpr double kMinEdge = 1e-100;  // [m], as in formulation.md
-// A walk that is shorter by less than this is not shorter.
+// A walk counts as shorter only if it is shorter by more than this.
 constexpr double kShorter = 1e-12;
 
 double square(double value) {
@@ -104,7 +104,7 @@ class Verification {
         const double after = (position(k) - position(middle)).norm();
         return square((before - after) / p_.d_t);
     }
-    /// What a walk costs that begins at the near cone.
+    /// Cost of a walk that begins at this near cone.
     [[nodiscard]] double near_end_cost(std::size_t cone) const {
         const double off_m = std::abs(cross(heading_, position(cone) - scene_.pose.position)) - 0.5 * p_.d_w;
         const double benefit = p_.w_n * std::max(0.0, 1.0 - square(off_m / p_.d_t));
@@ -206,7 +206,7 @@ class Verification {
         return faults;
     }
 
-    /// v_ij of formulation.md: the allowed edge that faces this one best decides.
+    /// v_ij of formulation.md: the cost of the allowed edge that faces this one best.
     [[nodiscard]] double facing_cost(const AllowedEdge& edge, const std::vector<AllowedEdge>& all) const {
         double best = 1.0;
         for (const AllowedEdge& other : all) {
@@ -272,7 +272,7 @@ class Verification {
         }
     }
 
-    /// The rounds of Bellman and Ford; false where they do not end.
+    /// Bellman-Ford rounds; false if a negative cycle keeps them from ending.
     bool shortest_walks() {
         walk_.assign(arcs_.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -296,8 +296,8 @@ class Verification {
         return false;
     }
 
-    /// The cheapest two walks to far cones within d_max of each other, less the constant part of the relaxed
-    /// constraints.
+    /// The cost of the two cheapest walks to far cones within d_max of each other, minus the constant part of
+    /// the relaxed constraints.
     [[nodiscard]] double combine() const {
         std::vector<double> best(scene_.cones.size(), kNone);
         for (std::size_t a = 0; a < arcs_.size(); ++a) {
@@ -325,7 +325,7 @@ class Verification {
     Point heading_;
     std::vector<Arc> arcs_;
     std::vector<std::vector<Succession>> successions_;  ///< by arc
-    std::vector<double> walk_;                          ///< shortest one that ends with the arc
+    std::vector<double> walk_;                          ///< the shortest walk that ends with the arc
     std::optional<LearnedReference<long double>> learned_;
     BoundVerdict verdict_;
 };

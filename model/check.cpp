@@ -12,11 +12,11 @@
 namespace conelane {
 namespace {
 
-// Own arithmetic throughout, in extended precision: a mistake in the builders must not repeat here.
+// Independent arithmetic in extended precision, so that an error of the builders is not repeated here.
 using Real = long double;
 constexpr Real kTie = 1e-9L;
 constexpr double kAgreement = 1e-6;
-/// Of a shorter edge the squares, and so the direction, may be lost in double.
+/// In double, a shorter edge may lose its squares, and so its direction.
 constexpr Real kMinEdge = 1e-100L;
 
 struct Vector {
@@ -42,7 +42,7 @@ Real length(const Vector& a) {
 struct Nearest {
     Real distance;
     Real s;  ///< position on the first segment, in [0, 1]
-    Real t;  ///< on the second
+    Real t;  ///< position on the second segment, in [0, 1]
 };
 
 /// Minimises |a + s (b - a) - c - t (d - c)| over the unit square: the stationary point, else the four sides.
@@ -65,7 +65,7 @@ Nearest nearest_points(const Vector& a, const Vector& b, const Vector& c, const 
     return *std::ranges::min_element(candidates, {}, &Nearest::distance);
 }
 
-/// Whether each segment's ends lie on both sides of the other's line, off it by more than a tie.
+/// Whether the ends of each segment lie on different sides of the other's line, each farther than a tie.
 bool cross(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
     const auto off = [](const Vector& point, const Vector& from, const Vector& along) {
         return wedge(along, point - from) / length(along);
@@ -110,7 +110,7 @@ class Checker {
     [[nodiscard]] bool is_near(std::size_t cone) const {
         return length(position(cone) - car_) <= static_cast<Real>(p_.d_near) + kTie;
     }
-    /// More edges may repair it.
+    /// For a violation that more edges may repair.
     void violated(std::string what) { report_.violations.push_back(std::move(what)); }
     void violated_for_good(std::string what) {
         violated(std::move(what));
@@ -156,7 +156,7 @@ class Checker {
         }
     }
 
-    /// Components by flooding: a component with as many edges as cones holds a cycle.
+    /// Connected components; a component with as many edges as cones holds a cycle.
     void paths_and_pairing() {
         std::set<std::size_t> visited;
         for (const auto& [start, unused] : neighbours_) {
@@ -212,8 +212,8 @@ class Checker {
         return weight;
     }
 
-    /// How many faults are expected: of an edge between a blue and a yellow cone, and of one near the car on
-    /// the side that its color is not. Sums over what both cones may be.
+    /// Expected number of color faults: an edge joins a blue and a yellow cone, or an edge near the car is
+    /// on the wrong side for its color. The sum runs over the possible classes of both cones.
     [[nodiscard]] Real color_faults(const Edge& edge, bool along_the_heading) const {
         const std::array<ColorProbabilities, 2> colors{scene_.cones[edge.i].probabilities(),
                                                        scene_.cones[edge.j].probabilities()};
@@ -236,7 +236,7 @@ class Checker {
         return fourth((length(position(b) - position(a)) - static_cast<Real>(p_.d_e)) /
                       static_cast<Real>(p_.d_t));
     }
-    /// By how much the way from one cone by another on to a third one is off straight on.
+    /// Angle by which the way from one cone through another to a third one differs from straight on.
     [[nodiscard]] Real bend(std::size_t from, std::size_t by, std::size_t to) const {
         const Vector back = position(from) - position(by);
         const Vector on = position(to) - position(by);
@@ -260,16 +260,16 @@ class Checker {
         return goes_on(edge.i, edge.j) || goes_on(edge.j, edge.i);
     }
 
-    /// An edge that may be part of a boundary, and so may face another one.
+    /// An edge that may be part of a boundary, so it may face another edge.
     struct FacingEdge {
         std::size_t k;
         std::size_t l;
         Real length;
         Vector middle;
-        Vector direction;  ///< of length one
+        Vector direction;  ///< unit length
     };
 
-    /// All that (27) allows. They are the same for every edge that is looked at.
+    /// All edges that (27) allows; the same list serves every edge.
     [[nodiscard]] std::vector<FacingEdge> facing_edges() const {
         std::vector<FacingEdge> edges;
         for (std::size_t k = 0; k < scene_.cones.size(); ++k) {
@@ -285,7 +285,7 @@ class Checker {
         return edges;
     }
 
-    /// By the one of `others` that faces the edge best; 1 where none does.
+    /// Cost of the edge in `others` that faces this edge best; 1 if none does.
     [[nodiscard]] Real facing_cost(const Edge& edge, const std::vector<FacingEdge>& others) const {
         const Vector along_edge = position(edge.j) - position(edge.i);
         const Real own = length(along_edge);
@@ -306,7 +306,7 @@ class Checker {
         return best;
     }
 
-    /// What a near endpoint is worth where it stands.
+    /// The benefit z of a near endpoint at this cone, with its weight.
     [[nodiscard]] Real near_end_benefit(std::size_t cone) const {
         const Real off = std::abs(wedge(heading_, position(cone) - car_)) - static_cast<Real>(p_.d_w) / 2;
         const Real off_scaled = off / static_cast<Real>(p_.d_t);

@@ -5,7 +5,7 @@
 
 namespace conelane {
 
-/// Milliseconds of wall clock since construction.
+/// Wall clock since construction [ms].
 class Stopwatch {
   public:
     [[nodiscard]] double elapsed_ms() const {
@@ -16,7 +16,7 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// A limit of wall clock that starts with construction.
+/// A limit of wall clock, counted from construction.
 class Deadline {
   public:
     explicit Deadline(double limit_ms = std::numeric_limits<double>::infinity()) : limit_ms_(limit_ms) {}

@@ -36,7 +36,7 @@ struct FormulationParts {
     bool far_marks;        ///< u columns
     bool path_ends;        ///< e columns
     bool all_integer;
-    /// Families whose rows depend only on the number of cones; they come first.
+    /// Families whose rows depend only on the number of cones. Their rows come first.
     std::span<const ConstraintFamily> fixed_families;
     std::span<const ConstraintFamily> families;  ///< the other families
 };

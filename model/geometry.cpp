@@ -37,7 +37,7 @@ SegmentDistance segment_distance(const Segment& a, const Segment& b) {
                                             (a.to - b.from).squaredNorm(), (a.to - b.to).squaredNorm()}));
     double distance = 0.0;
     if (!segments_intersect(a, b)) {
-        // Disjoint segments are nearest at an end of at least one of them.
+        // If two segments do not cross, an end of one of them is nearest.
         distance = std::min({foot_point(a.from, b).distance_m, foot_point(a.to, b).distance_m,
                              foot_point(b.from, a).distance_m, foot_point(b.to, a).distance_m});
     }
@@ -76,7 +76,7 @@ double interior_angle(const Point& a, const Point& middle, const Point& b) {
 double turning_angle(const Point& before, const Point& after) {
     const double sine = cross(before, after);
     const double cosine = before.dot(after);
-    // atan2(-0.0, negative) is -pi, outside the half-open range.
+    // atan2(-0.0, negative) is -pi, which is outside the half-open range.
     return sine == 0.0 ? std::atan2(0.0, cosine) : std::atan2(sine, cosine);
 }
 

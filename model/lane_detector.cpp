@@ -37,7 +37,7 @@ LaneAnswer LaneDetector::detect(const Scene& scene, const DetectionLimits& limit
         throw;
     } catch (const std::exception& failure) {
         failed.message = failure.what();
-    } catch (...) {  // CoinError is no std::exception
+    } catch (...) {  // CoinError is not a std::exception
         failed.message = "a library threw an exception of its own";
     }
     return failed;

@@ -44,7 +44,7 @@ std::optional<std::vector<std::vector<std::size_t>>> paths(const LaneGraph& grap
         }
         result.push_back(std::move(path));
     }
-    // Edges that no path holds lie on cycles.
+    // Edges that are on no path lie on cycles.
     if (edges_walked != graph.edges.size()) return std::nullopt;
     return result;
 }

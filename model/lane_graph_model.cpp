@@ -6,8 +6,8 @@
 namespace conelane {
 namespace {
 
-/// A column that rows fix at 0 may cost what it likes: costs that grow with the fourth power of a distance
-/// would end in numbers that no solver can take.
+/// The cost of a column that rows fix at 0 has no effect. The real cost grows with the fourth power of a
+/// distance and would exceed what a solver can represent.
 double column_cost(double cost, bool never_chosen) {
     constexpr double kMaxOfNeverChosen = 1e9;
     return never_chosen && !(cost <= kMaxOfNeverChosen) ? kMaxOfNeverChosen : cost;
@@ -102,8 +102,8 @@ void LaneGraphModel::add_columns() {
     }
     if (formulation_parts.path_ends) {
         for (const ProblemEdge& edge : problem.edges) {
-            // Integral where the edges are. Which two ends face each other decides most of the rest:
-            // branching on them first takes a quarter of the nodes at n = 30.
+            // Columns of path ends are integral if the edges are. Which two ends face each other decides most
+            // of the rest: branching on these columns first needs a quarter of the nodes at n = 30.
             const auto add_end = [&](std::size_t from, std::size_t end) {
                 const int column = program_.add_column({"e", {index(from), index(end)}}, 0.0, true);
                 program_.columns[static_cast<std::size_t>(column)].branch_first = true;

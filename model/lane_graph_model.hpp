@@ -38,7 +38,7 @@ class LaneGraphModel {
     [[nodiscard]] LaneGraph decode(std::span<const double> point) const;
 
     /// Rows of (5), and of the pairing near_far, that an integral point violates; empty for a lane graph.
-    /// Every candidate must pass this before it counts as a solution.
+    /// Every candidate must pass this check before it counts as a solution.
     [[nodiscard]] std::vector<ProgramRow> separate(std::span<const double> point) const;
 
   private:

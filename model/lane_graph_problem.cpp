@@ -16,24 +16,24 @@
 namespace conelane {
 namespace {
 
-/// Of a shorter edge the squares, and so the direction, may be lost in double [m].
+/// In double, a shorter edge may lose its squares, and so its direction [m].
 constexpr double kMinEdge_m = 1e-100;
 
-/// More than distances are off by [m].
+/// More than the rounding error of a distance [m].
 constexpr double kMargin_m = 1e-3;
 
-/// Room is made for at most so many of a kind before they are counted: a vector that grows copies what it
-/// has, which takes milliseconds in the end, and no clock is looked at meanwhile. Memory that is not written
-/// to costs nothing.
+/// Largest number of entries that are reserved before they are counted. A vector that grows copies all its
+/// entries, which takes milliseconds without a check of the clock. Reserved memory that is not written to
+/// costs nothing.
 constexpr std::size_t kReservedEntries = std::size_t{1} << 20U;
 
-/// What may end the making of a problem early.
+/// The limits that may end the construction of a problem early.
 class Limits {
   public:
     Limits() = default;
     explicit Limits(const Deadline& deadline) : deadline_(&deadline) {}
 
-    /// To be asked before a step of so much work, in operations of a few nanoseconds.
+    /// Call it before a step with this amount of work, in operations of a few nanoseconds.
     bool stop(const LaneGraphProblem& problem, std::size_t work) {
         if (deadline_ == nullptr || struck_) return struck_.has_value();
         work_ += work;
@@ -46,10 +46,10 @@ class Limits {
         }
         return struck_.has_value();
     }
-    /// As above, whatever the work since the last look.
+    /// The same, but the limits are checked at once.
     bool stop(const LaneGraphProblem& problem) { return stop(problem, kWorkPerClock); }
 
-    /// Where all pairs of so many cones are more edges than a problem may have.
+    /// Whether all pairs of so many cones are more edges than a problem may have.
     bool stop_for_table(std::size_t cones) {
         if (deadline_ != nullptr && cones > 1 && cones * (cones - 1) / 2 > kMaxProblemEdges)
             struck_ = StopReason::memory;
@@ -81,7 +81,7 @@ bool within(double value, double limit) {
 double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool along_heading) {
     const ColorProbabilities a = scene.cones[i].probabilities();
     const ColorProbabilities b = scene.cones[j].probabilities();
-    const double blue = a.blue + b.blue - a.blue * b.blue;  // that either is
+    const double blue = a.blue + b.blue - a.blue * b.blue;  // probability that one is blue
     const double yellow = a.yellow + b.yellow - a.yellow * b.yellow;
     double cost = a.blue * b.yellow + a.yellow * b.blue;
     if (along_heading && (blue > 0.0 || yellow > 0.0)) {
@@ -89,7 +89,7 @@ double color_cost_of(const Scene& scene, std::size_t i, std::size_t j, bool alon
         const Point v = scene.cones[j].position - from;
         const double ahead = v.dot(scene.pose.heading());
         const double midpoint_left = scene.pose.left_m(from + 0.5 * v);
-        // In a bend the outer boundary crosses the car's axis, and the inner one turns its line on the car.
+        // Two tests of the side: in a bend, each of them alone is wrong for one of the two boundaries.
         const double car_left = std::copysign(1.0, ahead) * cross(v, scene.pose.position - from);
         const bool left_of_car = std::min(midpoint_left, -car_left) > kTieTolerance;
         const bool right_of_car = std::max(midpoint_left, -car_left) < -kTieTolerance;
@@ -110,7 +110,7 @@ ProblemEdge make_problem_edge(const Scene& scene, const Point& heading, const Rl
     const double spacing_cost = fourth_power((length - p.d_e) / p.d_t);  // (18)
     const double heading_cost = fourth_power(across / car_distance);     // (25)
     const auto acute_angle = [&] { return std::atan2(across, std::abs(v.dot(heading))); };
-    // No point of the edge is nearer to the car than its midpoint by more than half its length.
+    // No point of the edge is nearer to the car than this: midpoint distance minus half the length.
     const bool is_away = midpoint_distance - 0.5 * length > p.d_h + kMargin_m;
     const bool along_heading = !is_away &&
                                within(foot_point(scene.pose.position, {from, to}).distance_m, p.d_h) &&
@@ -137,8 +137,8 @@ bool is_straight(const Scene& scene, std::size_t before, std::size_t middle, std
     return within(std::numbers::pi - angle, p.theta_gap);
 }
 
-/// Allows the edges over gaps: longer than s_crit allows, at most d_gap, and both their ends go straight on
-/// by an edge within s_crit. Precondition: all edges within s_crit are listed, and no gaps.
+/// Allows edges over gaps: longer than s_crit allows, at most d_gap, and at both ends a listed edge continues
+/// nearly straight. Precondition: all edges within s_crit are listed, and no gaps.
 void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, LaneGraphProblem& problem,
                Limits& limits) {
     const RldParameters& p = problem.parameters;
@@ -181,8 +181,8 @@ void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, Lane
     problem.edges = std::move(all);
 }
 
-/// (6)-(8): pairs of edges without a common cone that come closer than d_min, not between their ends; with
-/// forbid_crossing those that cross too.
+/// (6)-(8): pairs of edges without a common cone that come closer than d_min, but not between two ends. With
+/// forbid_crossing also pairs that cross.
 void find_conflicts(const Scene& scene, LaneGraphProblem& problem, Limits& limits) {
     const std::vector<ProblemEdge>& edges = problem.edges;
     const double too_close_m = problem.parameters.d_min - kTieTolerance;
@@ -228,7 +228,7 @@ void add_shape_costs(const Scene& scene, LaneGraphProblem& problem, Limits& limi
     }
 }
 
-/// Adds those of edges and ends. Precondition: all edges are listed, with their shape costs.
+/// Adds the learned costs of edges and ends. Precondition: all edges are listed, with their shape costs.
 void add_learned_costs(const LearnedFeatures& features, LaneGraphProblem& problem, Limits& limits) {
     const LearnedCosts& costs = *problem.parameters.learned_costs;
     for (std::size_t i = 0; i < problem.cone_count; ++i) {
@@ -244,7 +244,7 @@ void add_learned_costs(const LearnedFeatures& features, LaneGraphProblem& proble
     }
 }
 
-/// Precondition: edges and what ends cost are known. `features`: for learned costs, else null.
+/// Precondition: the costs of edges and ends are known. `features`: null without learned costs.
 void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphProblem& problem,
                 Limits& limits) {
     const RldParameters& p = problem.parameters;
@@ -265,7 +265,7 @@ void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphPr
             const std::size_t work = features != nullptr ? 200 : 20;
             if (limits.stop(problem, work * (incident.size() - first))) return;
             for (std::size_t second = first + 1; second < incident.size(); ++second) {
-                // Ascending edges at a cone have ascending other ends.
+                // Edges at a cone are sorted, so their other ends are sorted too.
                 const Point& before = scene.cones[other_end(incident[first], middle)].position;
                 const Point& after = scene.cones[other_end(incident[second], middle)].position;
                 const double angle = interior_angle(before, at, after);
@@ -289,7 +289,7 @@ void find_turns(const Scene& scene, const LearnedFeatures* features, LaneGraphPr
     }
 }
 
-/// By problem edge. Precondition: the graph's edges are ascending, as the problem's are.
+/// Result by problem edge. Precondition: the edges of the graph are in ascending order, like the problem's.
 std::vector<char> chosen_edges(const LaneGraphProblem& problem, const LaneGraph& graph) {
     std::vector<char> chosen(problem.edges.size(), 0);
     auto next = graph.edges.begin();
@@ -308,7 +308,7 @@ void find_edges(const Scene& scene, EdgeExtent extent, LaneGraphProblem& problem
     if (extent == EdgeExtent::all_pairs) problem.distance_m.assign(n, std::vector<double>(n, 0.0));
     problem.edges.reserve(std::min(4 * n, kReservedEntries));
     problem.far_apart.reserve(std::min(n * n / 2, kReservedEntries));
-    // Longer ones are too long for (27) and for (17): most pairs are, by far.
+    // Longer pairs are too long for (27) and (17). Most pairs are longer.
     const double longest =
         kMargin_m +
         std::max(parameters.d_max,
@@ -354,16 +354,16 @@ void find_incident(LaneGraphProblem& problem) {
     }
 }
 
-/// Farther than this from the origin, sums of coordinates lose what tells cones apart; their differences do
-/// not. Closer, the numbers of a problem are off by less than 1e-9 for it [m].
+/// Farther than this from the origin, a sum of coordinates loses the difference between two cones; a
+/// difference of coordinates does not. Nearer, this error of a problem's numbers is below 1e-9 [m].
 constexpr double kFarFromOrigin_m = 1e5;
 
 bool is_far_from_origin(const Scene& scene) {
     return scene.pose.position.cwiseAbs().maxCoeff() > kFarFromOrigin_m;
 }
 
-/// The same scene with the car at the origin. Throws InvalidInput where a difference of two finite
-/// coordinates is not finite.
+/// The same scene with the car at the origin. Throws InvalidInput if a difference of two finite coordinates
+/// is not finite.
 Scene seen_from_car(const Scene& scene) {
     Scene seen = scene;
     for (Cone& cone : seen.cones) cone.position -= scene.pose.position;
@@ -377,7 +377,7 @@ LaneGraphProblem problem_of_valid(const Scene& scene, const RldParameters& param
     if (is_far_from_origin(scene)) return problem_of_valid(seen_from_car(scene), parameters, extent, limits);
     LaneGraphProblem problem;
     const std::size_t n = scene.cones.size();
-    // The table of distances is the one part that is allocated at once.
+    // The table of distances is allocated in one step, so its size is checked first.
     if (limits.stop(problem) || (extent == EdgeExtent::all_pairs && limits.stop_for_table(n))) return problem;
     problem.cone_count = n;
     problem.parameters = parameters;

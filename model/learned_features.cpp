@@ -9,7 +9,7 @@
 namespace conelane {
 namespace {
 
-// Scales and limits, as formulation.md has them.
+// Scales and limits of the features, defined in formulation.md.
 constexpr double kMaxSpacingCost = 7.0;
 constexpr double kMaxHeadingCost = 4.0;
 constexpr double kMaxTurnCost = 4.0;
@@ -36,19 +36,19 @@ constexpr double kOn_m = 6.0;
 constexpr double kOnRamp_m = 2.0;
 constexpr double kMaxOn = 3.0;
 constexpr double kViewScale_m = 10.0;
-/// From 10 m before it on, a cone says ever less of how far the car sees; no sensor sees so far. Nor does a
-/// cone behind the car.
+/// How far the car sees follows from its farthest cone. From 10 m before this distance on, and behind the
+/// car, a cone counts less and less; no sensor sees so far.
 constexpr double kBeyondView_m = 70.0;
 constexpr double kEndScale_m = 6.0;
 constexpr double kMaxEndDistance = 2.0;
 constexpr double kMaxOffAxis = 3.0;
-/// Cones farther from each other than this are in no triangle of shorter edges, and beside no end.
+/// Cones farther apart than this are in no triangle of two short edges, and not beside the same end.
 constexpr double kAround_m = 6.0;
 
 double square(double value) {
     return value * value;
 }
-/// 1 at 0, falling to 0 at the scale.
+/// 1 at 0, and 0 from the scale on.
 double hat(double squared, double scale) {
     return std::max(0.0, 1.0 - squared / square(scale));
 }

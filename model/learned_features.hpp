@@ -23,13 +23,13 @@ inline constexpr std::size_t kFarEndFeatures = 6;
 /// coordinate is farther than 1e5 m from the car.
 class LearnedFeatures {
   public:
-    /// `stop` gets an amount of work before it is done; once it returns true, results are invalid.
+    /// `stop` is called with an amount of work before it is done. Once it returns true, results are invalid.
     LearnedFeatures(const Scene& scene, const LaneGraphProblem& problem,
                     const std::function<bool(std::size_t)>& stop = {});
 
     /// Precondition: the edge is not high_cost.
     [[nodiscard]] std::array<double, kEdgeFeatures> edge(std::size_t edge) const;
-    /// Precondition: none of both edges is high_cost. `angle_cost`: of (20).
+    /// Precondition: neither edge is high_cost. `angle_cost`: of (20).
     [[nodiscard]] std::array<double, kTurnFeatures> turn(std::size_t edge_i, std::size_t edge_k,
                                                          std::size_t middle, double angle_cost) const;
     /// Precondition: the cone is near.
@@ -47,7 +47,7 @@ class LearnedFeatures {
     std::vector<double> ahead_m_;
     double view_m_ = 0.0;  ///< how far the car sees
     std::vector<double> cone_crowd_;
-    std::vector<double> facing_;                    ///< by edge, at any width
+    std::vector<double> facing_;                    ///< by edge, for a lane of any width
     std::vector<std::vector<std::size_t>> around_;  ///< cones within kAround_m of each
 };
 

@@ -15,8 +15,8 @@
 
 namespace conelane {
 
-/// The learned costs of formulation.md in an arithmetic of any precision, cone by cone from the scene. For
-/// checkers: it shares no code with the builder of the problem, LearnedFeatures.
+/// The learned costs of formulation.md in arithmetic of any precision, computed cone by cone from the scene.
+/// For checkers: it shares no code with LearnedFeatures, which builds the problem's costs.
 template <typename Real>
 class LearnedReference {
   public:
@@ -37,7 +37,7 @@ class LearnedReference {
         find_facing();
     }
 
-    /// `color_cost`: of ProblemEdge, by the caller.
+    /// `color_cost`: that of ProblemEdge, from the caller.
     [[nodiscard]] Real edge(std::size_t i, std::size_t j, Real color_cost) const {
         const Vector along = place_[j] - place_[i];
         const Real far = length(along);
@@ -83,7 +83,7 @@ class LearnedReference {
             if (c == i || c == k || c == middle || area == 0) continue;
             const Vector way = place_[c] - place_[middle];
             if (dot(way, way) > std::max(m * m, n * n)) continue;  // outside the triangle
-            // Depth below each side of the triangle, from the areas that the cone makes with it.
+            // Depth below each side of the triangle, from the area of the triangle of that side and the cone.
             const auto depth = [&](std::size_t from, std::size_t to) {
                 const Real made = wedge(place_[to] - place_[from], place_[c] - place_[from]);
                 return (area > 0 ? made : -made) / length(place_[to] - place_[from]);
@@ -144,8 +144,8 @@ class LearnedReference {
         Real middle_x;
     };
 
-    /// Pairs of cones within s_crit, by the x of their middle. A sweep along x, since all pairs of hundreds
-    /// of cones take longer than a car has between two looks at the clock.
+    /// Pairs of cones within s_crit, by the x of their middle. A sweep along x, because all pairs of hundreds
+    /// of cones would take longer than the time between two checks of the clock.
     void find_facing() {
         const double longest_m = p_.d_e + p_.d_t * std::pow(p_.s_crit + 1e-9, 0.25) + 1e-6;
         std::vector<std::size_t> by_x(place_.size());
@@ -170,7 +170,7 @@ class LearnedReference {
         return sqrt(dot(a, a));
     }
     static Vector half(const Vector& a) { return {a.x / 2, a.y / 2}; }
-    /// Of -0 it is 0: atan2 tells them apart.
+    /// Absolute value; 0 for -0, because atan2 distinguishes the two.
     static Real size(const Real& a) { return a > 0 ? a : a < 0 ? Real(-a) : Real(0); }
     static Real least(const Real& a, int most) { return std::min(a, Real(most)); }
     static Real unit(const Real& a) { return std::max(Real(0), std::min(a, Real(1))); }
@@ -188,8 +188,8 @@ class LearnedReference {
         return least(sum, 6) / 2;
     }
 
-    /// The least of a measure of (along, across, sine, longer) over the edges that may face {i, j}, at
-    /// most 1. `reach_m`: the measure is at least 1 where the middles are farther apart.
+    /// The smallest value of `measure` (along, across, sine, longer) over the edges that may face {i, j}, at
+    /// most 1. `reach_m`: `measure` is at least 1 if the middles are farther apart.
     template <typename Measure>
     [[nodiscard]] Real best_facing(std::size_t i, std::size_t j, double reach_m,
                                    const Measure& measure) const {
@@ -223,7 +223,7 @@ class LearnedReference {
         return best;
     }
     [[nodiscard]] Real facing_any(std::size_t i, std::size_t j) const {
-        constexpr double kReach_m = 8.0;  // 4 m along and 6.5 m across
+        constexpr double kReach_m = 8.0;  // more than 4 m along and 6.5 m across
         return best_facing(i, j, kReach_m, [&](const Real& l, const Real& b, const Real& sine, const Real&) {
             const Real off = std::max(Real(0), Real(b - Real(5.5))) + std::max(Real(0), Real(Real(2.5) - b));
             return Real(l * l / 16 + off * off + sine * sine / Real(0.6) / Real(0.6));
@@ -246,7 +246,7 @@ class LearnedReference {
     const RldParameters& p_;
     Vector ahead_{};
     std::vector<const Cone*> cones_;
-    std::vector<Vector> place_;  ///< from the car
+    std::vector<Vector> place_;  ///< relative to the car
     Real view_{0};
     std::vector<Facing> facing_;  ///< edges within s_crit, by middle_x
     mutable std::map<std::pair<std::size_t, std::size_t>, Real> known_facing_;

@@ -13,7 +13,7 @@ bool come_closer(const MeasuredSegment& a, const MeasuredSegment& b, double limi
         const double share = way.dot(segment.along) * segment.inverse_squared_length;
         return (way - least(std::max(0.0, share), 1.0) * segment.along).squaredNorm();
     };
-    // Disjoint segments are nearest at an end of at least one of them.
+    // If two segments do not cross, an end of one of them is nearest.
     const double squared = least(least(squared_to_foot(ways[0], a), squared_to_foot(ways[1], a)),
                                  least(squared_to_foot(-ways[0], b), squared_to_foot(-ways[2], b)));
     const auto between_ends_m = [&] {
@@ -21,7 +21,7 @@ bool come_closer(const MeasuredSegment& a, const MeasuredSegment& b, double limi
                                least(ways[2].squaredNorm(), ways[3].squaredNorm())));
     };
     if (squared < limit_m * limit_m && between_ends_m() > std::sqrt(squared) + kTieTolerance) return true;
-    // Those that cross have distance 0, however far their ends are from the other one.
+    // Segments that cross have distance 0, however far their ends are from the other segment.
     return cross(a.along, ways[0]) * cross(a.along, ways[1]) < 0.0 &&
            cross(b.along, ways[0]) * cross(b.along, ways[2]) < 0.0 && between_ends_m() > kTieTolerance;
 }
@@ -43,12 +43,12 @@ NearEdges::NearEdges(const Scene& scene, std::span<const ProblemEdge> edges, dou
     near_list_.resize(edges.size() + 1);
 }
 
-/// An edge of the cone and one within reach of it have all their ends within two lengths and the reach.
+/// An edge of the cone and an edge within its reach have all ends within two lengths plus the reach.
 void NearEdges::gather(std::size_t cone) {
     around_ = cone;
     const double radius_m = 2.0 * max_length_m_ + reach_m_;
     const Point& centre = scene_.cones[cone].position;
-    // Each one is written, and kept where the count goes on: a branch would be guessed wrong too often.
+    // Each entry is written, and overwritten unless the count grows: a branch is often mispredicted.
     std::size_t count = 0;
     for (std::size_t other = cone + 1; other < codes_.size(); ++other) {
         const bool is_near = (scene_.cones[other].position - centre).squaredNorm() <= radius_m * radius_m;

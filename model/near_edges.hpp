@@ -40,8 +40,8 @@ class NearEdges {
     /// Edges as a problem lists them: by their first cones. The scene and the edges must outlive this object.
     NearEdges(const Scene& scene, std::span<const ProblemEdge> edges, double reach_m);
 
-    /// The later edges, ascending, without a cone of this edge, that come within reach of it or cross it, and
-    /// some others. Call it in ascending order; the result is valid until the next call.
+    /// The later edges that come within reach of this edge or cross it, ascending, without those that share a
+    /// cone with it. Some others may be included. Call in ascending order; valid until the next call.
     [[nodiscard]] std::span<const std::size_t> after(std::size_t edge);
 
   private:
@@ -60,7 +60,7 @@ class NearEdges {
     double max_length_m_ = 0.0;
     std::vector<std::size_t> first_edge_;    ///< by cone, the first edge that begins at it or at a later one
     std::vector<unsigned> codes_;            ///< by cone
-    std::size_t around_ = kNone;             ///< the cone around which the following are gathered
+    std::size_t around_ = kNone;             ///< the cone for which the following lists are gathered
     std::span<const std::size_t> cones_;     ///< cones with larger indices
     std::span<const std::size_t> gathered_;  ///< edges between these cones
 

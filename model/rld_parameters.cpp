@@ -11,10 +11,10 @@ namespace conelane {
 namespace {
 
 constexpr double kMaxLength_m = 1000.0;
-/// Beyond three missing cones an edge says nothing.
+/// With more than three missing cones, an edge carries no information.
 constexpr double kMaxGap_m = 20.0;
 constexpr double kMaxWeight = 1e6;
-/// What a difference is divided by [m] or [rad]. Below a millimetre, costs depend on rounding.
+/// Smallest divisor of a difference [m] or [rad]. Below a millimetre, costs depend on rounding.
 constexpr double kMinThreshold = 1e-3;
 using P = RldParameters;
 

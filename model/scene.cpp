@@ -19,7 +19,7 @@ std::string key_of(std::size_t cone, const char* member) {
 }
 
 void require_probabilities(const ColorProbabilities& given, std::size_t cone) {
-    constexpr double kOff = 1e-3;  // printed with three digits they are off by less
+    constexpr double kOff = 1e-3;  // more than the rounding error of probabilities with three digits
     double sum = 0.0;
     for (const double value : {given.unknown, given.blue, given.yellow, given.orange, given.big_orange}) {
         if (!(value >= 0.0 && value <= 1.0))
@@ -94,7 +94,7 @@ void validate(const Scene& scene) {
 }
 
 void validate(const Scene& scene, std::vector<ConeId>& ids) {
-    // Keys are put together only for a fault: this runs in every call of a detector.
+    // Keys are built only for an error, because this runs in every call of a detector.
     if (!std::isfinite(scene.pose.position.x())) throw InvalidInput("pose.x", kNotFinite);
     if (!std::isfinite(scene.pose.position.y())) throw InvalidInput("pose.y", kNotFinite);
     if (!std::isfinite(scene.pose.yaw_rad)) throw InvalidInput("pose.yaw", kNotFinite);

@@ -18,9 +18,9 @@ namespace conelane {
 struct SearchCertificate {
     static constexpr int kFractionBits = 24;
     using Units = std::int64_t;  ///< multiples of 2^-24
-    /// Larger multipliers are not allowed; without one, the enumeration has more to do.
+    /// Larger multipliers are not allowed; without such a multiplier, the enumeration has more to do.
     static constexpr Units kMaxUnits = Units{1} << 62;
-    /// A bound or an objective of this size has no certificate: verifiers keep sums in 128 bits.
+    /// A bound or an objective beyond this has no certificate, because verifiers add up sums in 128 bits.
     static constexpr double kMaxBound = 1e12;
 
     struct Stage {

@@ -14,7 +14,7 @@ double square(double value) {
 
 struct PlacedEdge {
     Point middle;
-    Point direction;  ///< of length one; zero where the edge has no length
+    Point direction;  ///< unit length; zero for an edge of zero length
     double length_m;
 };
 
@@ -25,11 +25,11 @@ PlacedEdge placed(const Scene& scene, const ProblemEdge& edge) {
     return {0.5 * (from + to), length > 0.0 ? Point((to - from) / length) : Point(0.0, 0.0), length};
 }
 
-/// Of two edges: along and across are of the way between their midpoints, seen from the first one.
+/// Of two edges. `along` and `across` belong to the way between their midpoints, seen from the first edge.
 using CostOfFacing = double (*)(const RldParameters& p, double along_squared, double across, double sine,
                                 double longer_m);
 
-/// Of each edge, by the one that faces it best; 1 beyond `reach_m` between the midpoints.
+/// By edge: the measure of the edge that faces it best; 1 if no midpoint is within `reach_m`.
 std::vector<double> facing(const Scene& scene, std::span<const ProblemEdge> edges, const RldParameters& p,
                            double reach_m, CostOfFacing cost_of,
                            const std::function<bool(std::size_t)>& stop) {

@@ -28,7 +28,7 @@ namespace conelane {
                                                const std::function<bool(std::size_t)>& stop = {});
 
 /// The same where the lane's width is unknown: the least (l / 4 m)^2 + (w / 1 m)^2 + (sin(angle) / 0.6)^2,
-/// at most 1, where w is what |b| is above 5.5 m or below 2.5 m. A feature of learned costs.
+/// at most 1, where w is the distance of |b| from the interval [2.5 m, 5.5 m]. A feature of learned costs.
 [[nodiscard]] std::vector<double> facing_at_any_width(const Scene& scene, std::span<const ProblemEdge> edges,
                                                       const std::function<bool(std::size_t)>& stop = {});
 

@@ -4,9 +4,9 @@
 
 namespace conelane {
 
-/// `make_problem` with a deadline for a scene that `validate` has accepted, which is not checked again.
-/// Throws InvalidInput where the parameters are not valid, or where cones are so far from the car that their
-/// distance is no finite number.
+/// `make_problem` with a deadline, for a scene that `validate` has accepted: it is not validated again.
+/// Throws InvalidInput if the parameters are invalid, or if the difference of two coordinates is not
+/// finite.
 [[nodiscard]] LimitedProblem make_problem_of_valid_scene(const Scene& scene, const RldParameters& parameters,
                                                          EdgeExtent extent, const Deadline& deadline);
 

@@ -27,7 +27,7 @@ namespace {
 
 constexpr int kBadInput = 2;
 
-/// Messages end up in one line whatever a library put into them.
+/// A message becomes one line, whatever a library put into it.
 std::string one_line(std::string text) {
     for (char& character : text) {
         if (character == '\n' || character == '\r') character = ' ';
@@ -36,20 +36,20 @@ std::string one_line(std::string text) {
     return text;
 }
 
-/// A stream that was closed at the start would be given to the next file that is opened, which then holds the
-/// program's messages. It becomes one that refuses them.
+/// If a standard stream was closed at the start, the next file that is opened would get its number and then
+/// the program's messages. So the stream is replaced by one that refuses to be written.
 void open_standard_streams() {
     for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-        // The lowest free number is taken, which is this one.
+        // open returns the lowest free number, which is this one.
         if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) != descriptor) std::abort();
     }
 }
 
-/// Why a write to standard output failed, where that is known; the stream itself forgets it.
+/// Why a write to standard output failed, if known: the stream itself does not keep the reason.
 int write_error = 0;
 
-/// The exit code, or that of a failure where the output did not reach its place.
+/// The exit code, or that of a failure if the output could not be written.
 int flushed(int exit_code) {
     errno = 0;
     std::cout.flush();
@@ -61,11 +61,11 @@ int flushed(int exit_code) {
     return kBadInput;
 }
 
-/// An unset variable of a script must not pass for an option that was not given.
+/// An empty value, for example from an unset variable of a script, must not count as a missing option.
 void refuse_empty_values(CLI::App& program) {
     const CLI::Validator check([](const std::string& text) { return text.empty() ? "is empty" : ""; }, "");
     for (CLI::Option* option : program.get_options()) {
-        // Transformations come before an option's own checks.
+        // Transformations run before an option's own checks.
         if (option->get_items_expected_max() > 0) option->transform(check);
     }
     for (CLI::App* command : program.get_subcommands({})) refuse_empty_values(*command);
@@ -87,7 +87,7 @@ int run(int argument_count, char** arguments) {
                      "conelane");
     program.formatter(std::make_shared<experiments::HelpFormatter>());  // its commands inherit it
     program.set_version_flag("--version", version());
-    program.require_subcommand(0, 1);  // none is said below, after a misspelt one
+    program.require_subcommand(0, 1);  // a missing command is reported below, after a misspelt one
     experiments::add_compare_command(program);
     experiments::add_cross_validate_command(program);
     experiments::add_race_command(program);
@@ -113,7 +113,7 @@ int run(int argument_count, char** arguments) {
     experiments::add_study_command(program);
     experiments::add_train_command(program);
     refuse_empty_values(program);
-    // All options are read by then, and no command has begun.
+    // All options have been read, and no command has begun.
     program.parse_complete_callback([&program] {
         for (CLI::App* command : program.get_subcommands()) experiments::refuse_lost_inputs(*command);
     });
@@ -134,12 +134,12 @@ int run(int argument_count, char** arguments) {
     } catch (const std::system_error& failure) {
         if (std::ferror(stdout) != 0) {
             write_error = failure.code().value();
-            return kBadInput;  // `flushed` says it
+            return kBadInput;  // `flushed` reports it
         }
         fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
         return kBadInput;
     } catch (const std::exception& failure) {
-        if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` says it
+        if (std::ferror(stdout) != 0) return kBadInput;  // `flushed` reports it
         fmt::print(stderr, "conelane: {}\n", one_line(failure.what()));
         return kBadInput;
     }

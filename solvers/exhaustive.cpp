@@ -90,7 +90,7 @@ class Enumeration {
 
     static std::uint64_t bit(std::size_t index) { return std::uint64_t{1} << index; }
 
-    /// Records every path that goes on from the last end; each path from both its ends, kept once.
+    /// Records every path that extends this one at its last end. It is met from both ends, kept once.
     void extend(const Path& path, std::uint64_t cones, std::size_t arrived_by) {
         if (out_of_time()) return;
         for (const std::size_t edge : problem_.incident[path.last_end]) {
@@ -137,7 +137,7 @@ class Enumeration {
     const LaneGraphProblem& problem_;
     const Deadline& deadline_;
     std::vector<std::uint64_t> conflicts_;
-    std::vector<const ProblemTurn*> turn_;  ///< by pair of edges; nullptr where they share no allowed turn
+    std::vector<const ProblemTurn*> turn_;  ///< by pair of edges; nullptr if no allowed turn joins them
     std::vector<bool> far_apart_;
     std::vector<std::vector<Path>> paths_;  ///< by set of cones
     bool stopped_ = false;

@@ -21,7 +21,7 @@ double tolerance(double value) {
     return kTolerance * std::max(1.0, std::abs(value));
 }
 
-/// What is wrong with a report, in words; empty where nothing is. `known`: the objective of a feasible start.
+/// What is wrong with a report, in words; empty if nothing is. `known`: the objective of a feasible start.
 std::string fault(const LaneGraphProblem& problem, const SolveLimits& limits, const RldReport& report,
                   const std::optional<double>& known) {
     const bool claims_lane_graph =
@@ -37,7 +37,7 @@ std::string fault(const LaneGraphProblem& problem, const SolveLimits& limits, co
     if (report.lane_graph) {
         const VerifiedAnswer answer = verify_answer(problem, *report.lane_graph);
         if (!answer.violation.empty()) return answer.violation;
-        // Written so that an objective that is not a number fails.
+        // This form of the comparison also fails for an objective that is not a number.
         if (!report.objective ||
             !(std::abs(*report.objective - answer.objective) <= tolerance(answer.objective))) {
             return "the objective is not the lane graph's, " + std::to_string(answer.objective);
@@ -87,7 +87,7 @@ RldReport RldSolver::solve(const LaneGraphProblem& problem, const SolveLimits& l
             fail("the answer fails its check: " + wrong);
         }
     } else {
-        // No claim of a search that failed counts.
+        // After an error, nothing that the search claims counts.
         report.lane_graph.reset();
         report.objective.reset();
         report.bound.reset();

@@ -14,11 +14,11 @@ namespace conelane {
 namespace {
 
 constexpr double kTrustedByRule_m = 10.0;
-/// How far past the limit a lane that was found may be looked at.
+/// Time that checking a found lane may still take after the limit.
 constexpr double kMinTime_ms = 0.5;
 
-/// No points where the lane is outside of what `drivable` takes, such as one of more than 20 km. Nothing
-/// where the deadline passes.
+/// No points if the lane is outside of what `drivable` accepts, such as one of more than 20 km. Nothing if
+/// the deadline passes.
 std::optional<DrivableLane> drivable_or_none(const LaneAnswer& answer, const Scene& scene,
                                              const Deadline& deadline) {
     try {
@@ -34,8 +34,8 @@ double trusted_by_rule_m(const DrivableLane& lane) {
     return trusted_m;
 }
 
-/// Cuts a boundary that is seen alone before its first gap. Returns whether three cones at least are left,
-/// and fewer than there were.
+/// Cuts a boundary that is seen alone before its first gap. Returns whether at least three cones are left,
+/// and fewer than before.
 bool cut_at_first_gap(Lane& lane, const Scene& scene) {
     if (lane.left.empty() == lane.right.empty()) return false;
     std::vector<ConeId>& boundary = lane.left.empty() ? lane.right : lane.left;

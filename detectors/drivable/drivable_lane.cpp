@@ -21,33 +21,33 @@ namespace {
 
 constexpr double kMaxConeDistance_m = 1e6;
 constexpr double kMaxBoundary_m = 2e4;
-/// How near a boundary the spline may come at a rung; between rungs it may come nearer by half their spacing.
+/// Smallest distance of the spline from a boundary at a rung; between rungs, half their spacing less.
 constexpr double kClearance_m = 0.25;
-/// Distance of a rung's middle from either boundary below which the lane is too narrow.
+/// The lane is too narrow if a rung's middle is nearer to a boundary than this.
 constexpr double kMinHalfWidth_m = 0.4;
-/// Along a boundary from the place of a rung: no other part of it counts there, such as the next leg of a
-/// hairpin.
+/// Length of the part of a boundary that belongs to a rung, to either side: parts farther along it, such as
+/// the next leg of a hairpin, do not count.
 constexpr double kReach_m = 12.0;
 constexpr double kSlowest = 0.1;  ///< below it the spline has a cusp; 1 is a spline measured by arc length
 constexpr int kRounds = 20;
-constexpr int kTurningRounds = 3;  ///< at least: the turning expected in a round is that of the round before
-/// Bends that are sharper are smoothed more, where there is room. Outer hairpins of 9 m give 1 / (3 m).
+constexpr int kTurningRounds = 3;  ///< minimum: each round takes its expected turning from the round before
+/// Sharper bends are smoothed more if there is room. Outer hairpins of 9 m give 1 / (3 m).
 constexpr double kSharpest_1pm = 0.4;
-constexpr int kSharpRounds = 8;  ///< after them only staying in the lane counts
+constexpr int kSharpRounds = 8;  ///< after these rounds, only staying in the lane counts
 constexpr double kSharpFactor = 0.4;
-constexpr std::size_t kSharpReach = 4;  ///< rungs to either side of one that weigh less
+constexpr std::size_t kSharpReach = 4;  ///< rungs to either side of a sharp one that get less weight
 constexpr double kMissedFactor = 6.0;
-constexpr std::size_t kMissedReach = 2;  ///< rungs to either side of one that weigh more
+constexpr std::size_t kMissedReach = 2;  ///< rungs to either side of a missed one that get more weight
 
 void validate(const DrivableOptions& options) {
     const auto require = [](double value, double least, double most, const char* key) {
         if (value >= least && value <= most) return;
-        throw InvalidInput(key, "is not in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
+        throw InvalidInput(key, "must be in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
     };
     require(options.step_m, 0.01, 100.0, "step_m");
     require(options.smoothing_m, 0.25, 5.0, "smoothing_m");
-    require(options.default_width_m, 1.0, kMaxLaneWidth_m, "usual_width_m");
-    if (!(options.max_gap_m > 0.0)) throw InvalidInput("longest_gap_m", "is not above 0");
+    require(options.default_width_m, 1.0, kMaxLaneWidth_m, "default_width_m");
+    if (!(options.max_gap_m > 0.0)) throw InvalidInput("max_gap_m", "must be above 0");
 }
 
 struct Sides {
@@ -96,7 +96,7 @@ Sides positions(const Lane& lane, const Scene& scene) {
 
 void require_boundary(const LaneBoundary& boundary, bool closed, const char* key) {
     if (closed && boundary.vertices().size() < 3) {
-        throw InvalidInput(key, "has fewer than three cones, yet the lane is closed");
+        throw InvalidInput(key, "has fewer than three cones, but the lane is closed");
     }
     if (boundary.length_m() > kMaxBoundary_m) throw InvalidInput(key, "is longer than 20 km");
 }
@@ -111,8 +111,8 @@ bool infer(std::vector<Point>& empty, const std::vector<Point>& known, bool know
     return !empty.empty();
 }
 
-/// The smoothed centre line of a lane with both boundaries, in the coordinates that the boundaries have.
-/// Parameters are those of the spline, arc lengths start at its first rung.
+/// The smoothed centre line of a lane with both boundaries, in the coordinates of the boundaries. Parameters
+/// are those of the spline; arc lengths begin at its first rung.
 class CentreLine {
   public:
     CentreLine(RungLadder ladder, double smoothing_m, const TimeCheck& check_time)
@@ -123,15 +123,15 @@ class CentreLine {
 
     /// Arc length of the foot point of the origin.
     [[nodiscard]] double foot_m(const Point& heading) const;
-    /// Arc length from a place to the first rung at or past it where there is no lane, to the end of an open
-    /// line, or around a closed one; 0 where there is none at the place itself.
+    /// Arc length from a place to the first rung at or behind it without a lane, else to the end of an open
+    /// line, or around a closed one; 0 if the place itself has no lane.
     [[nodiscard]] double usable_length_m(double from_m) const;
     [[nodiscard]] double length_m() const { return arc_m_.back(); }
     [[nodiscard]] bool closed() const { return ladder_.left.closed(); }
-    /// The point at an arc length, which wraps on a closed line. Widths are absent where a boundary is on
-    /// the wrong side or nearer than it may.
+    /// The point at an arc length, which wraps on a closed line. A width is absent if its boundary is on the
+    /// wrong side or nearer than allowed.
     [[nodiscard]] DrivablePoint at(double arc_m) const;
-    /// Stretches of the gaps longer than `max_gap_m`, by arc length from the first rung.
+    /// The gaps longer than `max_gap_m`, by arc length from the first rung.
     [[nodiscard]] std::vector<BridgedGap> gaps(double max_gap_m) const;
 
   private:
@@ -151,16 +151,16 @@ class CentreLine {
 
     RungLadder ladder_;
     std::vector<double>
-        room_m_;  ///< how far the spline may be from the middle of each rung; negative: no lane
+        room_m_;  ///< largest distance of the spline from the middle, by rung; negative: no lane
     SmoothingSpline spline_;
     std::vector<bool> usable_;   ///< at each rung
-    std::vector<double> arc_m_;  ///< at each rung, of a closed line also back at the first
+    std::vector<double> arc_m_;  ///< at each rung; for a closed line also back at the first one
 };
 
-/// A spline that stays within room_m_ of every middle keeps its clearance: no point within that distance of
-/// the middle is nearer to a boundary. Where it does not, the middles about that rung weigh more in the next
-/// round, so that the spline nears the line of middles there and stays smooth elsewhere. Where it bends too
-/// sharply, they weigh less.
+/// A spline that stays within room_m_ of every middle keeps its clearance, because no point within that
+/// distance of a middle is too near to a boundary. If it does not, the middles around that rung get more
+/// weight in the next round: the spline then comes nearer to them there and stays smooth elsewhere. If it
+/// bends too sharply, they get less.
 SmoothingSpline CentreLine::fit(double smoothing_m, const TimeCheck& check_time) {
     std::vector<Point> middles;
     for (const Rung& rung : ladder_.rungs) {
@@ -217,7 +217,7 @@ void CentreLine::measure() {
     }
 }
 
-/// Gauss-Legendre quadrature with three nodes, for a stretch between two rungs.
+/// Gauss-Legendre quadrature with three nodes, between two rungs.
 double CentreLine::arc_between(double from, double to) const {
     constexpr double kNode = 0.7745966692414834;
     const double half = 0.5 * (to - from);
@@ -257,7 +257,7 @@ double CentreLine::foot_m(const Point& heading) const {
         }
         if (nearest_m2 < std::numeric_limits<double>::infinity()) break;
     }
-    // Newton's method for position * first = 0, not past the neighbouring rungs.
+    // Newton's method for position * first = 0, limited to the neighbouring rungs.
     const double end = parameter(cells());
     const double low = closed() ? parameter(nearest) - ladder_.spacing_m
                                 : std::max(0.0, parameter(nearest) - ladder_.spacing_m);
@@ -286,7 +286,7 @@ double CentreLine::usable_length_m(double from_m) const {
     const std::size_t steps = closed() ? count() - 1 : count() - 1 - first;
     for (std::size_t d = 1; d <= steps; ++d) {
         if (usable_[(first + d) % count()]) continue;
-        // Up to the last rung where there is a lane.
+        // Ends at the last rung with a lane.
         const std::size_t last = first + d - 1;
         const double turn_m = last >= count() ? length_m() : 0.0;
         return std::max(0.0, arc_m_[last % count()] + turn_m - from_m);
@@ -321,7 +321,7 @@ DrivablePoint CentreLine::at(double arc_m) const {
 
 void CentreLine::add_gaps(const LaneBoundary& boundary, bool on_left, double max_gap_m,
                           std::vector<BridgedGap>& gaps) const {
-    // Places of successive rungs rise, on a closed boundary by one length in all.
+    // Positions of successive rungs increase; on a closed boundary, by its length in all.
     const auto place = [&](std::size_t k) {
         const Rung& rung = ladder_.rungs[k % count()];
         return (on_left ? rung.left_m : rung.right_m) + (k < count() ? 0.0 : boundary.length_m());
@@ -358,7 +358,7 @@ std::vector<BridgedGap> CentreLine::gaps(double max_gap_m) const {
     return result;
 }
 
-/// The gaps as seen from the foot point, cut to what the lane has of them.
+/// The gaps relative to the foot point, restricted to the part of the lane that is kept.
 std::vector<BridgedGap> seen_from(const std::vector<BridgedGap>& gaps, double foot_m, double around_m,
                                   const DrivableLane& lane) {
     std::vector<BridgedGap> seen;

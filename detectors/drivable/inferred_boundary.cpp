@@ -10,10 +10,10 @@ namespace {
 constexpr double kStep_m = 0.5;
 constexpr double kMaxSteps = 2000.0;       ///< of a boundary; a longer one is sampled more coarsely
 constexpr double kDirectionReach_m = 2.5;  ///< to either side
-/// A point across that is nearer to the known boundary than this share of the width belongs to no lane.
+/// A point opposite to the known boundary must be at least this share of the width from that boundary.
 constexpr double kNearestShare = 0.85;
 
-/// A point of a polyline measured by arc length; before and behind it goes on straight.
+/// A point of a polyline at an arc length. At both ends, the polyline continues straight.
 Point point_at(const LaneBoundary& boundary, double arc_m) {
     std::size_t i = 0;
     while (i + 1 < boundary.segments() && boundary.segment_end_m(i) < arc_m) ++i;

@@ -8,8 +8,8 @@ namespace conelane {
 namespace {
 
 constexpr double kOnePlace_m = 1e-6;       ///< vertices closer than this are at one place
-constexpr double kParallelSine = 1e-12;    ///< a ray along a segment does not meet it
-constexpr double kSegmentEndShare = 1e-9;  ///< of a segment's length by which its ends reach farther
+constexpr double kParallelSine = 1e-12;    ///< a ray parallel to a segment does not meet it
+constexpr double kSegmentEndShare = 1e-9;  ///< share of a segment's length by which its ends are extended
 
 }  // namespace
 

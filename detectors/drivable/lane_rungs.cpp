@@ -10,13 +10,13 @@
 namespace conelane {
 namespace {
 
-constexpr double kSample_m = 0.5;          ///< between matched places of a boundary, at most
+constexpr double kSample_m = 0.5;          ///< largest distance between matched places of a boundary
 constexpr double kSamplesAtMost = 2000.0;  ///< of a boundary; a longer one is sampled more coarsely
-constexpr double kRungSpacing_m = 0.25;    ///< at most
+constexpr double kRungSpacing_m = 0.25;    ///< largest spacing
 constexpr double kMinMidline_m = 0.5;
-constexpr double kWholeMean = 1.01;        ///< a mean within this of the least one is as good
-constexpr double kMinAdvance = 0.2;        ///< of an extended lane, as a share of the boundary's
-constexpr double kDirectionReach_m = 2.5;  ///< to either side, of the direction along an extended lane
+constexpr double kWholeMean = 1.01;        ///< means up to this factor above the least mean count as equal
+constexpr double kMinAdvance = 0.2;        ///< least advance of an extension, as a share of the boundary's
+constexpr double kDirectionReach_m = 2.5;  ///< to either side, for the direction along an extended lane
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct Place {
@@ -45,15 +45,15 @@ Places sampled(const LaneBoundary& boundary) {
 
 /// Turns a closed boundary so that it begins and ends at its place `first`.
 void begin_at(Places& places, std::size_t first, double length_m) {
-    places.pop_back();  // the first place again
+    places.pop_back();  // the repeated first place
     for (std::size_t i = 0; i < first; ++i) places[i].arc_m += length_m;
     std::rotate(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(first), places.end());
     places.push_back({places.front().point, places.front().arc_m + length_m});
 }
 
-/// Lets both boundaries of a closed lane begin where it is narrowest: at the closest places that lie on their
-/// sides and run the same way, hence face each other across this lane rather than across a neighbouring one.
-/// Where there are none, at the closest places.
+/// Makes both boundaries of a closed lane begin where it is narrowest: at the closest places that are on
+/// their sides and run the same way, so they face each other across this lane and not across a neighbouring
+/// one. If there are none, at the closest places.
 void begin_at_narrowest(Places& left, double left_length_m, Places& right, double right_length_m) {
     const auto directions = [](const Places& places) {
         std::vector<Point> result;
@@ -89,8 +89,8 @@ void begin_at_narrowest(Places& left, double left_length_m, Places& right, doubl
 
 enum class Step : std::uint8_t { both, left, right };
 
-/// The matching from the first places on, to the last ones of both sides or, with `open_end`, to the last
-/// place of one of them and the place of the other that makes the mean of the squared lengths the least.
+/// The matching from the first places to the last places of both sides. With `open_end`: to the last place of
+/// one side and the place of the other that minimises the mean of the squared lengths.
 std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> right, bool open_end,
                           const TimeCheck& check_time) {
     const std::size_t columns = right.size();
@@ -117,7 +117,7 @@ std::vector<Rung> matched(std::span<const Place> left, std::span<const Place> ri
             }
             if (!open_end || (i + 1 < left.size() && j + 1 < columns)) continue;
             const double mean = row[j] / static_cast<double>(i + j + 1);
-            if (mean > min_mean) continue;  // of equal ones the last: a longer lane
+            if (mean > min_mean) continue;  // of equal means the last one: a longer lane
             min_mean = mean;
             i_end = i;
             j_end = j;
@@ -147,7 +147,7 @@ double length_m(const Rung& rung) {
     return (rung.left - rung.right).norm();
 }
 
-/// Drops the last rungs while they fan out from the place of the last one on one side and grow.
+/// Drops the last rungs while they share their place on one side and grow longer.
 void drop_fan(std::vector<Rung>& rungs) {
     const double left_m = rungs.back().left_m;
     const double right_m = rungs.back().right_m;
@@ -161,10 +161,10 @@ void drop_fan(std::vector<Rung>& rungs) {
     }
 }
 
-/// Where the boundary on one side has ended, at the end of the matching, the lane keeps its width along the
-/// other one, whose places are `along`, in the direction of the matching. `left_normal` is 1 where the ended
-/// side lies to the left of that direction, else -1. Gives the places that go on from the ended side's end,
-/// with the place beside each: from the first one after `from` on.
+/// For a boundary that ends at the end of the matching: from there, the lane keeps its width along the other
+/// boundary, whose places are `along`, in the direction of the matching. `left_normal` is 1 if the ended side
+/// is to the left of that direction, else -1. Returns the places that continue the ended side, each with the
+/// place beside it: from the first one after `from` on.
 struct KeptWidth {
     std::vector<Point> ended;
     std::vector<Place> beside;
@@ -181,7 +181,7 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
     std::size_t behind = from;
     std::size_t ahead = from;
     for (std::size_t k = from + 1; k <= last; ++k) {
-        // The direction over several metres: that of a single segment leaps at each cone.
+        // The direction over several metres, because that of a single segment changes abruptly at each cone.
         const auto apart_m = [&](std::size_t i) { return std::abs(along[i].arc_m - along[k].arc_m); };
         while (apart_m(behind) > kDirectionReach_m) ++behind;
         while (behind > 0 && apart_m(behind - 1) <= kDirectionReach_m) --behind;
@@ -191,7 +191,7 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
         const Point opposite = along[k].point + width_m * across;
         const Point middle = 0.5 * (opposite + along[k].point);
         if (side_of_line(middle) * inside < 0.0) break;
-        // In a sharp corner, seen from outside, the way back is no lane.
+        // On the outer side of a sharp corner, points that run backwards are not part of the lane.
         const double travelled_m = (along[k].point - along[k - 1].point).norm();
         if ((middle - last_middle).dot(direction) < kMinAdvance * travelled_m) break;
         last_middle = middle;
@@ -201,8 +201,8 @@ KeptWidth keep_width(const Point& end, std::span<const Place> along, std::size_t
     return kept;
 }
 
-/// The same rungs at equal distances along the line of their middles. A step is along one segment of either
-/// boundary, so what lies between two rungs is on the boundaries too.
+/// The same rungs at equal distances along the line of their middles. Each step is along one segment of a
+/// boundary, so points between two rungs are on the boundaries too.
 void space_evenly(RungLadder& ladder) {
     const std::vector<Rung> rungs = std::move(ladder.rungs);
     ladder.rungs.clear();
@@ -229,19 +229,19 @@ void space_evenly(RungLadder& ladder) {
     }
 }
 
-/// Swaps the ends of a ladder's matching, so that what looks at its end looks at its beginning.
+/// Reverses a ladder's matching, so that its end can be treated like its beginning.
 void turn_round(Places& left, Places& right, std::vector<Rung>& rungs) {
     std::ranges::reverse(left);
     std::ranges::reverse(right);
     std::ranges::reverse(rungs);
 }
 
-/// Rungs and places past the end of the matching, where one boundary has ended. `left_side` is 1 where the
-/// left boundary lies to the left of the matching's direction, else -1.
+/// Rungs and places behind the end of the matching, where one boundary has ended. `left_side` is 1 if the
+/// left boundary is to the left of the matching's direction, else -1.
 struct Extension {
     std::vector<Rung> rungs;
-    std::vector<Point> left;   ///< what the left boundary goes on with
-    std::vector<Point> right;  ///< what the right boundary goes on with
+    std::vector<Point> left;   ///< continuation of the left boundary
+    std::vector<Point> right;  ///< continuation of the right boundary
 };
 Extension extension(const Places& left, const Places& right, const Rung& last, double left_side,
                     double widest_m) {
@@ -272,7 +272,7 @@ Extension extension(const Places& left, const Places& right, const Rung& last, d
     return result;
 }
 
-/// A boundary with what goes on before its first vertex, nearest first, and after its last one.
+/// A boundary, continued by the places `before` its first vertex, nearest first, and `after` its last one.
 LaneBoundary extended(const LaneBoundary& boundary, const std::vector<Point>& before,
                       const std::vector<Point>& after) {
     if (before.empty() && after.empty()) return boundary;
@@ -286,7 +286,7 @@ RungLadder open_ladder(const LaneBoundary& left, const LaneBoundary& right, doub
                        const TimeCheck& check_time) {
     Places left_places = sampled(left);
     Places right_places = sampled(right);
-    // The first matching finds the end, the second one from there the beginning.
+    // The first matching finds the end; the second one runs from there to the beginning.
     std::vector<Rung> rungs = matched(left_places, right_places, true, check_time);
     drop_fan(rungs);
     const auto up_to = [](const Places& places, double arc_m) {

@@ -8,7 +8,7 @@ namespace conelane {
 namespace {
 
 constexpr std::size_t kBand = 4;  ///< the diagonal and three beside it
-/// Influence on a closed spline dies out over half of exp(-distance / smoothing); this many smoothing lengths
+/// On a closed spline, influence decreases like exp(-distance / (2 smoothing)); this many smoothing lengths
 /// leave 1e-9 of it.
 constexpr double kOverlap = 40.0;
 
@@ -26,7 +26,7 @@ class BandSystem {
         }
     }
 
-    /// By LDL^T without pivoting. The system is used up.
+    /// Solves it by LDL^T without pivoting, in place.
     std::vector<Point> solve() && {
         const std::size_t n = rows_.size();
         for (std::size_t i = 0; i < n; ++i) {
@@ -56,13 +56,13 @@ SmoothingSpline::SmoothingSpline(std::span<const Point> points, std::span<const 
                                  double spacing_m, double smoothing_m, bool closed,
                                  std::span<const double> turning_1pm)
     : knot_spacing_m_(2.0 * spacing_m), intervals_(points.size() / 2) {
-    // A closed spline is fitted to its points repeated on both sides, far enough for the ends not to matter.
+    // A closed spline is fitted to repeated points on both sides, far enough that the ends do not matter.
     const std::size_t overlap =
         closed ? static_cast<std::size_t>(std::ceil(kOverlap * smoothing_m / knot_spacing_m_)) : 0;
     const std::size_t data = points.size() + 4 * overlap;
     const std::size_t controls = intervals_ + 2 * overlap + 3;
     BandSystem system(controls);
-    // Basis functions at a knot, where the fourth one vanishes, and half-way between two.
+    // Basis functions at a knot, where the fourth one is 0, and half-way between two knots.
     constexpr std::array<double, 3> kAtKnot{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
     constexpr std::array<double, 4> kBetween{1.0 / 48.0, 23.0 / 48.0, 23.0 / 48.0, 1.0 / 48.0};
     const std::size_t shift = closed ? points.size() - 2 * overlap % points.size() : 0;
@@ -74,8 +74,8 @@ SmoothingSpline::SmoothingSpline(std::span<const Point> points, std::span<const 
             system.add(j / 2, kBetween, spacing_m * weights[i], points[i]);
         }
     }
-    // The third difference and the square of a turn times the first one vanish together on points of a
-    // circle.
+    // The third difference, and the first difference times the square of a turn, cancel exactly for points of
+    // a circle.
     const double penalty = std::pow(smoothing_m / knot_spacing_m_, 6.0) * knot_spacing_m_;
     for (std::size_t r = 0; r + 3 < controls; ++r) {
         double square = 0.0;

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-/// Thrown when the time for a drivable lane is over.
+/// Thrown when the time for a drivable lane has ended.
 struct OutOfTime {};
 
 /// Throws OutOfTime once the deadline has passed; does nothing without a deadline.
@@ -18,7 +18,7 @@ class TimeCheck {
     }
 
   private:
-#ifdef __wasi__  // no exceptions here: the computation, some milliseconds at most, runs to its end
+#ifdef __wasi__  // exceptions are off here: the computation, some milliseconds at most, runs to its end
     static constexpr bool kEnds = false;
 #else
     static constexpr bool kEnds = true;

@@ -36,7 +36,7 @@ NamesByPart read_features(JsonReader& json) {
     return names;
 }
 
-/// They have to be those that the library measures, in their order.
+/// The file's features have to be those of the library, in the same order.
 void require_features(const NamesByPart& names) {
     for (const LearnedPart part : kLearnedParts) {
         const std::string quoted = "'" + std::string(to_string(part)) + "'";

@@ -11,10 +11,10 @@ namespace conelane {
 /// Learned costs from the bytes of a file that `conelane train rld --out FILE` wrote: a JSON object with
 /// `version` 1, `features`, the names of the features of each part as the library has them, and for each part
 /// its lists of numbers, such as `edge_linear`, `edge_hidden` and `edge_output`. A network without hidden
-/// units has two empty lists. Throws InvalidInput naming the key, or the line of what is no JSON.
+/// units has two empty lists. Throws InvalidInput naming the key, or the line that is not JSON.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> parse_learned_costs(std::string_view json);
 
-/// The same from a file. Throws InvalidInput naming the file too, also where it cannot be read.
+/// The same from a file. Throws InvalidInput naming the file too, also if it cannot be read.
 [[nodiscard]] std::shared_ptr<const LearnedCosts> read_learned_costs(const std::filesystem::path& file);
 
 }  // namespace conelane

@@ -78,7 +78,7 @@ std::optional<RigidShift> ConeMemory::shift_of(const Frame& frame,
     for (const std::size_t i : near) {
         if (cones_[i].sightings > 1) remembered.push_back(cones_[i].position);
     }
-    // Only where cones stand near a remembered one may they have moved away from it.
+    // Only cones near a remembered one can have moved away from it.
     const auto nearest_m = [&](const Point& place) {
         double nearest = shift_settings_.reach_m;
         for (const Point& other : remembered) nearest = std::min(nearest, (other - place).norm());
@@ -126,7 +126,7 @@ void ConeMemory::associate(const Frame& frame, const std::vector<std::size_t>& n
             if (distance_m <= gate_m) matches.push_back({distance_m, k, i});
         }
     }
-    // The order of the cones in the frame decides nothing but between equal distances.
+    // Sorted, so that the order of the cones in the frame only decides between equal distances.
     std::ranges::sort(matches, {}, [](const Match& match) {
         return std::tuple(match.distance_m, match.remembered, match.seen);
     });
@@ -163,8 +163,8 @@ void ConeMemory::see(RememberedCone& cone, const Cone& seen) const {
     ++cone.colors[static_cast<std::size_t>(seen.color)];
 }
 
-/// What range and bearings a sensor has is not known: it is taken to see about as far and as wide as it did
-/// in this frame.
+/// Range and bearings of the sensor are not known. Assumption: it sees about as far and as wide as in this
+/// frame.
 void ConeMemory::miss_unseen(const Frame& frame, const std::vector<std::size_t>& near) {
     double widest_rad = 0.0;
     const auto bearing_rad = [&](const Point& place) {
@@ -207,7 +207,7 @@ Scene ConeMemory::scene(const Pose& pose) const {
         const double reach_m = pose.ahead_m(cone.position) >= 0.0 ? range_m : settings_.behind_m;
         if (distance_m <= reach_m) chosen.push_back(&cone);
     }
-    // Of cones at one place the one seen most often stands for all.
+    // Of cones at one place, the one that was seen most often represents all.
     std::ranges::sort(chosen, {},
                       [](const RememberedCone* cone) { return std::tuple(-cone->sightings, cone->id); });
     std::vector<const RememberedCone*> kept;

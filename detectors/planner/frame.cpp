@@ -28,8 +28,8 @@ Scene checked_scene(const Frame& frame, const DetectionLimits& limits) {
 }
 
 void validate_shared(const PlannerOptions& options) {
-    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "is not at least 0");
-    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // refuses what is out of range
+    if (!(options.max_age_s >= 0.0)) throw InvalidInput("max_age_s", "must be at least 0");
+    static_cast<void>(drivable(Lane{}, Scene{}, options.drivable));  // throws if an option is out of range
 }
 
 }  // namespace conelane

@@ -21,20 +21,20 @@ namespace conelane {
 namespace {
 
 // Registration from frame to frame.
-/// The map moves little from frame to frame, and a boundary on a circle does not tell its turn: what the
-/// cones of one frame say counts little.
+/// The map moves little from frame to frame, and a boundary on a circle does not determine its rotation: so
+/// the cones of one frame have little weight.
 constexpr Stiffness kSteady{.place_m = 0.04, .yaw_rad = 0.004, .widening_m = 0.02};
 constexpr Stiffness kSettling{.place_m = 0.15, .yaw_rad = 0.015, .widening_m = 0.05};
 constexpr int kSettlingFrames = 15;  ///< after a search
-constexpr double kJumpGain = 2.0;    ///< of the score, by a move that is not small: the map has jumped
+constexpr double kJumpGain = 2.0;    ///< gain of the score by a large move: the map has jumped
 constexpr double kJumpGainShare = 0.15;
-constexpr int kJumpFrames = 2;  ///< that say so, one after the other
+constexpr int kJumpFrames = 2;  ///< in so many frames in a row
 constexpr int kMinMatched = 3;
-constexpr double kSurplusGain = 0.3;  ///< of one frame
+constexpr double kSurplusGain = 0.3;  ///< weight of one frame
 constexpr int kMinPlaces = 3;
-constexpr double kMinSupport = 0.8;     ///< surplus and share of places with a cone, together
+constexpr double kMinSupport = 0.8;     ///< least sum of surplus and share of places with a cone
 constexpr double kMaxOffRoute_m = 4.0;  ///< a car farther away does not drive this course
-constexpr double kSearchAgain_s = 0.3;  ///< without support
+constexpr double kSearchAgain_s = 0.3;  ///< after so long without support, search again
 constexpr std::size_t kMaxViews = 8;    ///< remembered while searching
 constexpr std::size_t kMinDrawnTogether = 6;
 

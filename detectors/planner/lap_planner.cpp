@@ -20,7 +20,7 @@ namespace conelane {
 namespace {
 
 void validate(const PlannerOptions& options) {
-    if (options.laps && *options.laps < 1) throw InvalidInput("laps", "is not at least 1");
+    if (options.laps && *options.laps < 1) throw InvalidInput("laps", "must be at least 1");
     validate_shared(options);
 }
 
@@ -86,10 +86,10 @@ void LapPlanner::move_along(const RigidShift& shift) {
 }
 
 Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
-    static_cast<void>(checked_scene(frame, limits));  // refuses what is not valid
+    static_cast<void>(checked_scene(frame, limits));  // throws if the frame or a limit is invalid
     if (time_s_ && frame.time_s <= *time_s_) {
-        // The same frame has the same answer; an older one, or one of a clock that stands still, says
-        // nothing that can be trusted.
+        // The same frame has the same answer. An older frame, or one of a clock that stands still, cannot be
+        // trusted.
         Plan plan = last_;
         const bool is_same = frame.time_s == *time_s_ && frame.pose.position == pose_.position &&
                              frame.pose.yaw_rad == pose_.yaw_rad;
@@ -110,7 +110,7 @@ Plan LapPlanner::update(const Frame& frame, const DetectionLimits& limits) {
     plan.answer = named_as_given(std::move(plan.answer));
     if (fresh) {
         *fresh = steadied(*fresh, left, options_.drivable.step_m);
-        // A lane that says little must not make the planner forget what it knew: the next frame could then
+        // An uncertain lane must not make the planner forget what it knew, because the next frame could then
         // lead anywhere.
         if (fresh->length_m < choice_settings_.short_m) {
             *fresh = extended(*fresh, left, options_.drivable.step_m);
@@ -148,9 +148,9 @@ std::optional<DrivableLane> LapPlanner::fresh_lane(const LaneAnswer& answer, con
     return begun_at_car(lane, scene.pose, left.points.empty() ? nullptr : &left, step_m);
 }
 
-/// The lane of a frame: that of the detector's answer where it goes on with the lane driven by or outweighs
-/// it, else that of the most probable candidate that goes on with it. Nothing where there is none. In later
-/// laps the course known from the lap before stands for the lane driven by, until it is outweighed.
+/// The lane of a frame: the detector's answer if it continues the lane driven so far or outweighs it, else
+/// the most probable candidate that continues it; nothing without one. In later laps, the course known from
+/// the lap before replaces the lane driven so far, until it is outweighed.
 std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, const Scene& scene,
                                                     const DrivableLane& left) {
     std::optional<DrivableLane> fresh = fresh_lane(answer, scene, left);

@@ -20,7 +20,7 @@ namespace {
 using Kind = SearchVerdict::Kind;
 using Part = SearchCertificate::Part;
 
-/// Objectives are claimed as sums of doubles.
+/// Tolerance for objectives, which are sums of doubles.
 constexpr double kAgreement = 1e-9;
 
 Exact from_units(SearchCertificate::Units units) {
@@ -90,7 +90,7 @@ class Verification {
         }
         return sum;
     }
-    /// A turn is there once in each direction; the one from the edge of lower number counts.
+    /// Each turn is stored in both directions; the one from the edge of lower number counts.
     [[nodiscard]] Exact turn_in(const LaneGraph& graph, std::size_t arc,
                                 const ExactScene::Succession& next) const {
         const bool counts = arc / 2 < next.arc / 2 &&
@@ -98,7 +98,7 @@ class Verification {
         return counts ? next.cost : Exact(0);
     }
 
-    /// Every kind of pair has its part.
+    /// Every kind of pair must have a part.
     void check_parts() {
         if (std::isinf(certificate_.bound)) {
             limit_ = exact_.cost_limit();
@@ -119,7 +119,7 @@ class Verification {
         }
     }
 
-    /// The legs of a kind of pairs; the first index of each is the leg's.
+    /// The legs of one kind of pairs; the first index of each member is the leg's.
     [[nodiscard]] LegKinds kinds_of(std::optional<std::size_t> far_start) const {
         const std::size_t count = scene_.cones.size();
         LegKinds kinds;
@@ -174,7 +174,7 @@ class Verification {
         }
     }
 
-    /// A sentence on what makes the part no set of multipliers; empty where nothing does.
+    /// Why the part is no valid set of multipliers, in a sentence; empty if it is valid.
     [[nodiscard]] std::string wrong_with(const Part& part) const {
         for (const std::vector<Edge>& clique : part.cliques) {
             for (std::size_t k = 0; k < clique.size(); ++k) {

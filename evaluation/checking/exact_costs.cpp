@@ -13,7 +13,7 @@ namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
 
-/// Pairs of edges that are farther apart than d_min by this need no look.
+/// Pairs of edges whose distance exceeds d_min by more than this are not tested.
 constexpr double kSlack_m = 1e-3;
 
 Real square(const Real& value) {
@@ -23,7 +23,7 @@ Real fourth(const Real& value) {
     return square(square(value));
 }
 
-/// One unit less than rounded down: what 50 digits are off by is far below it.
+/// One unit below the rounded-down value: the error of 50 digits is far smaller.
 Exact rounded_down(const Real& value) {
     return Exact(boost::multiprecision::floor(ldexp(value, kExactFractionBits))) - 1;
 }
@@ -103,7 +103,7 @@ class Builder {
             result_.edge_cost.push_back(rounded_down(edge_cost(e)));
     }
 
-    /// (29) without its turns and ends.
+    /// (29) without the costs of turns and ends.
     [[nodiscard]] Real edge_cost(std::size_t e) const {
         const Edge& edge = result_.edges[e];
         const Real car_distance = std::max(middles_[e].length(), Real(0.5));
@@ -141,8 +141,8 @@ class Builder {
         return best;
     }
 
-    /// The checker says on which side the edge is: there it has a fault if all cones have the other side's
-    /// color.
+    /// The checker decides on which side the edge is: if all cones have the color of one side, edges on the
+    /// other side have a fault.
     [[nodiscard]] Real color_faults(const Edge& edge) const {
         RldParameters colors = p_;
         colors.w_s = colors.w_t = colors.w_p = colors.w_b = colors.w_u = colors.w_v = colors.w_n = 0.0;
@@ -214,7 +214,7 @@ class Builder {
 
     void find_ends() {
         const std::size_t count = scene_.cones.size();
-        // Within 1e-9 of a limit is within it, as for the checker.
+        // A value within 1e-9 of a limit is within it, as for the checker.
         const Real tie("1e-9");
         for (std::size_t cone = 0; cone < count; ++cone) {
             const Vector place = from_car(cone);
@@ -238,7 +238,7 @@ class Builder {
     const Scene& scene_;
     const RldParameters& p_;
     RldParameters without_costs_;
-    Scene all_blue_;  ///< where colors count; the scene with this color alone
+    Scene all_blue_;  ///< the scene with this color alone, if colors count
     Scene all_yellow_;
     std::optional<LearnedReference<Real>> learned_;
     Real cos_;

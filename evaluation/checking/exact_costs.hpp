@@ -37,7 +37,7 @@ struct ExactScene {
     std::vector<std::vector<Succession>> successions;  ///< by arc
     std::vector<Exact> end_cost;                       ///< by cone: the cost if a path ends there
     std::vector<bool> near;
-    std::vector<std::vector<bool>> partners;  ///< by two far cones: within d_max of each other (17)
+    std::vector<std::vector<bool>> partners;  ///< by pair of far cones: within d_max of each other (17)
 
     [[nodiscard]] std::size_t tail(std::size_t arc) const {
         return arc % 2 == 0 ? edges[arc / 2].i : edges[arc / 2].j;
@@ -47,7 +47,7 @@ struct ExactScene {
     }
     /// A lower bound of the cost of an edge that may be part of a lane graph.
     [[nodiscard]] std::optional<std::size_t> find(const Edge& edge) const;
-    /// More than any lane graph costs.
+    /// An upper bound of the cost of any lane graph.
     [[nodiscard]] Exact cost_limit() const;
 };
 

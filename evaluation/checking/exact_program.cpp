@@ -16,7 +16,7 @@ double magnitude(const Rational& value) {
     return Rational(abs(value)).convert_to<double>();
 }
 
-/// How far the value is outside of its bounds, an absent one being kInfinity.
+/// By how much the value is outside its bounds; kInfinity stands for an absent bound.
 double outside(const Rational& value, double lower, double upper) {
     if (lower > -kInfinity && value < Rational(lower)) return magnitude(Rational(lower) - value);
     if (upper < kInfinity && value > Rational(upper)) return magnitude(value - Rational(upper));

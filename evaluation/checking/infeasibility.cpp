@@ -19,10 +19,10 @@ namespace {
 
 using Kind = InfeasibilityVerdict::Kind;
 
-/// What the search by the checker alone has not decided by then takes it too long to wait for.
+/// Limit of the search by the checker alone, which may take too long [ms].
 constexpr double kOwnSearch_ms = 5'000.0;
 
-/// Multipliers are for the pairing near_far, and colors change costs alone.
+/// Multipliers exist only for the pairing near_far; colors change costs only, so they are switched off.
 bool multipliers_prove_it(const Scene& scene, RldParameters parameters, double time_limit_ms) {
     if (parameters.pairing != Pairing::near_far) return false;
     parameters.w_color = 0.0;
@@ -31,7 +31,7 @@ bool multipliers_prove_it(const Scene& scene, RldParameters parameters, double t
     return verify_bound(scene, parameters, certificate).violations.empty();
 }
 
-/// An exact solver of any size of problem that is not the claimant; the pair search first, as the fastest.
+/// An exact solver for problems of any size that is not the claimant; the pair search first, as the fastest.
 const RldSolverEntry* other_solver(std::string_view claimant) {
     const RldSolverEntry* const pair_search = find_rld_solver("path-pair");
     if (pair_search != nullptr && claimant != pair_search->name) return pair_search;

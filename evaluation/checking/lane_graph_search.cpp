@@ -13,11 +13,11 @@
 namespace conelane {
 namespace {
 
-/// The search may try what the checker then refuses, but not leave out what it accepts.
+/// The search may try what the checker then rejects, but must not leave out what the checker accepts.
 constexpr double kSlack_m = 1e-6;
 constexpr std::uint64_t kStepsBetweenLooksAtTheClock = 1024;
 
-/// Costs say nothing about whether there is a lane graph, and some take long to compute.
+/// Costs do not decide whether there is a lane graph, and some take long to compute.
 RldParameters without_costs(RldParameters parameters) {
     parameters.w_v = 0.0;
     parameters.w_color = 0.0;
@@ -51,7 +51,7 @@ class LaneGraphSearch {
 
     [[nodiscard]] bool ended() const { return stopped_ || witness_.has_value(); }
 
-    /// Reads the clock now and then.
+    /// Reads the clock every few calls.
     void count_step() {
         if (++steps_ % kStepsBetweenLooksAtTheClock == 0) stopped_ = deadline_.passed();
     }
@@ -65,7 +65,7 @@ class LaneGraphSearch {
         return (scene_.cones[a].position - scene_.cones[b].position).norm();
     }
 
-    /// False where the time ran out.
+    /// False if the time ended.
     bool find_edges() {
         const std::size_t cones = scene_.cones.size();
         for (const Cone& cone : scene_.cones) {
@@ -105,7 +105,7 @@ class LaneGraphSearch {
         return ((set[edge / 64] >> (edge % 64)) & 1U) != 0;
     }
 
-    /// Puts the edge into the graph. False where the edges along the heading cannot become two any more.
+    /// Adds the edge to the graph. False if two edges along the heading are no longer possible.
     bool choose(std::size_t edge) {
         chosen_.push_back(edge);
         if (along_heading_[edge]) ++along_chosen_;
@@ -124,7 +124,7 @@ class LaneGraphSearch {
         chosen_.pop_back();
     }
 
-    /// Tries every way on from the last cone of a path, and to end the path after each step.
+    /// Tries every continuation from the last cone of a path, and after each step also the end of the path.
     void extend(std::size_t last, Path path) {
         for (const std::size_t edge : edges_at_[last]) {
             if (ended()) return;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kNoArc = std::numeric_limits<std::size_t>::max();
 
-/// mine = mine or theirs.
+/// Set union into the first set.
 void add(std::vector<std::uint64_t>& mine, const std::vector<std::uint64_t>& theirs) {
     for (std::size_t w = 0; w < mine.size(); ++w) mine[w] |= theirs[w];
 }
@@ -42,7 +42,7 @@ PairEnumeration::Outcome PairEnumeration::run(std::int64_t& steps_left) {
     return enumerate(steps_left);
 }
 
-/// What an arc excludes for all that comes after it, in either leg: its edge, those that exclude it, its
+/// What an arc excludes for all later arcs of both legs: its edge, the edges incompatible with it, and its
 /// cones.
 void PairEnumeration::find_taken() {
     const std::size_t edges = scene_.edges.size();
@@ -81,7 +81,7 @@ Exact PairEnumeration::start_cost(const Frontier& frontier) const {
            *bounds_.start(kinds_.other(frontier.kind), frontier.waiting);
 }
 
-/// Whether the frontier ends both legs by one more step of no cost but the moving leg's end.
+/// Whether one more step ends both legs, at no cost but that of the moving leg's end.
 bool PairEnumeration::is_last(const Frontier& frontier) const {
     if (!frontier.ended || !bounds_.end(frontier.kind, frontier.moving)) return false;
     const std::size_t one = scene_.head(graph_.arc[frontier.moving]);
@@ -106,14 +106,14 @@ void PairEnumeration::for_each_step(const Frontier& frontier, const Visit& visit
     if (end) visit(Frontier{frontier.waiting, frontier.moving, other, true}, kNoArc, *end, *end);
 }
 
-/// By the cheapest ways on of single legs.
+/// A lower bound from the cheapest continuations of single legs.
 bool PairEnumeration::may_be_below(const Frontier& frontier, const Exact& reduced) const {
     WalkCost cost = sum(WalkCost(reduced), leg_onward_[frontier.kind][frontier.moving]);
     if (!frontier.ended) cost = sum(cost, leg_onward_[kinds_.other(frontier.kind)][frontier.waiting]);
     return cost && *cost < most_;
 }
 
-/// Frontiers that a pair below the limit may pass, each with its cheapest walk. False where they are too
+/// Frontiers that a pair below the limit may pass, each with its cheapest walk. False if there are too
 /// many.
 bool PairEnumeration::find_frontiers(std::int64_t& steps_left) {
     std::map<Frontier, Exact> forward;
@@ -310,7 +310,7 @@ PairEnumeration::Outcome PairEnumeration::enumerate(std::int64_t& steps_left) {
     return Outcome::none_below;
 }
 
-/// Goes on with the labels of a frontier that no other one dominates.
+/// Extends the labels of a frontier that no other label dominates.
 bool PairEnumeration::settle(std::size_t frontier, std::int64_t& steps_left) {
     std::vector<Label> labels = std::exchange(waiting_[frontier], {});
     std::ranges::stable_sort(labels, {}, &Label::cost);

@@ -12,11 +12,11 @@
 
 namespace conelane {
 
-/// All pairs of legs below a limit, both legs abreast. A frontier is the pair of their last arcs; of the two,
-/// the one that stands earlier in the graph moves, and once its leg has ended the other one. So every pair is
-/// one walk from frontier to frontier. Beginnings of pairs are labels at frontiers: a label is cut off by its
-/// cost with multipliers and the cheapest walk of frontiers on, and dropped where another at its frontier
-/// costs no more and excludes nothing that this one leaves to any walk on.
+/// All pairs of legs below a limit, both legs abreast. A frontier is the pair of their last arcs. The arc
+/// that is earlier in the graph moves; once its leg has ended, the other one moves. So every pair is one walk
+/// from frontier to frontier. Beginnings of pairs are labels at frontiers. A label is dropped if its cost
+/// with multipliers plus the cheapest continuation reaches the limit, or if another label there costs no more
+/// and excludes nothing that this label leaves to any continuation.
 class PairEnumeration {
   public:
     /// Precondition: the bounds were found on the graph, and no walk gains from a cycle.
@@ -24,7 +24,7 @@ class PairEnumeration {
                     const WalkBounds& bounds, const Exact& limit);
 
     enum class Outcome { none_below, found_one, too_many_steps };
-    /// A step is a frontier that is extended or a label that is looked at; their number is taken off
+    /// A step is a frontier that is extended or a label that is looked at; steps are subtracted from
     /// `steps_left`.
     Outcome run(std::int64_t& steps_left);
 
@@ -39,7 +39,7 @@ class PairEnumeration {
     };
     struct Step {
         std::size_t to;
-        std::size_t arc;  ///< kNoArc where the leg ends
+        std::size_t arc;  ///< kNoArc if the leg ends
         Exact cost;       ///< without multipliers
         Exact reduced;
     };

@@ -48,12 +48,12 @@ using WalkCost = std::optional<Exact>;
 [[nodiscard]] inline WalkCost sum(const WalkCost& a, const WalkCost& b) {
     return b ? sum(a, *b) : std::nullopt;
 }
-/// Whether the first one is cheaper.
+/// Whether the first walk is cheaper.
 [[nodiscard]] inline bool cheaper(const WalkCost& a, const WalkCost& b) {
     return a && (!b || *a < *b);
 }
 
-/// Cheapest walks, by the rounds of Bellman and Ford.
+/// Cheapest walks, by Bellman-Ford rounds.
 class WalkBounds {
   public:
     WalkBounds(const ExactScene& scene, const LegKinds& kinds, WalkPrices prices);
@@ -67,11 +67,11 @@ class WalkBounds {
     [[nodiscard]] WalkGraph below(const WalkGraph& graph, const Exact& limit) const;
 
     [[nodiscard]] const Exact& offset() const { return prices_.offset; }
-    /// By place: with the multiplier of the arc's head.
+    /// By place: the cost with the multiplier of the arc's head.
     [[nodiscard]] const Exact& reduced(std::size_t place) const { return reduced_[place]; }
-    /// Of a walk that begins with the arc, the arc included.
+    /// The cost of beginning a walk with the arc, the arc included.
     [[nodiscard]] WalkCost start(std::size_t kind, std::size_t place) const;
-    /// What ending a leg with the arc costs.
+    /// The cost of ending a leg with the arc.
     [[nodiscard]] WalkCost end(std::size_t kind, std::size_t place) const;
     /// Cheapest continuation from the arc to an end, for any other leg.
     [[nodiscard]] std::vector<WalkCost> onward(std::size_t kind) const;

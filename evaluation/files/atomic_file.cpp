@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Goes before the number of the process and that of the attempt.
+/// Prefix of temporary names; the number of the process and of the attempt follow.
 const std::string kTemporary = ".tmp";
 
-/// Open descriptors of the process, whatever they lead to: renaming over what a shell redirected them to
-/// would take it from under the other writers.
+/// Open descriptors of the process: renaming over a file to which a shell has redirected them would take the
+/// file away from the other writers.
 bool is_open_descriptor(const fs::path& target) {
     const std::string path = target.lexically_normal().string();
     constexpr std::array<std::string_view, 2> kNames{"/dev/stdout", "/dev/stderr"};
@@ -36,7 +36,7 @@ bool is_open_descriptor(const fs::path& target) {
     throw InputError(target, 0, "", "cannot be written: " + std::generic_category().message(error));
 }
 
-/// A name beside `place` that no other process takes.
+/// A name beside `place` that no other process uses.
 fs::path temporary_name(const fs::path& place, int attempt) {
     fs::path name = place;
     name += kTemporary + std::to_string(::getpid()) + "_" + std::to_string(attempt);
@@ -56,8 +56,8 @@ fs::path create_temporary(const fs::path& place, const fs::path& target) {
     }
 }
 
-/// Keeps the file that stands at `place` under another name too; no name where there is none, or where the
-/// file system has no hard links.
+/// Keeps the file at `place` under a second name; no name if there is no file, or if the file system has no
+/// hard links.
 fs::path kept_aside(const fs::path& place) {
     for (int attempt = 0;; ++attempt) {
         fs::path name = temporary_name(place, attempt);
@@ -66,7 +66,7 @@ fs::path kept_aside(const fs::path& place) {
     }
 }
 
-/// A file that has its name already, and what it replaced.
+/// A file that already has its name, and what it replaced.
 struct Renamed {
     fs::path place;
     fs::path aside;

@@ -17,17 +17,17 @@ struct DrivableRecord {
     DrivableLane lane;
 };
 
-/// One JSON object a line, with all that a DrivableLane holds; without points where it has none. `inferred`,
-/// "left" or "right", is there where that boundary is. Throws
-/// InputError where the file cannot be written; then an old file stays as it was. So do the other writers.
+/// One JSON object a line, with all members of a DrivableLane; without points if it has none. `inferred`,
+/// "left" or "right", is present if that boundary is inferred. Throws InputError if the file cannot be
+/// written; an old file then stays unchanged. The other writers do the same.
 void write_drivable_lanes(const std::filesystem::path& file, std::span<const DrivableRecord> records);
 
 /// CSV as in the TUM racetrack database: a comment `# x_m,y_m,w_tr_right_m,w_tr_left_m`, then a point a line.
 /// The last point of a closed lane is followed by the first one, which is not repeated.
 void write_tum_csv(const std::filesystem::path& file, const DrivableLane& lane);
 
-/// CSV of the M x 4 array that ft-fsd-path-planning gives: a comment `# s_m,x_m,y_m,curvature_1pm`, then a
-/// point a line.
+/// CSV of the M x 4 array that ft-fsd-path-planning returns: a comment `# s_m,x_m,y_m,curvature_1pm`, then
+/// one point a line.
 void write_ft_fsd_csv(const std::filesystem::path& file, const DrivableLane& lane);
 
 }  // namespace conelane

@@ -9,7 +9,7 @@
 namespace conelane {
 namespace {
 
-/// For deflateInit2: the largest window, with the header and the check sum of gzip.
+/// For deflateInit2: the largest window, with gzip's header and checksum.
 constexpr int kGzipWindow = 15 + 16;
 constexpr int kMemoryLevel = 8;
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
@@ -29,7 +29,7 @@ std::string gzipped(std::string_view text) {
         if (stream.avail_in == 0) {
             input = text.substr(taken, kBlock);
             taken += input.size();
-            // zlib takes bytes that it does not write to.
+            // zlib's input pointer is not const, but zlib does not write to it.
             stream.next_in = reinterpret_cast<Bytef*>(input.data());
             stream.avail_in = static_cast<uInt>(input.size());
         }

@@ -17,18 +17,18 @@ struct Registry {
     std::list<std::function<void()>> to_clear;
 };
 
-/// Never destroyed: the waiting thread may use it while the program ends.
+/// Never destroyed: the waiting thread may still use it at the end of the program.
 Registry& registry() {
     static Registry& the_one = *new Registry;
     return the_one;
 }
 
 [[noreturn]] void end_by(int signal) {
-    // Held to the end: nothing that was cleared away can be made again.
+    // Held to the end, so that nothing that was cleaned up can be created again.
     registry().mutex.lock();
-    // The last one first, as destructors: a program that was started ends before its folder goes.
+    // Last one first, like destructors: a program that was started ends before its folder is removed.
     for (auto clear = registry().to_clear.rbegin(); clear != registry().to_clear.rend(); ++clear) (*clear)();
-    // A progress bar may stand in the line.
+    // A progress bar may be in the line.
     const std::string line =
         std::string(isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") + "conelane: interrupted\n";
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());

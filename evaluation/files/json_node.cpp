@@ -22,8 +22,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Builds the value that a text holds. Of a key that an object has twice nlohmann's own parser keeps the last
-/// value in silence; here reading ends at the second.
+/// Builds the value of a text. If an object has a key twice, nlohmann's own parser silently keeps the last
+/// value; here, reading ends at the second one.
 class ValueBuilder : public nlohmann::json_sax<json> {
   public:
     bool null() override { return put(nullptr); }
@@ -72,11 +72,11 @@ class ValueBuilder : public nlohmann::json_sax<json> {
         return true;
     }
 
-    std::vector<json*> open_;  ///< the arrays and objects around what comes next
-    json* member_ = nullptr;   ///< of the innermost one, where that is an object
+    std::vector<json*> open_;  ///< the arrays and objects around the next value
+    json* member_ = nullptr;   ///< the innermost one's member, if that is an object
 };
 
-/// Walks through JSON up to the first key that its object has already.
+/// Reads JSON up to the first key that its object already has.
 class DuplicateFinder : public nlohmann::json_sax<json> {
   public:
     explicit DuplicateFinder(std::string_view text) : stream_(std::string(text)) {
@@ -96,7 +96,7 @@ class DuplicateFinder : public nlohmann::json_sax<json> {
     bool key(string_t& name) override {
         open_.back().key = name;
         if (open_.back().keys.insert(name).second) return true;
-        // The stream was read to the end of this key and no further.
+        // The stream was read up to this key.
         position_ = static_cast<std::size_t>(stream_.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in));
         return false;
     }
@@ -146,7 +146,7 @@ class DuplicateFinder : public nlohmann::json_sax<json> {
     std::size_t position_ = 0;
 };
 
-/// Walks through JSON only to see where it goes wrong.
+/// Reads JSON only to find its first error.
 class ErrorFinder : public nlohmann::json_sax<json> {
   public:
     bool null() override { return true; }
@@ -172,11 +172,11 @@ class ErrorFinder : public nlohmann::json_sax<json> {
     }
 
     std::string last_key;
-    std::size_t characters_read = 0;  ///< up to and with the first that does not fit; beyond the end if none
+    std::size_t characters_read = 0;  ///< with the first that does not fit; beyond the end if none
     bool overflow = false;            ///< a number beyond the range of double
 };
 
-/// Whether the word around `position` spells a number that JSON does not have.
+/// Whether the word around `position` is a number that JSON does not have, such as NaN.
 bool spells_no_finite_number(std::string_view text, std::size_t position) {
     const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
     std::size_t begin = position;
@@ -188,7 +188,7 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
     return word == "nan" || word == "inf" || word == "infinity";
 }
 
-/// `first_line`: the number that the text's first line has in the file.
+/// `first_line`: the number of the text's first line in the file.
 [[noreturn]] void fail_on_invalid_json(std::string_view text, const std::filesystem::path& file,
                                        std::size_t first_line) {
     ErrorFinder finder;
@@ -218,7 +218,7 @@ bool spells_no_finite_number(std::string_view text, std::size_t position) {
                      "is there twice");
 }
 
-/// Throws InputError where the text is not one JSON value, or an object of it has a key twice.
+/// Throws InputError if the text is not one JSON value, or if an object in it has a key twice.
 json parse(std::string_view text, const std::filesystem::path& file, std::size_t first_line) {
     ValueBuilder builder;
     if (json::sax_parse(text, &builder)) return std::move(builder.built);

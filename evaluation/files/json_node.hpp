@@ -1,4 +1,4 @@
-// Private to the readers and writers: the only header that includes all of nlohmann's.
+// Private to readers and writers: the only header that includes all of nlohmann-json.
 #pragma once
 
 #include "conelane/invalid_input.hpp"

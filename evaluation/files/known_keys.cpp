@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxDistance = 2;
 
-/// Letters to change, insert or leave out until both are the same (Levenshtein), capitals as small ones.
+/// Levenshtein distance without case: the number of letters to change, insert or leave out.
 std::size_t distance(std::string_view a, std::string_view b) {
     const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
     std::vector<std::size_t> row(b.size() + 1);
@@ -35,7 +35,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 std::string_view closest_name(std::string_view misspelt, std::span<const std::string_view> names) {
     std::string_view closest;
-    // A short name has none near: every other one is two letters away.
+    // A short name has no similar one: every other short name is two letters away.
     std::size_t least = std::min(kMaxDistance, misspelt.size() / 2) + 1;
     for (const std::string_view name : names) {
         if (misspelt.size() > name.size() + kMaxDistance) continue;

@@ -27,29 +27,29 @@ struct LaneRecord {
     double latency_ms = 0.0;             ///< from the scene in memory to the lane in memory
     std::optional<std::size_t> nearest;  ///< size of the cone set the detector was given; absent: all cones
     bool checked = false;                ///< the independent checker of the RLD model accepted the lane
-    std::size_t line = 0;                ///< in the file that was read; 0: none was
-    /// Boundaries that are positions instead of cones; then `answer.lane` names no cone, but says whether
-    /// they are closed.
+    std::size_t line = 0;                ///< in the file that was read; 0 without a file
+    /// Boundaries as positions instead of cones. `answer.lane` then names no cone, but its `closed` is
+    /// valid.
     std::optional<BoundaryPoints> points = {};
-    std::vector<Point> centre_line = {};       ///< of an answer that has no boundaries, from the car outward
-    std::optional<double> self_timed_ms = {};  ///< what a program from outside says that it took
+    std::vector<Point> centre_line = {};       ///< of an answer without boundaries, from the car outward
+    std::optional<double> self_timed_ms = {};  ///< the time that a program from outside reports
 };
 
-/// Records in the order of the file, which may hold none. Throws InputError naming file, line and key: beside
-/// what is no such JSON, where a status other than found comes with cones or a detector answers a scene twice
-/// with the same cone set. An absent `bound` beside an `objective` is read as minus infinity.
+/// Records in the order of the file, which may be empty. Throws InputError naming file, line and key: for
+/// invalid JSON, for cones with a status other than found, and for a second answer of a detector to a scene
+/// with the same cone set. If `objective` is present and `bound` is absent, the bound is minus infinity.
 [[nodiscard]] std::vector<LaneRecord> read_lanes(const std::filesystem::path& file);
 
-/// What a detector from outside answered, in one line: as a line of a lanes file, but `method` and
-/// `latency_ms` may be missing, `left` and `right` too where nothing was found; what it claims of optimality,
-/// enumeration and cone set is not read. The latency becomes `self_timed_ms`. Throws InputError.
+/// The answer of a detector from outside in one line. It is like a line of a lanes file, but `method` and
+/// `latency_ms` may be absent, and so may `left` and `right` if nothing was found. What it claims about
+/// optimality, enumeration and cone set is ignored. The latency becomes `self_timed_ms`. Throws InputError.
 [[nodiscard]] LaneRecord read_foreign_lane(std::string_view line);
-/// The same for each line of a file, which may hold none, with `latency_ms`. Throws InputError naming file,
-/// line and key, so where a scene is answered twice.
+/// The same for each line of a file, which may be empty, with `latency_ms`. Throws InputError naming file,
+/// line and key, also for a second answer to a scene.
 [[nodiscard]] std::vector<LaneRecord> read_foreign_lanes(const std::filesystem::path& file);
 
-/// A bound of minus infinity (nothing proven) is left out. Throws InvalidInput where another number is not
-/// finite, InputError where the file cannot be written; then an old file stays as it was.
+/// A bound of minus infinity (nothing proven) is left out. Throws InvalidInput if another number is not
+/// finite, InputError if the file cannot be written; an old file then stays unchanged.
 void write_lanes(const std::filesystem::path& file, std::span<const LaneRecord> records);
 
 /// One record as its line, without newline. Throws InvalidInput like write_lanes.

@@ -46,7 +46,7 @@ void OutputStream::close() {
 }
 
 void OutputStream::require_written(const std::filesystem::path& file) const {
-    // `stream << other.rdbuf()` that ends early leaves the stream good.
+    // `stream << other.rdbuf()` does not report a failed write of its target.
     if (good() && buffer_.reason() == 0) return;
     std::string message = "cannot be written to its end";
     if (buffer_.reason() != 0) message += ": " + std::generic_category().message(buffer_.reason());

@@ -81,7 +81,7 @@ void write_rld_parameters(const std::filesystem::path& file, const RldParameters
         json[std::string(field.key)] = parameters.*field.value;
     }
     json["pairing"] = to_string(parameters.pairing);
-    // Extras stand in a file where they are on, or else not as they come.
+    // Extras are written only if they differ from their defaults.
     for (const RldParameterField& field : rld_extra_fields()) {
         if (parameters.*field.value != RldParameters{}.*field.value)
             json[std::string(field.key)] = parameters.*field.value;

@@ -16,8 +16,8 @@ namespace {
 constexpr std::array kPairings{Pairing::near_far, Pairing::paper};
 constexpr const char* kDefault = "default";
 
-/// FNV-1a of "key=value;" for each parameter of the paper, and for each extra that is not as it comes: a new
-/// extra changes no hash.
+/// FNV-1a of "key=value;" for each parameter of the paper, and for each extra that differs from its default:
+/// so a new extra changes no hash.
 std::string hash_of(const RldParameters& parameters) {
     std::uint64_t hash = 14695981039346656037U;
     const auto add = [&](std::string_view key, double value) {

@@ -37,7 +37,7 @@ std::vector<std::string> unique_names(const std::vector<Named>& all, const std::
     for (const Named& named : all) {
         names.push_back(to_string(named.label));
         if (!seen.insert(names.back()).second) {
-            throw InvalidInput(key, "two of the name " + names.back());
+            throw InvalidInput(key, "two have the name " + names.back());
         }
     }
     return names;
@@ -46,7 +46,7 @@ std::vector<std::string> unique_names(const std::vector<Named>& all, const std::
 struct Names {
     explicit Names(const BinaryProgram& program)
         : columns(unique_names(program.columns, "columns")), rows(unique_names(program.rows, "rows")) {
-        if (columns.empty()) throw InvalidInput("columns", "a file needs one at least");
+        if (columns.empty()) throw InvalidInput("columns", "a file needs at least one");
     }
     std::vector<std::string> columns;
     std::vector<std::string> rows;
@@ -58,7 +58,7 @@ char mps_sense(const BinaryProgram::RowBounds& row) {
     return is_finite_lower(row.lower) ? 'G' : 'N';
 }
 
-/// MPS wants the matrix by columns: (row, value) for each.
+/// MPS lists the matrix by columns: (row, value) for each.
 std::vector<std::vector<std::pair<std::size_t, double>>> entries_by_column(const BinaryProgram& program) {
     std::vector<std::vector<std::pair<std::size_t, double>>> entries(program.columns.size());
     for (std::size_t r = 0; r < program.rows.size(); ++r) {
@@ -118,7 +118,7 @@ void write_mps(std::ostream& out, const BinaryProgram& program, std::string_view
 
 namespace {
 
-/// Terms of one LP row, a line each few of them: some readers limit the length of a line.
+/// Terms of one LP row, a few in each line: some readers limit the length of a line.
 class LpTerms {
   public:
     explicit LpTerms(std::ostream& out) : out_(out) {}
@@ -177,7 +177,7 @@ void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view 
             out << ' ' << number(column.lower) << " <= " << names.columns[c] << " <= " << number(column.upper)
                 << '\n';
         } else if (column.lower != 0.0 || column.upper != 1.0) {
-            throw InvalidInput(names.columns[c], "is integer, yet not between 0 and 1");
+            throw InvalidInput(names.columns[c], "is an integer column, but not between 0 and 1");
         }
     }
     out << "Binaries\n";

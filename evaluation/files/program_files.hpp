@@ -14,7 +14,7 @@ void write_mps(std::ostream& out, const BinaryProgram& program, std::string_view
 
 /// CPLEX LP format; integer columns in the section Binaries. Columns appear in their order, also those
 /// without cost. A row with two finite bounds that differ becomes two, NAME_low and NAME_high. Throws like
-/// write_mps, and where an integer column is not between 0 and 1.
+/// write_mps, and if an integer column is not between 0 and 1.
 void write_lp(std::ostream& out, const BinaryProgram& program, std::string_view name);
 
 }  // namespace conelane

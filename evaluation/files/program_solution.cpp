@@ -22,7 +22,7 @@ std::optional<double> find_number(const std::string& text) {
     return value;
 }
 
-/// What lines =KEY= WORDS say, in a file of any format.
+/// The lines =KEY= WORDS of a file in any format.
 struct Remarks {
     std::optional<Status> status;
     std::optional<double> objective;
@@ -32,7 +32,7 @@ struct Remarks {
     std::string solver;
 };
 
-/// Lines of a solution file that are no remarks, for messages that name them.
+/// Lines of a solution file without remarks, with their numbers for messages.
 class Lines {
   public:
     explicit Lines(std::istream& in) : in_(in) {}
@@ -101,7 +101,7 @@ class Lines {
     Remarks remarks_;
 };
 
-/// A point that is written by the names of its columns, those at 0 left out.
+/// A point that lists columns by name, without those at 0.
 class NamedPoint {
   public:
     NamedPoint(const BinaryProgram& program, SolutionFile& solution) : solution_(solution) {
@@ -144,7 +144,7 @@ SolutionFile read_cbc(Lines& lines, const BinaryProgram& program) {
     if (head.starts_with("Optimal")) {
         solution.status = Status::optimal;
     } else if (head.starts_with("Stopped")) {
-        // "Stopped on time (no integer solution - continuous used)": the rest is not an incumbent.
+        // After "Stopped on time (no integer solution - continuous used)", the values are not an incumbent.
         if (head.find("no integer solution") != std::string::npos) return solution;
         solution.status = Status::feasible;
     } else {
@@ -209,9 +209,9 @@ SolutionFile read_glpsol(Lines& lines, const BinaryProgram& program) {
     lines.fail("the file ends before its line 'e o f'");
 }
 
-/// A line for the status of the model; below "# Primal solution values" whether there is a point, "Objective
-/// VALUE" and "# Columns COUNT" with a line "NAME VALUE" for each; then rows and duals, which are passed
-/// over.
+/// A line for the status of the model. Below "# Primal solution values": whether there is a point,
+/// "Objective VALUE" and "# Columns COUNT" with a line "NAME VALUE" for each. Rows and duals follow and are
+/// skipped.
 SolutionFile read_highs(Lines& lines, const BinaryProgram& program) {
     SolutionFile solution;
     if (!lines.next()) lines.fail("the file ends before the status of the model");
@@ -282,7 +282,7 @@ SolutionFile read_miplib(Lines& lines, const BinaryProgram& program) {
     bool has_point = false;
     do {
         const std::string& text = lines.text();
-        if (lines.is_blank() || text.starts_with('=')) continue;  // a remark, where there is no other line
+        if (lines.is_blank() || text.starts_with('=')) continue;  // only remarks so far
         if (!text.starts_with('#')) {
             point.set_line(lines);
             has_point = true;
@@ -291,7 +291,7 @@ SolutionFile read_miplib(Lines& lines, const BinaryProgram& program) {
         constexpr std::string_view kGurobi = "# Objective value =";
         if (text.starts_with(kGurobi)) solution.objective = find_number(text.substr(kGurobi.size()));
     } while (lines.next());
-    // Of a point at 0 there may be no line but its objective.
+    // A point at 0 may have no line except its objective.
     has_point = has_point || lines.remarks().objective || solution.objective;
     if (!has_point) solution.point.clear();
     solution.status = has_point ? Status::feasible : Status::unknown;
@@ -339,7 +339,7 @@ SolutionFile read_solution_file(std::istream& in, const BinaryProgram& program) 
     } else {
         lines.fail("is not the first line of a solution by CBC, GLPK, HiGHS or SCIP, or of a MIPLIB .sol");
     }
-    while (lines.next()) {  // what stands behind the last line that its format has
+    while (lines.next()) {  // skips what follows the format's last line
     }
     if (remarks.status) solution.status = *remarks.status;
     if (remarks.objective) solution.objective = remarks.objective;

@@ -22,16 +22,15 @@ struct SolutionFile {
     std::string solver;               ///< name and version, as written
 };
 
-/// Reads a solution of the program in one of these formats, told by the first line that is not blank:
+/// Reads a solution of the program in one of these formats, recognised by the first line that is not blank:
 /// - CBC: `cbc FILE solve solution SOL`, "Optimal - objective value ...", then INDEX NAME VALUE ...;
 /// - GLPK: `glpsol --write SOL`, lines c, s, i, j, e; by column number, in the order of a file that write_mps
 ///   or write_lp made;
 /// - HiGHS: `highs --solution_file SOL FILE`, "Model status", its status a line later, then NAME VALUE below
 ///   "# Columns";
 /// - SCIP: `write solution SOL`, "solution status: ...", then NAME VALUE (obj:...);
-/// - MIPLIB and Gurobi: NAME VALUE, before it comments (#). Such a file says nothing of optimality: its
-/// status
-///   is feasible.
+/// - MIPLIB and Gurobi: NAME VALUE, before it comments (#).
+///   Such a file says nothing about optimality, so its status is feasible.
 ///
 /// Lines =KEY= VALUE may be anywhere: =obj= VALUE and =infeas= as in MIPLIB, and for what a format cannot
 /// express: =status= optimal|feasible|infeasible|unknown, which replaces the format's, =bound= VALUE, =nodes=

@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-extern const char* const kBuiltCommit;  // in a source file that the build writes
+extern const char* const kBuiltCommit;  // in a source file that the build generates
 
 namespace {
 

@@ -61,7 +61,7 @@ void require_known_features(const Json& names) {
     }
 }
 
-/// The double nearest to the shortest decimal that reads back as `value`, so that files stay short.
+/// The double nearest to the shortest decimal that reads back as the float `value`: this keeps files short.
 double shortest(float value) {
     std::array<char, 32> text{};
     const auto [end, error] = std::to_chars(text.data(), text.data() + text.size() - 1, value);
@@ -134,7 +134,7 @@ std::string rank_net_json(const RankNetWeights& weights, std::string_view traini
     file["hidden_bias"] = numbers(weights.hidden_bias);
     file["output"] = numbers(weights.output);
     file["output_bias"] = shortest(weights.output_bias);
-    // A line for each key and, of the nested ones, each of theirs.
+    // One line for each key, also of nested objects.
     std::string text = "{";
     const char* comma = "\n";
     for (const auto& [key, value] : file.items()) {

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 5> kStatuses{"optimal", "feasible", "infeasible", "stopped", "error"};
-/// How files of version 0.5 and before spell "stopped", whatever the limit was.
+/// The word for "stopped" in files of version 0.5 and earlier, for every limit.
 constexpr std::string_view kStopped = kStatuses[3];
 constexpr std::string_view kOldStopped = "time_limit";
 constexpr std::array kStopReasons{StopReason::time, StopReason::iterations, StopReason::memory};

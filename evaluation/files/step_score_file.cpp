@@ -21,7 +21,7 @@ const Json& member(const Json& object, const std::string& key, const std::string
 }
 
 Json parse_file(std::string_view json) {
-    constexpr int kDeepest = 100;  // `training` is written anew, which takes the stack's room for each level
+    constexpr int kDeepest = 100;  // deepest nesting in `training`, because writing it again is recursive
     const auto limit_depth = [](int depth, Json::parse_event_t /*event*/, const Json& /*value*/) {
         if (depth > kDeepest) throw InvalidInput("scores", "are nested too deeply");
         return true;

@@ -36,7 +36,7 @@ void close_if_open(int& descriptor) {
     descriptor = -1;
 }
 
-/// Both ends are closed in programs that are started.
+/// Programs that are started do not inherit the two ends.
 struct Pipe {
     Pipe() {
         if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(errno, "no pipe");
@@ -48,7 +48,7 @@ struct Pipe {
     Pipe(const Pipe&) = delete;
     Pipe& operator=(const Pipe&) = delete;
 
-    /// The end that this program keeps: it never blocks. The other end still does.
+    /// This program's end never blocks; the other end still does.
     int keep(std::size_t end) {
         const int kept = ends[end];
         ends[end] = -1;
@@ -59,8 +59,8 @@ struct Pipe {
     std::array<int, 2> ends{-1, -1};  ///< to read, to write
 };
 
-/// While it lives, writing to a pipe that nobody reads fails with EPIPE, and nothing else happens. Signals of
-/// other threads and the disposition of the process are not touched.
+/// During its lifetime, writing to a pipe without a reader only fails with EPIPE. Signals of other threads
+/// and the signal handling of the process stay unchanged.
 class WithoutBrokenPipeSignal {
   public:
     WithoutBrokenPipeSignal() {
@@ -83,7 +83,7 @@ class WithoutBrokenPipeSignal {
     sigset_t before_{};
 };
 
-/// The shell with these as its standard streams, in a group of its own, with no signal blocked.
+/// Starts the shell with these standard streams, in its own process group, with no signal blocked.
 pid_t start_shell(const std::string& command, int input, int output, int errors) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -148,7 +148,7 @@ void ChildProcess::write_pending() {
 
 namespace {
 
-/// Appends what is there to read; closes the descriptor at its end.
+/// Appends the available bytes; closes the descriptor at its end.
 void read_available(int& descriptor, std::string& text, std::size_t at_most) {
     std::array<char, 1U << 16U> block;
     while (descriptor >= 0 && text.size() <= at_most) {
@@ -170,7 +170,7 @@ void ChildProcess::read_output() {
 }
 
 void ChildProcess::read_errors() {
-    // A block at a time: a program that writes without end must not keep this one here.
+    // One block at a time, because a program may write without end.
     read_available(errors_, error_tail_, 2 * kKeptErrors);
     if (error_tail_.size() > kKeptErrors) error_tail_.erase(0, error_tail_.size() - kKeptErrors);
 }
@@ -192,7 +192,7 @@ ChildProcess::Reply ChildProcess::ask(std::string_view text, double limit_ms) {
         if (input_ < 0 && !pending_.empty()) return {Outcome::closed_input, {}};
         const double left_ms = deadline.remaining_ms();
         if (left_ms <= 0.0) return {Outcome::late, {}};
-        // A negative descriptor is passed over.
+        // A negative descriptor is skipped.
         std::array<pollfd, 3> watched{pollfd{output_, POLLIN, 0}, pollfd{errors_, POLLIN, 0},
                                       pollfd{pending_.empty() ? -1 : input_, POLLOUT, 0}};
         if (::poll(watched.data(), watched.size(), static_cast<int>(std::ceil(left_ms))) < 0) {
@@ -217,7 +217,7 @@ std::string ChildProcess::reap() {
     const bool by_itself = has_exited();
     ::kill(-pid_, SIGKILL);
     int status = 0;
-    rusage usage{};  // of the shell, and of what it has waited for
+    rusage usage{};  // of the shell and of the processes that it has waited for
     while (::wait4(pid_, &status, 0, &usage) < 0 && errno == EINTR) {
     }
     constexpr std::size_t kKiB = 1024;
@@ -235,7 +235,7 @@ std::string ChildProcess::end(double patience_ms) {
     const Deadline deadline(patience_ms);
     while (!has_exited() && !deadline.passed()) {
         read_errors();
-        std::string last_output;  // read, so that the program is not held up
+        std::string last_output;  // read so that the program is not blocked
         read_available(output_, last_output, kMaxLine);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

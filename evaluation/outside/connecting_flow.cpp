@@ -23,7 +23,7 @@ std::int32_t label_index(std::size_t value) {
 }  // namespace
 
 void add_connecting_flow(BinaryProgram& program, const LaneGraphProblem& problem) {
-    // Of n cones the other path has two at least, so no path takes more than n - 2 cones, which take n - 3.
+    // The other path has at least two of the n cones, so a path has at most n - 2 cones, which take n - 3.
     const double most = std::max(1.0, static_cast<double>(problem.cone_count) - 3.0);
     std::vector<FlowEdge> edges;
     for (std::size_t c = 0; c < program.columns.size(); ++c) {
@@ -35,7 +35,7 @@ void add_connecting_flow(BinaryProgram& program, const LaneGraphProblem& problem
                          {}});
     }
     std::vector<std::vector<std::pair<std::size_t, int>>> at(
-        problem.cone_count);  // edge, 0 where it is its i
+        problem.cone_count);  // edge number; 0 if the cone is its i, else 1
     for (std::size_t e = 0; e < edges.size(); ++e) {
         FlowEdge& edge = edges[e];
         edge.flow = {
@@ -67,7 +67,7 @@ void add_connecting_flow(BinaryProgram& program, const LaneGraphProblem& problem
         if (source[cone] >= 0) rows.add(source[cone], 1.0);
         rows.end();
         if (source[cone] < 0) continue;
-        // s_i is 0 but where the degree is one: s_i <= most A_i, s_i <= most (2 - A_i).
+        // s_i is 0 unless the degree is one: s_i <= most A_i, s_i <= most (2 - A_i).
         for (const auto& [family, sign, upper] :
              {std::tuple{"source_in", -1.0, 0.0}, std::tuple{"source_end", 1.0, 2.0}}) {
             rows.begin({family, {label_index(cone)}}, -kInfinity, upper * most);

@@ -5,8 +5,8 @@
 
 namespace conelane {
 
-/// Completes the program of a problem: columns and rows of a flow replace the rows that are otherwise added
-/// on demand, no cycles (5) and the pairing, which are too many to write them all.
+/// Completes the program of a problem by the columns and rows of a flow. They replace the rows that are
+/// otherwise added on demand: no cycles (5) and the pairing, which are too many to write in full.
 ///
 /// Each cone of degree A_i takes A_i / 2 of a flow that runs along chosen edges (y_i_j, from cone i to cone
 /// j) and comes from the ends of paths (s_i); with the pairing near_far only from near ends. A cycle has no

@@ -10,10 +10,10 @@
 namespace conelane {
 
 /// The answers of a detector `lanes:NAME=FILE` to these scenes, in their order and under its name. A scene
-/// that the file does not answer gets an answer of status error, and counts with the limit of a program from
-/// outside; answers to other scenes are left out, as a shard has some of them only. Throws InputError naming
-/// file, line and key: where the file is no such JSON, answers a scene twice, names a cone that its scene has
-/// not, or answers none of these scenes.
+/// without an answer in the file gets status error and counts with the time limit of a program from outside.
+/// Answers to other scenes are ignored, because a shard has only some scenes. Throws InputError naming file,
+/// line and key: for invalid JSON, a scene answered twice, a cone that its scene does not have, or a file
+/// that answers none of these scenes.
 [[nodiscard]] std::vector<LaneRecord> read_finished_lanes(const OutsideDetector& detector,
                                                           std::span<const AnnotatedScene> scenes);
 

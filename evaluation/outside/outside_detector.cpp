@@ -26,7 +26,7 @@ constexpr std::string_view kLanes = "lanes:";
 constexpr std::string_view kSolver = "solver:";
 constexpr std::size_t kMaxName = 64;
 
-/// It becomes part of a file name.
+/// The name becomes part of a file name.
 bool is_name(std::string_view name) {
     return !name.empty() && name.size() <= kMaxName && name.front() != '.' &&
            std::ranges::all_of(name, [](char c) {
@@ -49,7 +49,7 @@ fs::path card_beside(const fs::path& file) {
     return file.parent_path() / (name + ".method.json");
 }
 
-/// Key of the source in a record.
+/// The key of the source in a record.
 const char* source_key(OutsideDetector::Kind kind) {
     switch (kind) {
         case OutsideDetector::Kind::program:
@@ -69,7 +69,7 @@ Formulation formulation_of(std::string_view name) {
     throw InvalidInput("solver", fmt::format("there is no formulation '{}': tight or paper", name));
 }
 
-/// NAME=SOURCE, of a solver also NAME/FORMULATION=SOURCE, behind a prefix that the message of an error shows.
+/// NAME=SOURCE, for a solver also NAME/FORMULATION=SOURCE. `prefix` is for error messages.
 OutsideDetector parse_named_source(std::string_view text, OutsideDetector::Kind kind,
                                    std::string_view prefix) {
     OutsideDetector detector;
@@ -185,7 +185,7 @@ std::vector<std::string> split_detectors(const std::vector<std::string>& texts) 
 }
 
 std::optional<fs::path> card_path(const OutsideDetector& detector) {
-    // A lanes file may lie in a path with blanks; a word of a command is taken without its quotes.
+    // The path of a lanes file may contain blanks; a word of a command is taken without its quotes.
     std::vector<std::string> files{detector.source};
     if (!detector.is_lanes_file()) {
         std::istringstream words(detector.source);
@@ -231,7 +231,7 @@ std::vector<OutsideDetector> outside_detectors_of_record(const std::string& run_
             if (const auto formulation = detector.find("formulation"))
                 outside.formulation = formulation_of(formulation->string());
             if (const auto card = detector.find("card")) outside.card = read_card(*card);
-            // A sweep has the same detector once for each size.
+            // A sweep lists the same detector once for each size.
             if (std::ranges::find(found, outside.name, &OutsideDetector::name) == found.end())
                 found.push_back(std::move(outside));
         }

@@ -34,7 +34,7 @@ struct OutsideDetector {
     std::string name;    ///< as tables show it
     std::string source;  ///< the command, or the file
     std::optional<DetectorCard> card;
-    /// Of a solver, where the text names one.
+    /// For a solver, if the text names one.
     std::optional<Formulation> formulation = {};
 
     [[nodiscard]] bool is_program() const { return kind == Kind::program; }
@@ -48,8 +48,8 @@ struct OutsideDetector {
 /// InputError if the card is wrong.
 [[nodiscard]] std::optional<OutsideDetector> parse_outside_detector(std::string_view text);
 
-/// Where only solvers are listed: the solver that `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND`
-/// names; nothing for other texts. Throws as parse_outside_detector does.
+/// For lists of solvers only: the solver of `exec:NAME=COMMAND` or `exec:NAME/FORMULATION=COMMAND`; nothing
+/// for other texts. Throws like parse_outside_detector.
 [[nodiscard]] std::optional<OutsideDetector> parse_outside_solver(std::string_view text);
 
 /// Methods as a user lists them: separated by commas, but `exec:` and `solver:` take the rest of their text,

@@ -59,7 +59,7 @@ void OutsideProgram::reset() {
     if (child_) child_->tell(kReset);
 }
 
-/// Starts the program and lets it answer once; what went wrong, or nothing.
+/// Starts the program and lets it answer once. Returns the failure in words, or nothing.
 std::string OutsideProgram::start(const Scene& scene) {
     try {
         child_ = std::make_unique<ChildProcess>(command_);
@@ -76,8 +76,8 @@ std::string OutsideProgram::start(const Scene& scene) {
     return "after its start: " + first.fault;
 }
 
-/// A program that failed is ended; one that answered wrongly too, since what it says next may be late for an
-/// earlier scene.
+/// A program that failed is ended. So is one that gave an invalid answer: its next line may be a late answer
+/// to an earlier scene.
 OutsideProgram::Attempt OutsideProgram::ask(const Scene& scene, double limit_ms) {
     Scene opaque = scene;
     opaque.id = std::to_string(++asked_);

@@ -60,7 +60,7 @@ class OutsideProgram {
     std::string command_;
     OutsideLimits limits_;
     std::unique_ptr<ChildProcess> child_;
-    std::int64_t asked_ = 0;  ///< the ids that the program sees are this running number
+    std::int64_t asked_ = 0;  ///< running number, used as the scene id that the program sees
     int failures_ = 0;        ///< since its last answer
     double lost_ms_ = 0.0;    ///< time lost by these failures
     std::string last_fault_;

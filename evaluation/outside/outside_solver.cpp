@@ -17,7 +17,7 @@ namespace {
 
 using Status = SolutionFile::Status;
 
-/// Solvers round to about 1e-6 and print fewer digits than they know.
+/// Solvers round to about 1e-6 and may print fewer digits.
 constexpr double kIntegrality = 1e-5;
 constexpr double kObjectiveTolerance = 1e-5;
 
@@ -25,7 +25,7 @@ double tolerance(double value) {
     return kObjectiveTolerance * std::max(1.0, std::abs(value));
 }
 
-/// The first integer column whose value is neither 0 nor 1, in words; empty where there is none.
+/// The first integer column whose value is neither 0 nor 1, in words; empty if there is none.
 std::string fraction_of(const BinaryProgram& program, std::span<const double> point) {
     for (std::size_t c = 0; c < program.columns.size(); ++c) {
         const BinaryProgram::Column& column = program.columns[c];
@@ -40,7 +40,7 @@ std::string fraction_of(const BinaryProgram& program, std::span<const double> po
 void add_rows(BinaryProgram& program, std::span<const ProgramRow> rows, int& count) {
     RowWriter writer(program);
     for (const ProgramRow& row : rows) {
-        // Rows of different rounds may have one name.
+        // Rows of different rounds may have the same name.
         writer.begin({"separated", {static_cast<std::int32_t>(count++)}}, row.lower, row.upper);
         for (const auto& [column, coefficient] : row.terms) writer.add(column, coefficient);
         writer.end();
@@ -53,7 +53,7 @@ void fail(RldReport& report, std::string message) {
     report.message = std::move(message);
 }
 
-/// An answer without a point: that nothing below the cutoff is left proves the start.
+/// For an answer without a point: if no point is below the cutoff, the start is optimal.
 void conclude_without_point(Status status, std::optional<double> cutoff, RldReport& report) {
     const bool has_start = report.lane_graph.has_value();
     if (status != Status::infeasible) {
@@ -112,7 +112,7 @@ SolverProgram::Answer OutsideSolver::ask(const BinaryProgram& program, const Sol
     return answer;
 }
 
-/// A lane graph in the report is the start: what is looked for is a better one.
+/// A lane graph in the report is the start: the solver looks for a better one.
 void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryProgram& program,
                                        const SolveLimits& limits, const Deadline& deadline,
                                        RldReport& report) {
@@ -129,8 +129,8 @@ void OutsideSolver::solve_and_separate(const LaneGraphProblem& problem, BinaryPr
         ++report.rounds;
         report.nodes += solution.nodes.value_or(0);
         if (!fault.empty()) return fail(report, fault);
-        // Rows only ever tighten the program: every round's bound holds for the problem. An optimum without a
-        // bound is its own; a cutoff that the program keeps ends what its bound says.
+        // Rows only tighten the program, so every round's bound holds for the problem. If an optimum comes
+        // without a bound, the objective is the bound. With a cutoff, the bound is at most the cutoff.
         std::optional<double> bound = solution.bound;
         if (!bound && solution.status == Status::optimal) bound = solution.objective;
         if (bound && question.cutoff) bound = std::min(*bound, *question.cutoff);

@@ -15,18 +15,18 @@ namespace conelane {
 
 struct OutsideSolverOptions {
     Formulation formulation = Formulation::tight;
-    /// Makes each program whole (add_connecting_flow) and asks once. Without, the rows that an answer
-    /// violates are added, and the program is asked again inside the time limit.
+    /// Makes each program complete (add_connecting_flow) and asks once. Otherwise the rows that an answer
+    /// violates are added, and the program is asked again within the time limit.
     bool all_rows = false;
     unsigned threads = 1;  ///< told to the program
     SolverPatience patience{};
 };
 
-/// A program from outside as an RLD solver. It is trusted in nothing: a point that is not integral or breaks
-/// a row, an objective that is not its point's, a bound above a known lane graph, a proof of none that the
-/// start refutes give status error, and so do a crash, a missed limit and nonsense. An optimum whose own
-/// bound leaves a larger gap than was asked for is a feasible lane graph. What only another solver can
-/// refute, a wrong optimum, is for the comparison to find.
+/// A program from outside as an RLD solver. Nothing that it says is trusted. Status error follows from a
+/// point that is not integral or violates a row, a wrong objective, a bound above a known lane graph, a proof
+/// of infeasibility that the start refutes, a crash, a missed limit and invalid output. An optimum with a gap
+/// above the requested one counts as feasible. A wrong optimum can only be found by comparison with another
+/// solver.
 class OutsideSolver : public RldSolver {
   public:
     /// Precondition: the detector has a command. Throws as SolverProgram does.
@@ -34,13 +34,13 @@ class OutsideSolver : public RldSolver {
 
     [[nodiscard]] EdgeExtent extent() const override { return parts(options_.formulation).extent; }
 
-    /// From here on rows and columns stand in an order drawn from the seed, which the program is told too; as
-    /// they are with 0, the default.
+    /// From here on, rows and columns are in an order drawn from the seed, which the program also gets. With
+    /// 0, the default, their order is unchanged.
     void set_seed(std::uint64_t seed) { seed_ = seed; }
 
-    /// What the program says of itself, of the last solve.
-    [[nodiscard]] const std::string& version() const { return version_; }  ///< empty where it says nothing
-    [[nodiscard]] std::optional<double> engine_ms() const { return engine_ms_; }  ///< all rounds together
+    /// The solver's name and version, as the program reports it for the last solve.
+    [[nodiscard]] const std::string& version() const { return version_; }  ///< empty if it reports none
+    [[nodiscard]] std::optional<double> engine_ms() const { return engine_ms_; }  ///< sum over all rounds
     /// Ends the program.
     void end() { program_.end(); }
     /// See SolverProgram::peak_bytes.

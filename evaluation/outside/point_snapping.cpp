@@ -16,7 +16,7 @@
 namespace conelane {
 namespace {
 
-/// The cones that the points stand for; nothing where one of them is at no cone.
+/// The cones that the points represent; nothing if a point is at no cone.
 std::optional<std::vector<ConeId>> cones_at(const std::vector<Point>& points, const Scene& scene) {
     std::vector<ConeId> ids;
     std::unordered_set<ConeId> taken;
@@ -61,7 +61,7 @@ struct Edge {
     bool of_left;
 };
 
-/// The edges of both boundaries that have a length.
+/// The edges of both boundaries with a positive length.
 std::vector<Edge> edges_of(const LaneRecord& record, const Scene& scene) {
     std::vector<Edge> edges;
     const auto add = [&edges](const std::vector<Point>& vertices, bool of_left) {

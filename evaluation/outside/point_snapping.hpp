@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxPoints = 1000;
 inline constexpr double kMaxCoordinate_m = 1e7;
 [[nodiscard]] std::string fault_of(const LaneRecord& record, const Scene& scene);
 
-/// Whether the edges of the boundaries cross more than kMaxMeetings times, without neighbours; empty if not.
-/// Such a tangle is not a lane, and its area takes minutes. Precondition: fault_of finds nothing.
+/// In words, if edges of the boundaries that are no neighbours cross more than kMaxMeetings times, else
+/// empty. Such a tangle is not a lane, and its area takes minutes. Precondition: fault_of finds nothing.
 inline constexpr std::size_t kMaxMeetings = 500;
 [[nodiscard]] std::string tangle_of(const LaneRecord& record, const Scene& scene);
 

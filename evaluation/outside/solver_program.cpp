@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kMaxSolutionBytes = std::uintmax_t{64} << 20U;
 constexpr double kNoCutoff = 1e300;
-constexpr double kNoLimit_ms = 1e9;  ///< as a number, since not every program reads "inf"
+constexpr double kNoLimit_ms = 1e9;  ///< a number, because not every program reads "inf"
 
-/// A new folder that only this process writes to.
+/// A new folder that no other process writes to.
 fs::path make_folder() {
     std::string name = (fs::temp_directory_path() / "conelane_solver_XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr)
@@ -37,7 +37,7 @@ fs::path make_folder() {
     return name;
 }
 
-/// It becomes a word of a shell command.
+/// The text becomes a word of a shell command.
 bool is_plain(const std::string& path) {
     return std::ranges::all_of(path, [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -72,8 +72,8 @@ std::string filled(std::string text, const std::vector<Placeholder>& values) {
     return text;
 }
 
-/// Refuses a word in braces, of letters and underscores alone, that is no placeholder: probably a misprint.
-/// `${NAME}` is the shell's.
+/// Rejects a word in braces, of letters and underscores only, that is not a placeholder: probably a misprint.
+/// `${NAME}` belongs to the shell.
 void require_known_placeholders(std::string_view command) {
     const std::vector<Placeholder> known = placeholders({}, "", "");
     for (std::size_t open = command.find('{'); open != std::string::npos;
@@ -105,10 +105,10 @@ nlohmann::ordered_json question_json(const SolverQuestion& question, const std::
     return json;
 }
 
-/// What a conversation's line says before the solution file does.
+/// Values in a line of a conversation, which come before those of the solution file.
 struct Told {
     std::optional<SolutionFile::Status> status;
-    std::string error;  ///< where its status is that
+    std::string error;  ///< if its status is error
 };
 
 Told read_line(const std::string& line, SolutionFile& told) {
@@ -190,7 +190,7 @@ void SolverProgram::end_child(double patience_ms, std::string& fault) {
     child_.reset();
 }
 
-/// Runs the command to its end; what it prints is dropped. What went wrong, or nothing.
+/// Runs the command to its end and drops its output. Returns the failure in words, or nothing.
 std::string SolverProgram::run_once(const SolverQuestion& question) {
     child_ = std::make_unique<ChildProcess>(
         filled(command_, placeholders(question, file(writes_lp_ ? ".lp" : ".mps"), file(".sol"))));
@@ -203,7 +203,7 @@ std::string SolverProgram::run_once(const SolverQuestion& question) {
         if (reply.outcome != ChildProcess::Outcome::closed_output) fault = fault_of(reply.outcome, wait_ms);
         break;
     }
-    // Its output may be closed a moment before its end.
+    // Its output may be closed shortly before it ends.
     const double patience_ms = fault.empty() ? std::max(0.0, deadline.remaining_ms()) : 0.0;
     const std::string how = child_->end(std::min(patience_ms, kNoLimit_ms));
     peak_bytes_ = std::max(peak_bytes_, child_->peak_bytes());
@@ -229,7 +229,7 @@ std::string SolverProgram::converse(const SolverQuestion& question, SolutionFile
     if (fault.empty()) {
         try {
             const Told said = read_line(reply.line, told);
-            if (!said.error.empty()) return said.error;  // it goes on, and so does the conversation
+            if (!said.error.empty()) return said.error;  // the conversation continues
             if (said.status) {
                 told.status = *said.status;
                 needs_no_file = told.status == SolutionFile::Status::infeasible ||

@@ -20,20 +20,20 @@ namespace conelane {
 struct SolverPatience {
     double late_ms = 1000.0;  ///< until it is killed
     double start_ms =
-        20000.0;  ///< more for the first answer of a program that stays: interpreters load packages
+        20000.0;  ///< added for the first answer of a program that stays: interpreters load packages
     double end_ms = 1000.0;  ///< from the end of its input to its own end
     /// After this many failures in a row, or failures of this duration, a program is not asked again.
     int failures = 10;
     double lost_ms = 60000.0;
 };
 
-/// What a solver's program gets beside the program.
+/// What a solver's program gets in addition to the program to solve.
 struct SolverQuestion {
     double time_limit_ms = std::numeric_limits<double>::infinity();
     double absolute_gap = 1e-9;
     unsigned threads = 1;
     std::uint64_t seed = 0;
-    std::optional<double> cutoff{};  ///< only points with a lower objective are of use
+    std::optional<double> cutoff{};  ///< only points with a lower objective are needed
 };
 
 /// A program of others that solves binary programs (docs/solvers-from-outside.md). COMMAND is run by
@@ -41,7 +41,7 @@ struct SolverQuestion {
 /// - where it has {mps} or {lp}, once for each program, with its placeholders replaced: {mps} or {lp} (the
 ///   program's file), {sol} (the solution file to write), {limit_s}, {limit_whole_s} (rounded up),
 ///   {limit_ms}, {gap}, {threads}, {seed}, {cutoff} (1e300 for none);
-/// - else it is started once and reads a JSON object a line: program, solution (files), time_limit_ms,
+/// - otherwise it is started once and reads one JSON object a line: program, solution (files), time_limit_ms,
 ///   absolute_gap, threads, seed, cutoff; it answers each by a line: an object with any of status (as in
 ///   =status=, or error), message, bound, nodes, ms and solver, which go before what the solution file says.
 ///

@@ -22,7 +22,7 @@ void read_color(const JsonNode& json, Cone& cone) {
             values[i] = list->element(i).number_in(0.0, 1.0);
             sum += values[i];
         }
-        constexpr double kOff = 1e-3;  // as validate(Scene)
+        constexpr double kOff = 1e-3;  // the same as in validate(Scene)
         if (std::abs(sum - 1.0) > kOff) list->fail("must add up to 1");
         cone.color_probabilities = ColorProbabilities{values[0], values[1], values[2], values[3], values[4]};
         cone.color = most_probable_color(*cone.color_probabilities);

@@ -16,19 +16,19 @@ namespace {
 constexpr std::int64_t kMinIdSpace = 10'000;
 constexpr std::int64_t kIdsPerCone = 128;
 
-/// A boundary's run in a scene, and whether nothing of the boundary is out of view.
+/// A boundary's run in a scene, and whether it shows the whole boundary.
 struct Run {
     std::vector<ConeId> ids;
     bool whole = true;
 };
 
-/// The run of seen cones from the first one at or past the car's foot point on the boundary; it goes on past
-/// missed cones and single ones that the map lacks, and ends before the first one out of view.
+/// The run of seen cones from the first one at or past the car's foot point on the boundary. It continues
+/// past missed cones and single cones that the map lacks, and ends before the first cone out of view.
 Run run_ahead(const Course& course, const std::vector<std::size_t>& side, const std::vector<Point>& polyline,
               const std::vector<Sight>& sights, const Point& car) {
     const PolylineFoot foot = foot_on_polyline(car, polyline, course.track.closed);
     const bool at_vertex = (foot.point - polyline[foot.segment]).norm() <= kTieTolerance;
-    // An open boundary of one cone has no next vertex; its only vertex is the foot.
+    // An open boundary of one cone has no next vertex, so its vertex is the foot.
     const std::size_t first = at_vertex ? foot.segment : foot.segment + 1;
     const std::size_t steps = course.track.closed ? side.size() : side.size() - first;
     Run run;
@@ -95,7 +95,7 @@ std::vector<Viewpoint> viewpoints_at(std::span<const Pose> poses) {
 std::vector<Viewpoint> viewpoints_along(const Track& track, double every_m) {
     if (track.frames.empty()) return viewpoints_at(centre_line_poses(boundaries(track), every_m));
     std::vector<Viewpoint> viewpoints;
-    double steps = 0.0;  // of every_m, to where the next frame is taken
+    double steps = 0.0;  // in units of every_m, to the place of the next frame
     for (const RunFrame& frame : track.frames) {
         if (frame.travelled_m < steps * every_m) continue;
         viewpoints.push_back({frame.pose, &frame});

@@ -10,7 +10,7 @@
 namespace conelane {
 namespace {
 
-/// Positive where the polygon is run through counter-clockwise.
+/// Positive if the polygon is counter-clockwise.
 double signed_area_m2(const std::vector<Point>& polygon) {
     double twice_m2 = 0.0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {

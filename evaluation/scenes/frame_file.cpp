@@ -34,7 +34,7 @@ Frame read_own_frame(const JsonNode& json) {
     return frame;
 }
 
-/// Frames one after the other, each with its time.
+/// Reads frames one after another, each with its time.
 class FrameReader {
   public:
     explicit FrameReader(double interval_s) : interval_s_(interval_s) {}

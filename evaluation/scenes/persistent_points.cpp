@@ -11,7 +11,7 @@
 namespace conelane {
 namespace {
 
-/// The mean of what the views that contain a point ask for; 0 where none does.
+/// Mean of the densities that the views containing a point want; 0 if no view contains it.
 double mean_expected_points(std::span<const PersistentView> views, const Point& point) {
     double sum = 0.0;
     std::size_t count = 0;
@@ -40,8 +40,8 @@ std::vector<Point> draw_persistent_points(std::span<const PersistentView> views,
     }
     if (!(max_points > 0.0)) return {};
 
-    // Thinning: as many points as the densest view asks for, all over the box; each stays with the share that
-    // its place asks for.
+    // Thinning: draws points over the whole box at the density of the densest view; each is kept with the
+    // probability that its place wants.
     lowest -= Point(radius_m, radius_m);
     highest += Point(radius_m, radius_m);
     const Point size = highest - lowest;

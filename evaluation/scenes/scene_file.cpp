@@ -30,7 +30,7 @@ Cone read_cone(const JsonNode& json) {
     return cone;
 }
 
-/// `unclaimed`: ids of the cones that stand in no run yet.
+/// `unclaimed`: ids of the cones that are in no run so far.
 std::vector<ConeId> read_run(const JsonNode& json, const std::unordered_set<ConeId>& cone_ids,
                              std::unordered_set<ConeId>& unclaimed) {
     std::vector<ConeId> run;

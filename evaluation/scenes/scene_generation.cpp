@@ -20,7 +20,7 @@ namespace conelane {
 namespace {
 
 constexpr double kMaxCoordinate_m = 1e8;
-/// Travel between the poses whose views decide where false positives persist.
+/// Travel between the poses whose views decide where persistent false positives are.
 constexpr double kLapStep_m = 1.1;
 
 void require_near_origin(const Point& position, const std::string& key) {
@@ -76,7 +76,7 @@ Lap lap_of(const Course& course, const SceneOptions& options, const std::vector<
            std::size_t lap) {
     const std::size_t rates = options.false_positive_rates.size();
     const std::size_t ranges = options.ranges_m.size();
-    const double rate = options.false_positive_rates[lap % rates] + 0.0;  // -0 counts as 0
+    const double rate = options.false_positive_rates[lap % rates] + 0.0;  // turns -0 into 0
     const double range_m = options.ranges_m[lap / rates % ranges];
     const Condition& condition = conditions[lap / rates / ranges];
     return {condition, rate, range_m, persistent_false_positives(course, options, condition, rate, range_m)};

@@ -22,7 +22,7 @@
 namespace conelane {
 namespace {
 
-/// The condition that needs no part of its own in the id of a scene.
+/// The condition that adds nothing to the id of a scene.
 constexpr std::string_view kUndisturbed = "paper";
 
 std::string rate_text(double rate) {
@@ -34,7 +34,7 @@ std::string rate_text(double rate) {
     return text;
 }
 
-/// One scene of a lap, and the steps from its pose to what the car sees.
+/// One scene of a lap: the steps from its pose to the cones that the car sees.
 class SceneMaker {
   public:
     SceneMaker(const Course& course, const SceneOptions& options, const Lap& lap, const Viewpoint& viewpoint,
@@ -122,7 +122,7 @@ class SceneMaker {
         return pose;
     }
 
-    /// What becomes of each map point.
+    /// Decides for each map point whether, where and how it is seen.
     [[nodiscard]] std::vector<Sight> look(const HalfDisc& view) const {
         SceneGenerator random = generator("misses");
         boost::random::uniform_01<double> uniform;

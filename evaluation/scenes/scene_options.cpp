@@ -12,7 +12,7 @@
 namespace conelane {
 namespace {
 
-/// At most 99 false positives for a point seen; ids are drawn from a space with room for as many.
+/// At most 99 false positives for each seen point; the ids are drawn from a space of that size.
 constexpr double kMaxRate = 0.99;
 
 void require_between(double value, double lowest, double highest, const std::string& key) {
@@ -31,7 +31,7 @@ void require_list(const std::vector<double>& values, double lowest, double highe
     }
 }
 
-/// The condition as the options change it.
+/// The condition with the changes of the options.
 Condition adapted(Condition condition, const SceneOptions& options) {
     const Condition own = condition;
     condition.noise_sigma_m = options.noise_sigma_m.value_or(own.noise_sigma_m);

@@ -43,9 +43,9 @@ struct SceneOptions {
 void validate(const SceneOptions& options);
 
 /// The conditions that the options ask for, at least one. Where an option changes a named one, its name says
-/// so: "car+miss_0", "car+fresh". Throws InvalidInput where a condition is unknown or named twice.
+/// so: "car+miss_0", "car+fresh". Throws InvalidInput if a condition is unknown or named twice.
 [[nodiscard]] std::vector<Condition> conditions_of(const SceneOptions& options);
-/// Their names, for records of a run; empty where none is named.
+/// Their names, for records of a run; empty if none is named.
 [[nodiscard]] std::vector<std::string> condition_names(const SceneOptions& options);
 
 }  // namespace conelane

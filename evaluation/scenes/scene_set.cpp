@@ -41,10 +41,10 @@ SceneSet make_scene_set(const std::vector<std::string>& track_specs, const Scene
             fmt::print(stderr, "conelane: {}: {}\n", track.name, warning);
         }
         const TrackLaps laps(track, options);
-        std::vector<std::string> of_track;  // left out
+        std::vector<std::string> of_track;  // ids of the scenes left out
         for (std::size_t lap = 0; lap < laps.size(); ++lap) {
             if (made) made(done++, tracks.size() * laps.size());
-            // Laps without a scene are not counted: no reader of a scenes file can know of them.
+            // Laps without a scene are not counted, because no reader of a scenes file can know of them.
             if (laps_with_scenes % shard.count != shard.index) {
                 if (!laps.is_empty(lap)) ++laps_with_scenes;
                 continue;

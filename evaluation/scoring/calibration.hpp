@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// How far what a detector says of its own lanes holds. Shares are in [0, 1], and absent where nothing
+/// Whether a detector's statements about its own lanes are true. Shares are in [0, 1], and absent if no lane
 /// counts.
 class Calibration {
   public:
@@ -19,23 +19,23 @@ class Calibration {
         std::size_t usable = 0;
     };
 
-    /// A lane said to be usable with that probability. Precondition: in [0, 1].
+    /// Counts a lane with this probability of being usable. Precondition: it is in [0, 1].
     void add(double confidence, bool is_usable);
-    /// A lane of that length that is said to be right up to `trusted_m`, and leaves the true boundaries at
-    /// `divergence_m`, if at all.
+    /// Counts a lane of that length, which is said to be right up to `trusted_m`, and which leaves the true
+    /// boundaries at `divergence_m`, if at all.
     void add_trust(double trusted_m, double lane_length_m, std::optional<double> divergence_m);
 
     /// By confidence, from [0, 0.1) to [0.9, 1].
     [[nodiscard]] const std::array<Bin, kBins>& bins() const { return bins_; }
     /// Expected calibration error: mean over the lanes of |confidence - share usable| of their bin.
     [[nodiscard]] std::optional<double> error() const;
-    /// Of the lanes with a confidence of kSure at least, the share that is usable.
+    /// Share of usable lanes among those with a confidence of at least kSure.
     [[nodiscard]] std::optional<double> usable_where_sure() const;
-    /// Of all lanes, those with a confidence of kSure at least.
+    /// Share of lanes with a confidence of at least kSure.
     [[nodiscard]] std::optional<double> sure() const;
     /// Share of the lanes that are right up to their trusted length.
     [[nodiscard]] std::optional<double> right_where_trusted() const;
-    /// Trusted lengths of all lanes together, as a share of their lengths.
+    /// Sum of the trusted lengths over the sum of the lengths.
     [[nodiscard]] std::optional<double> trusted_share() const;
 
   private:

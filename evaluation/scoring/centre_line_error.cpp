@@ -11,13 +11,13 @@
 namespace conelane {
 namespace {
 
-/// Beside a centre line: how far away, and its heading there.
+/// Position relative to a centre line: distance, and heading of the line there.
 struct Beside {
     double distance_m;
     double heading_rad;
 };
 
-/// Nothing where `point` lies before the beginning of the line or past its end.
+/// Nothing if `point` is before the beginning of the line or past its end.
 std::optional<Beside> beside(const Point& point, std::span<const CentreLinePoint> line) {
     std::optional<Beside> nearest;
     bool is_beyond = false;
@@ -65,7 +65,7 @@ CentreLine centre_line_of(const LaneOutline& outline, const Pose& pose, double l
         for (const DrivablePoint& point : std::span(driven.points).first(count))
             line.push_back({point.position, point.heading_rad});
     } catch (const InvalidInput&) {
-        line.clear();  // such as a boundary of 20 km: nothing to drive by
+        line.clear();  // for example a boundary of 20 km: nothing can be driven
     }
     return line;
 }
@@ -76,7 +76,7 @@ CentreLine centre_line_of(std::span<const Point> polyline, const Pose& pose, dou
     const PolylineFoot foot = foot_on_polyline(pose.position, polyline);
     std::size_t segment = foot.segment;
     Point at = foot.point;
-    double left_m = 0.0;  // to the next point of the line
+    double left_m = 0.0;  // distance to the next point of the line
     const std::size_t most = points_of(length_m);
     while (line.size() < most && segment + 1 < polyline.size()) {
         const Point way = polyline[segment + 1] - at;

@@ -10,7 +10,7 @@
 namespace conelane {
 namespace {
 
-/// Segment and foot point on it at which the path passes the car; nothing where it does not.
+/// Segment and foot point at which the path passes the car; nothing if it does not.
 struct Pass {
     std::size_t segment;
     Point foot;
@@ -29,7 +29,7 @@ std::optional<Pass> pass_of(const Pose& pose, std::span<const Point> driven) {
     return nearest;
 }
 
-/// The path up to the last place beside which a cone is seen.
+/// The path up to the last place with a seen cone beside it.
 std::vector<Point> cut_where_no_cone_is_seen(const std::vector<Point>& ahead, const Scene& scene) {
     double seen_m = 0.0;
     for (const Cone& cone : scene.cones) {

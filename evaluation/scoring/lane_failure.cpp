@@ -13,17 +13,17 @@
 namespace conelane {
 namespace {
 
-/// One side of a lane with what it is held against.
+/// One side of a lane and the side that it is compared with.
 struct Side {
     std::span<const Point> lane;
     std::span<const Point> truth;
     std::span<const Point> annotated;
-    bool closed;  ///< the annotated boundary is
+    bool closed;  ///< whether the annotated boundary is closed
 
     [[nodiscard]] PolylineFoot foot(const Point& point) const {
         return foot_on_polyline(point, annotated, closed);
     }
-    /// Along the boundary from the first cone of the truth; on a closed one from -kFirstFootBack_m on.
+    /// Along the boundary from the first ground-truth cone; on a closed boundary from -kFirstFootBack_m on.
     [[nodiscard]] double place_m(const PolylineFoot& of) const {
         const double place_m = of.arc_length_m - foot(truth.front()).arc_length_m;
         const double course_m = polyline_length_m(annotated, closed);
@@ -58,12 +58,12 @@ LaneFailure failure_at(const Side& side, const Side& other, std::size_t vertex_o
     return other.is_in_truth(across) ? LaneFailure::wrong_side : LaneFailure::wrong_leg;
 }
 
-/// Length of the truth of one side that its lane lacks, by where.
+/// Length of one side's ground truth that the lane does not cover, by place.
 struct Missing {
     double before_m = 0.0;
     double between_m = 0.0;
     double behind_m = 0.0;
-    double next_step_m = 0.0;  ///< of the truth, behind the lane's last vertex; 0 where there is none
+    double next_step_m = 0.0;  ///< next step of the truth after the lane; 0 if none
 };
 
 Missing missing_of(const Side& side) {
@@ -80,7 +80,7 @@ Missing missing_of(const Side& side) {
     missing.before_m = first_m;
     missing.between_m = std::max(0.0, last_m - first_m - polyline_length_m(side.lane));
     missing.behind_m = side.truth_end_m() - last_m;
-    // Seen positions of one cone are the same in lane and truth, so the next cone is truly farther.
+    // A cone's position is the same in lane and ground truth, so the next cone is farther.
     constexpr double kSameCone_m = 0.05;
     const auto next = std::ranges::find_if(
         side.truth, [&](const Point& cone) { return place(cone) > last_m + kSameCone_m; });

@@ -35,7 +35,7 @@ inline constexpr double kAtStart_m = 2.0;
 ///   median step of the ground truth of both sides;
 /// - stopped_early: it is not.
 ///
-/// A lane held against a driven path, and an answer that is a centre line alone, have no boundaries to look
+/// A lane compared with a driven path, and an answer that is only a centre line, have no boundaries to look
 /// at: where they diverge the cause is wrong_start below kAtStart_m and leaves_path from there on, else
 /// stopped_early.
 enum class LaneFailure {
@@ -53,8 +53,8 @@ enum class LaneFailure {
 inline constexpr std::size_t kLaneFailureCount = 10;
 [[nodiscard]] std::string_view to_string(LaneFailure failure);
 
-/// `score` is what score(), score_outline() or score_centre_line() said of the lane; `lane` is empty where
-/// the answer has no boundaries. Nothing where the lane is usable or that is unknown. Precondition: the scene
+/// `score` is what score(), score_outline() or score_centre_line() said of the lane; `lane` is empty if
+/// the answer has no boundaries. Nothing if the lane is usable or that is unknown. Precondition: the scene
 /// counts.
 [[nodiscard]] std::optional<LaneFailure> lane_failure(const AnnotatedScene& scene, const LaneOutline& lane,
                                                       const SceneScore& score,

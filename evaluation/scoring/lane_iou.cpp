@@ -14,8 +14,8 @@ namespace {
 
 namespace bp = boost::polygon;
 
-// Integer coordinates: Boost.Polygon's overlay of them is robust for every input, a floating-point overlay
-// is not. Below 2^30 its products stay exact.
+// Integer coordinates: the overlay of Boost.Polygon is robust for all integer input, but not for
+// floating-point input. Below 2^30 its products are exact.
 using Coordinate = int;
 using Region = bp::polygon_set_data<Coordinate>;
 constexpr double kUnitsPerMetre = 1e6;
@@ -25,7 +25,7 @@ bool has_region(const LaneOutline& lane) {
     return lane.left.size() >= 2 && lane.right.size() >= 2;
 }
 
-/// The integer grid that both lanes of a comparison share, centred on their bounding box.
+/// The integer grid shared by both lanes of a comparison, centred on their bounding box.
 class Grid {
   public:
     void cover(const LaneOutline& lane) {
@@ -59,7 +59,7 @@ class Grid {
     Point highest_ = Point::Constant(-std::numeric_limits<double>::infinity());
 };
 
-/// Declaring every loop clockwise makes a clockwise turn count +1 and a counter-clockwise one -1, and the
+/// All loops are declared clockwise, so a clockwise turn counts +1 and a counter-clockwise turn -1; the
 /// overlay keeps the points with a positive sum.
 void insert_loop(Region& region, const std::vector<bp::point_data<Coordinate>>& loop) {
     region.insert_vertex_sequence(loop.begin(), loop.end(), bp::CLOCKWISE, false);
@@ -81,12 +81,12 @@ Region region_of(const LaneOutline& lane, const Grid& grid) {
     return region;
 }
 
-/// An edge of an outline, from its left end to its right one.
+/// An edge of an outline, from left to right.
 struct Edge {
     Point begin;
     double end_x;
     double slope;
-    double sign;  ///< 1 where the outline goes to the right
+    double sign;  ///< 1 if the outline runs to the right, else -1
 
     [[nodiscard]] double at(double x) const { return begin.y() + slope * (x - begin.x()); }
 };
@@ -117,9 +117,9 @@ std::vector<Edge> edges_of(const LaneOutline& lane) {
     return edges;
 }
 
-/// Integral of the product of the clockwise turns of both about a point. How often an outline turns about a
-/// point is the sum of the signs of the edges above it, so the product is a sum over pairs of edges, each
-/// counting what lies below both. `floor_m`: a height below everything.
+/// Integral over the plane of the product of the winding numbers of both outlines. The winding number of a
+/// point is the sum of the signs of the edges above it, so the integral is a sum over pairs of edges: the
+/// area below both, with sign. `floor_m`: a height below all edges.
 double shared_area_m2(std::span<const Edge> a, std::span<const Edge> b, double floor_m) {
     double area_m2 = 0.0;
     for (const Edge& e : a) {
@@ -127,7 +127,7 @@ double shared_area_m2(std::span<const Edge> a, std::span<const Edge> b, double f
             const double from = std::max(e.begin.x(), f.begin.x());
             const double to = std::min(e.end_x, f.end_x);
             if (from >= to) continue;
-            // Trapezoids below the lower one, two where they cross.
+            // The trapezoid below the lower edge; two trapezoids if the edges cross.
             const double e_from = e.at(from) - floor_m;
             const double e_to = e.at(to) - floor_m;
             const double above_from = e_from - (f.at(from) - floor_m);

@@ -8,7 +8,7 @@ namespace conelane {
 /// were measured on other machines and, for RLD, on other data: for comparison, not for exact reproduction.
 
 /// CLC paper, Table I (VIII-D; both ranges, 30 m and 50 m, together) and Table II (VIII-E). The text of
-/// VIII-D gives 2.6 % critical failures at a rate of 50 % where the table has 5.0 %; the table is taken.
+/// VIII-D says 2.6 % critical failures at a rate of 50 %; the table says 5.0 %, which is the value here.
 struct PublishedClcRow {
     double false_positive_rate;  ///< false positives / all points
     double ground_truth;

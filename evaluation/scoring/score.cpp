@@ -24,7 +24,7 @@ class ConePositions {
     explicit ConePositions(const Scene& scene) : scene_id_(scene.id) {
         for (const Cone& cone : scene.cones) position_of_.emplace(cone.id, cone.position);
     }
-    /// Throws InvalidInput where an id is not in the scene; its key is "PREFIXleft[i]" or "PREFIXright[i]".
+    /// Throws InvalidInput if an id is not in the scene; its key is "PREFIXleft[i]" or "PREFIXright[i]".
     [[nodiscard]] LaneOutline outline(const Lane& lane, const std::string& prefix) const {
         return {boundary(lane.left, prefix + "left"), boundary(lane.right, prefix + "right"), lane.closed};
     }
@@ -109,7 +109,7 @@ Accuracy accuracy_of(const Lane& lane, const LaneOutline& outline, const Lane& g
     Accuracy result;
     result.cones = differs_by_one_cone_at_most(lane, ground_truth);
     result.crossings = is_free_of_crossings(outline);
-    // A boundary without cones is on no side and at no distance.
+    // A boundary without cones is on neither side and has no distance.
     if (!outline.left.empty() && !outline.right.empty()) {
         result.sides = is_each_on_its_side(outline, pose);
         result.width = is_width_kept(outline);
@@ -150,10 +150,10 @@ bool has_ground_truth(const AnnotatedScene& scene) {
            scene.ground_truth->right.size() >= 2;
 }
 
-/// What the lanes of a scene are held against.
+/// The truth that the lanes of a scene are compared with.
 class Truth {
   public:
-    /// Throws InvalidInput where the scene does not count.
+    /// Throws InvalidInput if the scene does not count.
     Truth(const AnnotatedScene& scene, const TrackBoundaries* boundaries)
         : pose_(scene.scene.pose), boundaries_(boundaries) {
         if (has_ground_truth(scene)) {
@@ -201,7 +201,7 @@ class Truth {
         score.category = category_of(score, false);
     }
 
-    /// Empty sides where the scene has the driven path only.
+    /// Empty sides if the scene has only the driven path.
     [[nodiscard]] const LaneOutline& ground_truth() const { return ground_truth_; }
 
   private:
@@ -212,7 +212,7 @@ class Truth {
         return positions;
     }
 
-    /// How far along the true line the other one follows it, and whether it leaves it there.
+    /// How far the line follows the true line, as arc length of the true line, and whether it then leaves it.
     struct Follow {
         double length_m = 0.0;
         bool leaves = false;
@@ -224,8 +224,8 @@ class Truth {
         const Point first_way = (truth[1] - truth[0]).normalized();
         for (const Point& point : line) {
             const PolylineFoot foot = foot_on_polyline(point, truth);
-            if (foot.arc_length_m >= length_m) return {length_m, false};  // past what is known
-            // Before the beginning of the true line only the offset to its side counts.
+            if (foot.arc_length_m >= length_m) return {length_m, false};  // beyond the known part
+            // Before the beginning of the true line, only the lateral offset counts.
             const double off_m =
                 foot.arc_length_m > 0.0 ? foot.distance_m : std::abs(cross(first_way, point - truth[0]));
             if (off_m > kOffCentreLine_m) return {follow.length_m, true};
@@ -237,12 +237,12 @@ class Truth {
     Pose pose_;
     const TrackBoundaries* boundaries_;
     LaneOutline ground_truth_;
-    std::vector<Point> driven_;  ///< empty where there is a ground truth
+    std::vector<Point> driven_;  ///< empty if there is a ground truth
     double length_m_ = 0.0;
 };
 
-/// Share of yes among the scenes whose answer is known; nothing where none is. Scenes of unknown answer do
-/// not count.
+/// Share of yes among the scenes with a known answer; nothing if no answer is known. The other scenes do not
+/// count.
 template <typename Of>
 std::optional<double> share_among_known(std::span<const SceneScore> scores, Of of) {
     std::size_t known = 0;
@@ -282,8 +282,8 @@ class Steering {
     std::vector<double> heading_rad_;
 };
 
-/// Share of all scenes for which `holds`; nothing where none of them is `known`. Scenes that are not known
-/// count as failures.
+/// Share of all scenes for which `holds`; nothing if no scene is `known`. Unknown scenes count as
+/// failures.
 template <typename Known, typename Holds>
 std::optional<double> share_of_all(std::span<const SceneScore> scores, Known known, Holds holds) {
     if (std::ranges::none_of(scores, known)) return std::nullopt;
@@ -417,7 +417,7 @@ ScoreSummary summarise(std::span<const SceneScore> scores) {
         steering.add(score);
         if (const auto usable = score.usable()) {
             if (score.confidence) result.calibration.add(*score.confidence, *usable);
-            if (score.confidence && score.trusted_m) {  // else it is a rule, which nothing calibrates
+            if (score.confidence && score.trusted_m) {  // otherwise it is a rule, which is not calibrated
                 result.calibration.add_trust(*score.trusted_m, score.lane_length_m,
                                              score.divergence_distance_m);
             }

@@ -21,28 +21,28 @@ namespace conelane {
 inline constexpr double kUsableLength_m = 20.0;
 /// A centre line farther from the true one than this has left it [m].
 inline constexpr double kOffCentreLine_m = 1.0;
-// Measures of the CLC paper, VIII-B.
+// Limits of the measures of the CLC paper, VIII-B.
 inline constexpr double kCriticalDivergence_m = 20.0;  ///< below it a diverging lane is a critical failure
 inline constexpr double kTooShortShare = 0.75;         ///< of the ground truth's length
 inline constexpr double kNearGroundTruthIou = 0.98;    ///< of a candidate that counts as found
-// Measures of the RLD paper, IV.
+// Limits of the measures of the RLD paper, IV.
 inline constexpr double kRldTimeLimit_ms = 400.0;
 inline constexpr double kRldAbsoluteGap = 1e-5;
 inline constexpr double kMinLaneWidth_m = 2.5;  ///< w_min; w_max is kMaxLaneWidth_m
 inline constexpr std::size_t kAllowedConeDifference = 1;
 
-/// What became of a detection: the first that fits in this order.
+/// The outcome of a detection: the first category that fits, in this order.
 enum class Category {
     none,                ///< no lane found
-    ground_truth,        ///< the very lane of the ground truth, closedness included
+    ground_truth,        ///< exactly the lane of the ground truth, also in `closed`
     diverging_below_20,  ///< critical
     diverging_from_20,
     too_short,
-    near_ground_truth,  ///< the rest
+    near_ground_truth,  ///< all other lanes
 };
 inline constexpr std::size_t kCategoryCount = 6;
 [[nodiscard]] std::string_view to_string(Category category);
-/// All but none and diverging_below_20.
+/// True for all but none and diverging_below_20.
 [[nodiscard]] bool is_success(Category category);
 /// Whether a lane that was found can be driven by, see SceneScore::usable. `divergence_distance_m`: absent
 /// where it does not diverge.
@@ -51,8 +51,8 @@ inline constexpr std::size_t kCategoryCount = 6;
 
 /// The four quality checks behind "accurate" (RLD paper, IV-B).
 struct Accuracy {
-    /// (a) Cones chosen that are not in the ground truth plus cones of it that were missed, both sides taken
-    /// together: at most one. A cone chosen twice counts once.
+    /// (a) Selected cones that are not in the ground truth plus its cones that were missed, over both sides:
+    /// at most one. A cone that is selected twice counts once.
     bool cones = false;
     bool sides = false;  ///< (b) the point of each boundary nearest the car is on its side, not on the axis
     bool crossings = false;  ///< (c) no two edges cross; touching is no crossing
@@ -64,31 +64,31 @@ struct Accuracy {
 struct EnumerationScore {
     std::int64_t iterations = 0;
     bool complete = false;
-    std::optional<double> best_iou;  ///< among the candidates; absent where there are none
+    std::optional<double> best_iou;  ///< among the candidates; absent if there are none
     std::optional<std::int64_t> first_near_ground_truth_iteration;  ///< first IoU >= kNearGroundTruthIou
 };
 
-/// The measures of one answer. All IoU, lengths and categories refer to the ground truth of all that is
-/// visible, accuracy to that of the detector's own cone set.
+/// The measures of one answer. All IoU, lengths and categories refer to the ground truth of the whole visible
+/// scene, accuracy to that of the detector's own cone set.
 struct SceneScore {
     Category category = Category::none;
     bool error = false;  ///< the detector failed, or the checker rejected what it found
-    /// 0 where there is no lane; absent where the ground truth or the answer has no boundaries.
+    /// 0 if there is no lane; absent if the ground truth or the answer has no boundaries.
     std::optional<double> iou;
     double lane_length_m = 0.0;
     double ground_truth_length_m = 0.0;
-    bool divergence_known = false;  ///< annotated boundaries, or the path that was driven, were given
-    std::optional<double> divergence_distance_m;  ///< absent where the lane does not diverge or it is unknown
-    std::optional<Accuracy> accuracy;             ///< absent where the cone set holds no ground truth
+    bool divergence_known = false;                ///< annotated boundaries, or the driven path, were given
+    std::optional<double> divergence_distance_m;  ///< absent if the lane does not diverge or it is unknown
+    std::optional<Accuracy> accuracy;             ///< absent if the cone set has no ground truth
     /// Within kRldTimeLimit_ms a gap of at most kRldAbsoluteGap, or the proof that there is no lane (which
-    /// RecordScorer fills in); absent where the answer states no objective.
+    /// RecordScorer fills in); absent if the answer states no objective.
     std::optional<bool> solved_to_optimality;
     std::optional<EnumerationScore> enumeration;
     double latency_ms = 0.0;
-    /// Against the ground truth's centre line; absent where the lane is not usable or was not held against
+    /// Against the ground truth's centre line; absent if the lane is not usable or not compared with
     /// it.
     std::optional<CentreLineError> centre_line_error;
-    // What the detector says of its lane; absent where it found none or does not say.
+    // The detector's statements about its lane; absent if it found none or makes none.
     std::optional<double> confidence;
     std::optional<double> trusted_m;
     bool trained_on = false;  ///< the detector has learned from the course
@@ -97,51 +97,51 @@ struct SceneScore {
 
     /// The headline: whether the lane can be driven by. It was found, does not diverge below 20 m, and, where
     /// it does not diverge at all, is at least min(kUsableLength_m, kTooShortShare of the ground truth's
-    /// length) long. Absent where divergence is unknown.
+    /// length) long. Absent if divergence is unknown.
     [[nodiscard]] std::optional<bool> usable() const;
     [[nodiscard]] bool success() const { return is_success(category); }
     [[nodiscard]] bool accurate() const { return accuracy && accuracy->accurate(); }
 };
 
-/// The positions of a lane's cones. Throws InvalidInput naming the key (`left[2]`) where a cone is not in the
+/// The positions of a lane's cones. Throws InvalidInput naming the key (`left[2]`) if a cone is not in the
 /// scene.
 [[nodiscard]] LaneOutline outline_of(const Lane& lane, const Scene& scene);
 
-/// Whether a scene counts: it has a ground truth with at least two cones on each side, or is of a run whose
-/// driven path shows at least kMinDriven_m of the way ahead (see driven_path.hpp).
+/// Whether a scene counts: it has a ground truth with at least two cones on each side, or it belongs to a run
+/// whose driven path shows at least kMinDriven_m of the way ahead (see driven_path.hpp).
 [[nodiscard]] bool counts(const AnnotatedScene& scene, const TrackBoundaries* boundaries = nullptr);
 
-/// Scores one answer by both papers' measures. `nearest`: the detector saw only that many cones ahead, and
-/// accuracy is held against the ground truth of those. `boundaries`: of the scene's track; without them
-/// divergence is unknown, no category is diverging and such lanes fall to too_short and near_ground_truth.
+/// Scores one answer by the measures of both papers. `nearest`: the detector saw only that many cones ahead,
+/// and accuracy refers to the ground truth of these cones. `boundaries`: those of the scene's track; without
+/// them, divergence is unknown, and a diverging lane gets another category.
 ///
 /// A scene of a run without annotated boundaries is scored against the path that was driven: the lane
 /// diverges where that path leaves it, and the ground truth's length is that of the path. IoU and accuracy
 /// are absent.
 ///
-/// An answer that is not found, or found with an empty side, is category none: one boundary alone is no lane
-/// that is scored, whatever a car can make of it. Ids that repeat in a lane are
-/// scored as they stand.
+/// An answer that is not found, or found with an empty side, has category none: a single boundary is not
+/// scored as a lane, although a car may be able to use it. Ids that occur twice in a lane are scored as they
+/// are.
 /// Throws InvalidInput naming the key where the scene does not count, a lane or candidate names a cone that
 /// is not in the scene, or the boundary of a side is empty.
 [[nodiscard]] SceneScore score(const AnnotatedScene& scene, const LaneAnswer& answer, double latency_ms,
                                std::optional<std::size_t> nearest, const TrackBoundaries* boundaries);
 
-/// The same for an answer of positions instead of cones. Category ground_truth takes ids, so an exact lane is
-/// near_ground_truth; accuracy is absent.
+/// The same for an answer of positions instead of cones. Category ground_truth needs ids, so an exact lane
+/// has near_ground_truth; accuracy is absent.
 [[nodiscard]] SceneScore score_outline(const AnnotatedScene& scene, const LaneOutline& lane,
                                        double latency_ms, const TrackBoundaries* boundaries);
 
-/// The same for an answer that is a centre line alone, its first point nearest the car. It diverges where it
-/// is more than kOffCentreLine_m from the centre line of the ground truth, or from the path that was driven;
-/// its length is how far it follows that line. IoU and accuracy are absent.
+/// The same for an answer that is only a centre line, its first point nearest to the car. It diverges where
+/// it is more than kOffCentreLine_m from the centre line of the ground truth, or from the driven path. Its
+/// length is how far it follows that line. IoU and accuracy are absent.
 [[nodiscard]] SceneScore score_centre_line(const AnnotatedScene& scene, std::span<const Point> centre_line,
                                            double latency_ms, const TrackBoundaries* boundaries);
 
 /// Means over scenes; shares are in [0, 1]. Failures count in every mean: a scene without a lane counts with
-/// IoU 0, as not accurate and not steady, and an answer without optimality, enumeration or candidates, where
-/// others of the sample have them, as not solved, not complete, best IoU 0. A measure that no scene has is
-/// absent.
+/// IoU 0, as not accurate and not steady. An answer without optimality, enumeration or candidates, if other
+/// answers of the sample have them, counts as not solved, not complete, best IoU 0. A measure that no scene
+/// has is absent.
 struct ScoreSummary {
     std::size_t scenes = 0;
     std::size_t errors = 0;                               ///< scenes on which the detector failed
@@ -158,7 +158,7 @@ struct ScoreSummary {
     std::optional<double> unsteady_share;      ///< of the poses that have one before them in their lap
     std::size_t accuracy_scenes = 0;           ///< scenes whose cone set holds a ground truth
     std::optional<double> accurate_share;      ///< of accuracy_scenes
-    Calibration calibration;  ///< of the lanes that their detector says something of, divergence known
+    Calibration calibration;  ///< of the lanes with a statement of their detector and known divergence
     std::optional<double> solved_share;
     std::optional<double> complete_share;
     std::optional<double> best_candidate_mean_iou;
@@ -169,7 +169,7 @@ struct ScoreSummary {
         return category_share[static_cast<std::size_t>(category)];
     }
 };
-/// Throws InvalidInput where there is nothing to summarise.
+/// Throws InvalidInput if there is no score.
 [[nodiscard]] ScoreSummary summarise(std::span<const SceneScore> scores);
 
 }  // namespace conelane

@@ -79,11 +79,11 @@ Line line_of(const ScoreRow& row) {
     line[Column::range] = number(row.key.range_m, 0);
     line[Column::scenes] = fmt::format("{}{}", summary.scenes, summary.trained_on > 0 ? "*" : "");
     line[Column::ground_truth] = percent(summary.share(Category::ground_truth));
-    // An error counts as no lane everywhere else; side by side each scene stands in one column.
+    // An error counts as no lane in every other measure; here each scene is in exactly one column.
     const double error_share = static_cast<double>(summary.errors) / static_cast<double>(summary.scenes);
     line[Column::none] = percent(std::max(0.0, summary.share(Category::none) - error_share));
     line[Column::error] = percent(error_share);
-    // Divergence that is unknown everywhere is not a share of zero, and what rests on it is unknown too.
+    // If divergence is unknown in all scenes, all shares that depend on it are unknown, not zero.
     if (summary.divergence_unknown < summary.scenes) {
         line[Column::near_ground_truth] = percent(summary.share(Category::near_ground_truth));
         line[Column::too_short] = percent(summary.share(Category::too_short));
@@ -224,7 +224,7 @@ std::string ScoreKey::detector_label() const {
 
 namespace {
 
-/// Bins as [lanes, mean confidence, share usable]; those without lanes are left out.
+/// Bins as [lanes, mean confidence, share usable], without empty bins.
 nlohmann::ordered_json to_json(const Calibration& calibration) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     const auto put_if_known = [&](const char* key, const auto& value) {
@@ -287,7 +287,7 @@ std::string summary_json(const ScoreRow& row) {
                           {"max", latency.max_ms},
                           {"shifted_geometric_mean", latency.shifted_geometric_mean_ms}};
     json["within_budget_share"] = latency.share_within_budget;
-    // A detector name from a file may hold bytes that are not UTF-8.
+    // A detector name from a file may contain bytes that are not UTF-8.
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -10,15 +10,15 @@
 
 namespace conelane {
 
-/// What a row of a score table is about.
+/// The key of a row of a score table.
 struct ScoreKey {
     std::string detector;
-    std::optional<double> false_positive_rate;  ///< absent where the scenes state none
-    std::optional<double> range_m;              ///< absent where the scenes state none
-    std::optional<std::size_t> nearest = {};    ///< cone-set size; absent where the detector saw all cones
-    std::string condition = {};                 ///< empty where the scenes name none
+    std::optional<double> false_positive_rate;  ///< absent if the scenes have none
+    std::optional<double> range_m;              ///< absent if the scenes have none
+    std::optional<std::size_t> nearest = {};    ///< cone-set size; absent if the detector saw all cones
+    std::string condition = {};                 ///< empty if the scenes name none
 
-    /// As tables show the detector: "rld-cbc n=12".
+    /// The detector's name in tables: "rld-cbc n=12".
     [[nodiscard]] std::string detector_label() const;
     bool operator==(const ScoreKey&) const = default;
 };
@@ -38,13 +38,13 @@ struct ScoreRow {
 /// rate and range, absent ones first; conditions in the order in which they first appear.
 [[nodiscard]] std::vector<ScoreRow> summarise_by_key(std::span<const KeyedScore> scores);
 
-/// A table for a terminal, a line per row and a final newline. Shares in per cent, latencies in ms, "-" where
-/// a measure is unknown. Below the rows stand the published figures of both papers, those of CLC for the
-/// false-positive rates that the rows have (all where they have none of them).
+/// A table for a terminal, a line for each row and a final newline. Shares in per cent, latencies in ms, "-"
+/// for an unknown measure. Below are the published figures of both papers, those of CLC for the
+/// false-positive rates of the rows (all rates if the rows have none of the paper's).
 [[nodiscard]] std::string score_table(std::span<const ScoreRow> rows);
 
-/// One row as a JSON object in one line, without newline. Shares in [0, 1], latencies in ms; a measure that
-/// is unknown has no key. Provenance is the caller's to add.
+/// One row as a JSON object in one line, without newline. Shares in [0, 1], latencies in ms; an unknown
+/// measure has no key. The caller adds the provenance.
 [[nodiscard]] std::string summary_json(const ScoreRow& row);
 
 }  // namespace conelane

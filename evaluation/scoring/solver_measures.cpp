@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPar10 = 10.0;
 
-/// The number of runs that every solver has.
+/// The number of runs, which is the same for every solver.
 std::size_t common_size(std::span<const std::vector<SolverRun>> by_solver) {
     const std::size_t runs = by_solver.empty() ? 0 : by_solver.front().size();
     for (const std::vector<SolverRun>& one : by_solver) {
@@ -128,7 +128,7 @@ GapIntegrals gap_integrals(std::span<const Knowledge> steps, double known_best, 
 }
 
 Variability variability_of(std::span<const double> times_ms) {
-    if (times_ms.size() < 2) throw InvalidInput("times", "must be two at least");
+    if (times_ms.size() < 2) throw InvalidInput("times", "must be at least two");
     const auto [least, most] = std::ranges::minmax(times_ms);
     return {standard_deviation(times_ms) / mean(times_ms), most / least};
 }

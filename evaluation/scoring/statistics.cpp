@@ -33,7 +33,7 @@ double median(std::span<const double> sample) {
 double quantile(std::span<const double> sample, double share) {
     require_values(sample);
     const std::vector<double> values = sorted(sample);
-    // A rank that is whole in exact arithmetic, such as 0.95 * 20, must not be rounded up past itself.
+    // A rank that is whole in exact arithmetic, such as 0.95 * 20, must not be rounded up to the next one.
     constexpr double kRankTolerance = 1e-9;
     const double rank = std::ceil(share * static_cast<double>(values.size()) - kRankTolerance);
     const auto index = static_cast<std::size_t>(std::max(1.0, rank)) - 1;

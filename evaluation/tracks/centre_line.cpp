@@ -20,8 +20,8 @@ constexpr double kHeadingBaseline_m = 1.0;  ///< the heading is the direction ov
 
 using Polyline = std::vector<Point>;
 
-/// Vertices at equal arc lengths, at most `at_most_m` apart: on a closed polyline from its first vertex to
-/// just before it, on an open one from the first to the last. Precondition: it has a length.
+/// Vertices at equal arc lengths, at most `at_most_m` apart. On a closed polyline they end just before the
+/// first vertex, on an open one at the last vertex. Precondition: the length is positive.
 Polyline resampled(const Polyline& vertices, bool closed, double at_most_m) {
     const double length_m = polyline_length_m(vertices, closed);
     const auto gaps = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / at_most_m)));
@@ -58,9 +58,9 @@ Point direction_at(const Polyline& closed_boundary, std::size_t i) {
     return (closed_boundary[(i + 1) % n] - closed_boundary[(i + n - 1) % n]).normalized();
 }
 
-/// Where a closed lane is narrowest: the closest places of both boundaries that lie on their sides and run
-/// the same way, hence face each other across this lane rather than across a neighbouring one. Where there
-/// are none, the closest places.
+/// The narrowest place of a closed lane: the closest places of both boundaries that are on their sides and
+/// run the same way, so they face each other across this lane and not across a neighbouring one. If there are
+/// none, the closest places.
 FacingPlaces narrowest_place(const Polyline& left, const Polyline& right) {
     std::optional<FacingPlaces> facing;
     FacingPlaces closest{0, 0};
@@ -101,7 +101,7 @@ Polyline closed_midpoints(Polyline left, Polyline right) {
     const std::vector<FacingPlaces> matching = match_boundaries(left, right);
     Polyline midpoints;
     std::optional<std::size_t> first;
-    for (std::size_t k = 0; k + 1 < matching.size(); ++k) {  // the last pair is the first one again
+    for (std::size_t k = 0; k + 1 < matching.size(); ++k) {  // the last pair repeats the first one
         if (!first && matching[k].left == first_left) first = k;
         midpoints.push_back((left[matching[k].left] + right[matching[k].right]) / 2.0);
     }
@@ -109,8 +109,8 @@ Polyline closed_midpoints(Polyline left, Polyline right) {
     return midpoints;
 }
 
-/// Cuts the part of either boundary before the place where the other one has begun too, looked for in the
-/// first half.
+/// Cuts off the part of either boundary before the place where the other one begins. That place is searched
+/// in the first half.
 void even_starts(Polyline& left, Polyline& right) {
     const auto nearest = [](const Polyline& boundary, const Point& query) {
         const auto half = static_cast<std::ptrdiff_t>((boundary.size() + 1) / 2);
@@ -141,7 +141,7 @@ Polyline open_midpoints(Polyline left, Polyline right) {
     return midpoints;
 }
 
-/// Mean over the window of `reach` vertices to either side, which shrinks towards the ends of an open line.
+/// Mean over `reach` vertices to either side; the window is smaller near the ends of an open line.
 Polyline smoothed(const Polyline& line, bool closed, std::size_t reach) {
     const std::size_t n = line.size();
     Polyline result;

@@ -23,7 +23,7 @@ class Draw {
         : random_(generator_of(std::string(name) + " layout", seed)) {}
 
     double uniform(double low, double high) {
-        // Rounded, so that no last bit of a drawn number decides anything.
+        // Rounded, so that the last bit of a drawn number has no influence.
         const double drawn = boost::random::uniform_real_distribution<double>(low, high)(random_);
         return std::round(drawn * 1e3) / 1e3;
     }
@@ -35,14 +35,14 @@ class Draw {
     boost::random::mt19937_64 random_;
 };
 
-/// Corners of an even number of parallel legs, `pitch_m` from centre to centre, that a straight along their
-/// left ends closes.
+/// Corners of an even number of parallel legs, `pitch_m` from centre to centre. A straight along their left
+/// ends closes them.
 std::vector<Corner> legs(int count, double length_m, double pitch_m, Draw& draw) {
     const double hairpin_m = 0.49 * pitch_m;
     const double ends_m = std::min(5.0, hairpin_m + 1.0);
     std::vector<Corner> corners{{{0.0, 0.0}, ends_m}};
     for (int leg = 0; leg < count; ++leg) {
-        // From one leg to the next, right and left in turn.
+        // Alternates between right and left, one leg at a time.
         const bool right = leg % 2 == 0;
         if (leg + 1 == count) {
             corners.push_back({{0.0, leg * pitch_m}, ends_m});
@@ -56,7 +56,7 @@ std::vector<Corner> legs(int count, double length_m, double pitch_m, Draw& draw)
     return corners;
 }
 
-/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing where that is
+/// The corners of a star-shaped polygon, each rounded off as far as its sides allow; nothing if that is
 /// less than `least_radius_m`.
 std::optional<std::vector<Corner>> loop(int count, double radius_m, double least_radius_m, Draw& draw) {
     constexpr double kMaxRadius_m = 16.0;

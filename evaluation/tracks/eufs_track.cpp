@@ -23,7 +23,7 @@
 namespace conelane {
 namespace {
 
-/// What an EUFS file says, before any order.
+/// The content of an EUFS file, still unordered.
 struct EufsCones {
     std::vector<Cone> cones;
     std::vector<std::size_t> blue;
@@ -31,8 +31,7 @@ struct EufsCones {
     std::vector<std::size_t> orange;  ///< small and big ones
     std::optional<Pose> car_start;
     std::size_t car_start_line = 0;
-    std::map<std::string, std::size_t>
-        other_tags;  ///< how many cones have a tag that says nothing of a boundary
+    std::map<std::string, std::size_t> other_tags;  ///< number of cones whose tag belongs to no boundary
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -159,8 +158,8 @@ Boundary in_order(const std::vector<Cone>& cones, const Boundary& boundary, bool
     return ordered;
 }
 
-/// Whether cones can be the boundary of a closed course: their shortest tour takes no edge that stands out
-/// beside those of their shortest path, or, at a gate without cones of a color, goes straight on there.
+/// Whether cones can be the boundary of a closed course. Compared with their shortest path, their shortest
+/// tour must have no unusually long edge, except a straight one across a gate without cones of a color.
 bool may_close(const std::vector<Cone>& cones, const Boundary& boundary) {
     constexpr double kOutstanding = 1.5;
     constexpr double kMinCosine = 0.5;  // of the turns at both ends of a gate
@@ -214,8 +213,8 @@ void start_at_first_pair(Track& track) {
     std::rotate(track.right.begin(), nearest, track.right.end());
 }
 
-/// Turns the boundary of an open course around where most of the other one's cones lie on the wrong side of
-/// it: `side` is +1 where they belong to its left, -1 to its right.
+/// Reverses the boundary of an open course if most of the other boundary's cones are on its wrong side:
+/// `side` is +1 if they belong to its left, -1 to its right.
 void direct_open_boundary(Boundary& boundary, const Boundary& other, const std::vector<Cone>& cones,
                           double side) {
     const std::vector<Point> line = positions(cones, boundary);
@@ -228,7 +227,7 @@ void direct_open_boundary(Boundary& boundary, const Boundary& other, const std::
     if (votes < 0) std::ranges::reverse(boundary);
 }
 
-/// Takes orange cones out of an ordered boundary that stand beside it, not in its line: a gate may be wider
+/// Removes orange cones from an ordered boundary that are beside it and not in its line: a gate may be wider
 /// than the lane.
 void drop_beside(Boundary& boundary, const std::vector<Cone>& cones, bool closed) {
     constexpr double kSideBySide_m = 1.5;
@@ -273,8 +272,8 @@ void order_boundaries(Track& track, const Boundary& orange) {
     drop_beside(track.right, track.cones, track.closed);
 }
 
-/// Gives the ordered boundaries of a closed course their direction, which the colors fix: who has the inner
-/// boundary on the left drives counter-clockwise.
+/// Gives the ordered boundaries of a closed course their direction, which follows from the colors: with the
+/// inner boundary on the left, it is driven counter-clockwise.
 void direct_closed_boundaries(Track& track, const std::filesystem::path& file) {
     const Ring left_ring = ring(positions(track.cones, track.left));
     const Ring right_ring = ring(positions(track.cones, track.right));

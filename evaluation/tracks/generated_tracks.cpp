@@ -23,12 +23,12 @@ namespace {
 constexpr double kSpacingJitter = 0.11;    ///< of a cone along its boundary, as a share of the spacing
 constexpr double kBendNotice_m = 2.5;      ///< cones stand denser from this far before a bend
 constexpr double kSample_m = 0.1;          ///< along the centre line
-constexpr double kStrayOutside_m = 1.4;    ///< nearest to the mean boundary: outside the widest lane
-constexpr double kStrayFarthest_m = 10.0;  ///< from the centre line
-constexpr double kStrayClearance_m = 1.0;  ///< from any other cone
+constexpr double kStrayOutside_m = 1.4;    ///< at least, from the mean boundary: outside the widest lane
+constexpr double kStrayFarthest_m = 10.0;  ///< from the centre line at most
+constexpr double kStrayClearance_m = 1.0;  ///< from every other cone at least
 
-/// Random numbers of one track: of its name and its seed, so that tracks of one seed do not resemble each
-/// other.
+/// Random numbers of one track. They depend on its name and its seed, so that tracks of one seed differ from
+/// each other.
 class Draw {
   public:
     Draw(const std::string& name, std::uint64_t seed) {
@@ -130,7 +130,7 @@ std::vector<double> cone_places_m(const RoundedPath& path, const TrackStyle& sty
     return places_m;
 }
 
-/// To 0.1 mm, so that no difference between mathematical libraries shows.
+/// Multiples of 0.1 mm, so that differences between mathematical libraries do not show.
 Point rounded(const Point& point) {
     const auto round = [](double value_m) { return std::round(value_m * 1e4) / 1e4; };
     return {round(point.x()), round(point.y())};
@@ -147,7 +147,7 @@ struct Gate {
     double half_pair_m;
 };
 
-/// Gates on the straightest places, one in each of as many parts of a path.
+/// Gates at the straightest places: the path is divided into as many parts, with one gate in each.
 std::vector<Gate> draw_gates(const RoundedPath& path, std::size_t count, Draw& draw) {
     constexpr double kReach_m = 10.0;
     constexpr double kStep_m = 1.0;
@@ -183,7 +183,7 @@ std::vector<PlacedCone> with_gates(std::span<const double> places_m, ConeColor c
     std::vector<PlacedCone> cones;
     for (const double place_m : places_m) {
         const bool free = std::ranges::none_of(gates, [&](const Gate& gate) {
-            // The boundary ends with a cone of its own on either side of the gap.
+            // A cone on either side of the gap ends the boundary there.
             return std::abs(place_m - gate.place_m) < gate.half_gap_m + 1.0;
         });
         if (free) cones.push_back({place_m, color});
@@ -213,9 +213,9 @@ std::vector<std::size_t> append_boundary(Track& track, const RoundedPath& path, 
     return boundary;
 }
 
-/// Cones outside the lane, drawn again until they are clear of every section and of each other.
+/// Cones outside the lane. Each is drawn again until it is clear of every section and of the other cones.
 void append_strays(Track& track, const RoundedPath& path, const TrackLayout& layout, Draw& draw) {
-    const double nearest_m = layout.style.mean_width_m / 2.0 + kStrayOutside_m;  // to the centre line
+    const double nearest_m = layout.style.mean_width_m / 2.0 + kStrayOutside_m;  // from the centre line
     std::vector<Point> centre_line;
     const auto samples = static_cast<std::size_t>(path.length_m() / kSample_m);
     for (std::size_t i = 0; i <= samples; ++i) {

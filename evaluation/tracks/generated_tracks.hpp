@@ -17,7 +17,7 @@ namespace conelane {
 /// to 6 m, cones 1.5 to 6.3 m apart, legs 3 to 6 m from each other, and gates. Left cones are blue, right
 /// ones yellow, those of gates orange; stray ones are of unknown color and belong to no boundary.
 /// Coordinates are multiples of 0.1 mm, the same on any machine. The track is named `name`, `name@seed` where
-/// the seed is not 0. Throws InvalidInput where the name is unknown.
+/// the seed is not 0. Throws InvalidInput if the name is unknown.
 [[nodiscard]] Track generate_track(const std::string& name, std::uint64_t seed);
 
 }  // namespace conelane

@@ -9,7 +9,7 @@
 namespace conelane {
 namespace {
 
-/// Slack for arcs that fill their side exactly, as in a circle [m].
+/// Tolerance for arcs that fill their side exactly, as in a circle [m].
 constexpr double kTouching_m = 1e-9;
 
 struct Arc {

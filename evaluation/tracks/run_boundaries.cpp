@@ -10,12 +10,12 @@
 namespace conelane {
 namespace {
 
-constexpr double kPathStep_m = 0.5;         ///< a car that stands does not draw loops
-constexpr double kMaxConeDistance_m = 6.5;  ///< from the path: the widest lane
+constexpr double kPathStep_m = 0.5;         ///< a car at rest adds no places
+constexpr double kMaxConeDistance_m = 6.5;  ///< from the path: the width of the widest lane
 constexpr double kMinLap_m = 30.0;          ///< travel before the path may be back at its start
 constexpr double kBackAtStart_m = 3.0;      ///< from the start
-constexpr double kBeyondPath_m = 15.0;      ///< straight on from where the path ends
-constexpr double kEndDirection_m = 2.0;     ///< the path ends in the direction of its last metres
+constexpr double kBeyondPath_m = 15.0;      ///< straight extension behind the end of the path
+constexpr double kEndDirection_m = 2.0;     ///< the extension has the direction of the last metres
 constexpr std::size_t kMinConesOfALap = 3;
 
 struct DrivenLap {
@@ -23,7 +23,7 @@ struct DrivenLap {
     bool closed = false;
 };
 
-/// The path up to where it comes back to its start; all of it, with a straight piece more, where it does not.
+/// The path up to its return to the start. If it does not return, the whole path with a straight extension.
 DrivenLap first_lap(std::span<const Point> path) {
     DrivenLap lap;
     for (const Point& place : path) {
@@ -70,7 +70,7 @@ bool any_cross(std::span<const Segment> some, std::span<const Segment> others) {
     });
 }
 
-/// A cone beside the path: how far along it, to which side, how far off.
+/// A cone beside the path: arc length, side and distance.
 struct PassedCone {
     std::size_t cone;
     double along_m;
@@ -78,8 +78,8 @@ struct PassedCone {
     double off_m;
 };
 
-/// Where the car passes a cone on the side that its color demands, nearest to the path; nothing where it is
-/// too far off, behind the start, or of unknown color.
+/// The place where the car passes a cone on the side of the cone's color, nearest to the path. Nothing if the
+/// cone is too far away, behind the start, or of unknown color.
 std::optional<PassedCone> passed(const Track& run, std::size_t cone, std::span<const Segment> path,
                                  bool closed) {
     const ConeColor color = run.cones[cone].color;

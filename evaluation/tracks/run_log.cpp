@@ -19,7 +19,7 @@
 namespace conelane {
 namespace {
 
-constexpr double kSameCone_m = 0.8;  ///< between two frames
+constexpr double kSameCone_m = 0.8;  ///< in two frames
 constexpr double kRunOver_m = 0.5;   ///< from the middle of the car
 
 /// The colors of the five lists of a map.
@@ -55,8 +55,8 @@ Pose read_pose(const JsonNode& frame) {
     return {read_point(frame.member("car_position")), std::atan2(direction.y(), direction.x())};
 }
 
-/// Adds a map to the cones that are known: each of its cones is a known one within kSameCone_m, nearest pairs
-/// first, or a new one.
+/// Adds a map to the known cones. Each of its cones is a known one within kSameCone_m (nearest pairs first),
+/// or a new one.
 std::vector<MapPlace> recognise(const std::vector<Cone>& map, std::vector<Cone>& known) {
     std::vector<std::tuple<double, std::size_t, std::size_t>>
         pairs;  // distance, place in the map, known cone
@@ -89,7 +89,7 @@ std::vector<MapPlace> recognise(const std::vector<Cone>& map, std::vector<Cone>&
     return places;
 }
 
-/// Whether the car runs over a cone of the map on its way between two places.
+/// Whether the car hits a cone of the map between two places.
 bool runs_over_a_cone(const Track& run, const RunFrame& map, const Segment& way) {
     return std::ranges::any_of(map.map, [&](const MapPlace& place) {
         return foot_point(run.cones[place.cone].position, way).distance_m <= kRunOver_m;

@@ -16,7 +16,7 @@ class TourImprovement {
   public:
     TourImprovement(std::span<const Point> points, Tour tour) : points_(points), tour_(std::move(tour)) {}
 
-    /// The tour when no move shortens it any more.
+    /// The tour that no move shortens any more.
     Tour run() && {
         while (reverse_a_run() || move_a_run()) {
         }
@@ -27,12 +27,12 @@ class TourImprovement {
     [[nodiscard]] double distance_m(std::size_t a, std::size_t b) const {
         return is_joker(a) || is_joker(b) ? 0.0 : (points_[a] - points_[b]).norm();
     }
-    /// A place that is near to all others: the tour through it is a path from one of its neighbours to the
-    /// other.
+    /// A place at distance 0 from all others: a tour through it is a path between its two
+    /// neighbours.
     [[nodiscard]] bool is_joker(std::size_t index) const { return index == points_.size(); }
     [[nodiscard]] std::size_t at(std::size_t position) const { return tour_[position % tour_.size()]; }
 
-    /// 2-opt: the first exchange of two segments found that shortens the tour.
+    /// 2-opt: makes the first exchange of two segments that shortens the tour.
     bool reverse_a_run() {
         const std::size_t n = tour_.size();
         for (std::size_t i = 0; i + 1 < n; ++i) {
@@ -49,8 +49,8 @@ class TourImprovement {
         return false;
     }
 
-    /// Or-opt: the first move of a run of one to three points to another place, either way round, that
-    /// shortens the tour.
+    /// Or-opt: moves a run of one to three points to another place, in either direction; makes the first move
+    /// that shortens the tour.
     bool move_a_run() {
         const std::size_t n = tour_.size();
         for (std::size_t length = 1; length <= kMaxMovedRun && length + 2 <= n; ++length) {
@@ -109,7 +109,7 @@ Tour nearest_neighbour_tour(std::span<const Point> points, std::size_t start) {
     return tour;
 }
 
-/// Length of a tour, of a path where it is not closed.
+/// Length of a tour, or of a path if it is not closed.
 double length_m(std::span<const Point> points, const Tour& tour, bool closed) {
     std::vector<Point> vertices;
     for (const std::size_t index : tour) vertices.push_back(points[index]);

@@ -14,7 +14,7 @@
 namespace conelane {
 namespace {
 
-/// A YAML file whose faults name file, line and key.
+/// A YAML file. Errors name file, line and key.
 class YamlFile {
   public:
     explicit YamlFile(const std::filesystem::path& file) : file_(file) {

@@ -66,7 +66,7 @@ std::vector<Track> generated(const std::string& spec, std::string_view names) {
     return tracks;
 }
 
-/// N of every `cone_map_N.yaml` and `boundaries_N.yaml`, so that one without the other is noticed.
+/// All N of `cone_map_N.yaml` and of `boundaries_N.yaml`, so that a file without its partner is noticed.
 std::set<int> fsd_numbers(const fs::path& directory) {
     std::set<int> numbers;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
@@ -106,7 +106,7 @@ std::vector<Track> fsd(const std::string& spec, const std::string& where) {
     return tracks;
 }
 
-/// The track of a file, or those of all files in a folder that end like one, in the order of their names.
+/// The track of a file, or of all files in a folder with this extension, sorted by name.
 std::vector<Track> of_files(const std::string& spec, const fs::path& where, std::string_view ending,
                             Track (*read)(const fs::path&)) {
     if (!fs::is_directory(where)) return {read(where)};
@@ -130,7 +130,7 @@ std::vector<Track> load_tracks(const std::string& spec) {
     if (what.empty())
         fail(spec,
              "is not generated:NAME, fsd:DIR, fsd:DIR:1,2, pacsim:FILE, eufs:FILE or ftlog:FILE, "
-             "where a FILE may be a folder of such");
+             "and instead of a FILE, a folder with such files");
     try {
         if (kind == "generated") return generated(spec, what);
         if (kind == "fsd") return fsd(spec, what);

@@ -2,7 +2,7 @@
 //
 //     conelane solve --solver "exec:highs-npm=node experiments/adapters/highs_npm.mjs FOLDER {lp} {sol} {limit_s} {gap} {seed}" ...
 //
-// One thread. The package tells no bound, and nothing where its time is up.
+// One thread. The package reports no bound, and nothing at all if its time ends.
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { resolve } from "node:path";

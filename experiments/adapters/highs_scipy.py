@@ -2,7 +2,7 @@
 
     conelane solve --solver "exec:highs=/usr/bin/python3 experiments/adapters/highs_scipy.py" ...
 
-A conversation: scipy takes a second to load, so the program stays. One thread; scipy passes no seed and no start on."""
+The program stays running, because scipy takes a second to load. One thread; scipy passes on no seed and no start."""
 
 import json
 import sys

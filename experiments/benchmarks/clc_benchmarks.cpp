@@ -1,6 +1,6 @@
-// What the stages of CLC take from scene to lane: the search graph, the enumeration with and without features
-// (as time for each of its iterations), the ranking (for each candidate), and a whole detection. Scenes are
-// of generated tracks, three false positives among ten points, 30 m; the scenes take turns.
+// Times of the stages of CLC from scene to lane: the search graph, the enumeration with and without features
+// (per iteration), the ranking (per candidate), and a whole detection. Scenes are of generated tracks, 30 %
+// false positives, 30 m range; the scenes take turns.
 
 #include "evaluation/scenes/scene_generation.hpp"
 #include "evaluation/tracks/generated_tracks.hpp"
@@ -38,7 +38,7 @@ const std::vector<Scene>& scenes() {
     return all;
 }
 
-/// Time in seconds of one of the things that were counted, which the program prints with a unit.
+/// Seconds for one of the counted things; the program prints it with a unit.
 benchmark::Counter time_of_each(double count) {
     return {count, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
 }

@@ -1,17 +1,17 @@
-// What each stage of path-pair is worth, and whether its memory is flat.
+// The benefit of each stage of path-pair, and whether its memory stays constant.
 //
 //   ablation/STAGE/N   solves with one stage switched off, on cone sets of N (0: all visible), at most 50 ms
 //                      each; counters: share proven in time, nodes a scene
-//   scene/N            from a scene of the N nearest cones to the answer, the problem's making included,
-//   limit
+//   scene/N            from a scene of the N nearest cones to the answer, with making the problem, limit
 //                      50 ms; the scenes take turns; counters: median and p95 over the scenes of the median
 //                      of nine solves each
-//   verification/N     the check that every answer passes before it leaves, of the best lane graph found in
-//                      50 ms; counter: mean time a scene
+//
+//   verification/N     the check that every answer passes, on the best lane graph found in 50 ms; counter:
+//                      mean time a scene
 //   memory             100 000 solves by one instance; counters: resident memory after 1000 and at the end
 //
-// Scenes are of generated tracks with three false positives among ten points, or those of the file that the
-// environment variable CONELANE_SCENES names.
+// Scenes are of generated tracks with 30 % false positives, or those of the file that the environment
+// variable CONELANE_SCENES names.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/solve_scene.hpp"

@@ -1,6 +1,6 @@
-// What a planner takes for a frame, and what its detector takes for the same frame alone: median and 99th
-// percentile of the processor time. The frames are those of a lap of each generated circuit, driven by the
-// planner: `car`, three false positives among ten points, 20 m of sight.
+// Time of a planner for a frame, and of its detector for the same frame alone: median and 99th percentile of
+// the processor time. The frames are a lap of each generated circuit, driven by the planner: condition `car`,
+// 30 % false positives, 20 m range.
 
 #include "conelane/detectors.hpp"
 #include "conelane/planner.hpp"
@@ -75,8 +75,8 @@ void count(benchmark::State& state, std::vector<double> times_ms) {
     state.counters["p99_ms"] = quantile(99);
 }
 
-/// One iteration is all frames once. `with_planner`, `with_detector`: whose time counts; with both, that of
-/// the planner less that of the detector.
+/// One iteration is all frames once. `with_planner`, `with_detector`: whose time counts; with both, the
+/// planner's time minus the detector's.
 void frames(benchmark::State& state, bool with_planner, bool with_detector) {
     std::vector<double> times_ms;
     (void)laps();

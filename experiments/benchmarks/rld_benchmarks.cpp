@@ -1,7 +1,7 @@
-// What each stage from scene to lane graph takes: the problem's numbers, building the program, updating it,
-// and a whole solve by each backend, by cone-set size. Scenes are of generated tracks with a false positive
-// among five points, or those of the file that the environment variable CONELANE_SCENES names. An iteration
-// is one scene; the scenes take turns.
+// Times of the stages from scene to lane graph by cone-set size: making the problem, building the program,
+// updating it, and a whole solve by each backend. Scenes are of generated tracks with 20 % false positives,
+// or those of the file that the environment variable CONELANE_SCENES names. One iteration is one scene; the
+// scenes take turns.
 
 #include "evaluation/scenes/annotated_scene.hpp"
 #include "experiments/benchmarks/benchmark_scenes.hpp"
@@ -21,7 +21,7 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::array<std::int64_t, 6> kSizes{6, 9, 12, 16, 20, 30};
-/// The paper formulation takes seconds beyond.
+/// Larger programs of the paper formulation take seconds.
 constexpr std::int64_t kMaxPaperSize = 12;
 
 std::vector<LaneGraphProblem> problems_of(const std::vector<Scene>& scenes, EdgeExtent extent) {

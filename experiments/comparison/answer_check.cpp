@@ -13,7 +13,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// What is wrong with a lane that was found; empty where nothing is.
+/// The fault of a lane that was found, in words; empty if there is none.
 std::string objection(const LaneRecord& record, const Scene& seen, const RldParameters& parameters) {
     const LaneAnswer& answer = record.answer;
     const Lane& lane = answer.uncut ? answer.uncut->lane : answer.lane;

@@ -11,14 +11,14 @@
 namespace conelane::experiments {
 
 /// The edges between consecutive cones of each boundary; of a closed lane also those from last to first.
-/// Nothing where the lane names a cone that is not in the scene, or one twice in a row.
+/// Nothing if the lane names a cone that is not in the scene, or one twice in a row.
 [[nodiscard]] std::optional<LaneGraph> lane_graph_of(const Lane& lane, const Scene& scene);
 
-/// Holds what an RLD detector found against the independent checker: every constraint, the stated objective,
-/// bound and optimality. `seen` is what the detector found its lane among; a lane that was cut is held
-/// against them as it was before, and must be what the cut leaves. An answer that passes is marked as
-/// checked; one that does not becomes status error with the checker's first objection as its message. A
-/// record without a lane stays as it is.
+/// Checks the answer of an RLD detector by the independent checker: every constraint, the stated objective,
+/// bound and optimality. `seen`: the scene among whose cones the lane was found. If the lane was cut, the
+/// uncut lane is checked, and the cut must give the lane. An answer that passes is marked as checked; another
+/// one gets status error with the checker's first objection as its message. A record without a lane stays
+/// unchanged.
 void check_answer(LaneRecord& record, const Scene& seen, const RldParameters& parameters);
 
 }  // namespace conelane::experiments

@@ -27,7 +27,7 @@ std::vector<std::string> AnswerErrors::lines() const {
         if (count.errors == 0) continue;
         std::string line = fmt::format("{}: {} of {} answers are errors, the first to {}", count.detector,
                                        count.errors, count.answers, count.first);
-        // A message may hold what a program from outside said.
+        // A message may quote a program from outside.
         std::ranges::replace_if(
             line, [](char letter) { return letter == '\n' || letter == '\r'; }, ' ');
         lines.push_back(std::move(line));

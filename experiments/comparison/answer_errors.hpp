@@ -15,9 +15,9 @@ class AnswerErrors {
     void add_answer(std::string_view detector) { ++count_of(detector).answers; }
     void add_error(std::string_view detector, const std::string& scene, const std::string& message);
 
-    /// One line for each detector with errors: how many, and what the first of them was.
+    /// One line for each detector with errors: their number, and the first message.
     [[nodiscard]] std::vector<std::string> lines() const;
-    /// Whether there is a detector all of whose answers are errors.
+    /// Whether all answers of some detector are errors.
     [[nodiscard]] bool any_answered_nothing() const;
 
   private:
@@ -31,7 +31,7 @@ class AnswerErrors {
     std::vector<Count> counts_;  ///< in the order in which the detectors are met
 };
 
-/// Counts a lane, or an error where that is what its detector answered.
+/// Counts a lane, or an error if the answer has status error.
 void add_answer_of(AnswerErrors& errors, const LaneRecord& record);
 
 }  // namespace conelane::experiments

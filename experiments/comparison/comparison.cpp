@@ -42,14 +42,14 @@ DetectorMaker maker_of(const ComparedDetector& compared, const RunOptions& optio
     return maker_of(detector, used);
 }
 
-/// Runs a detector on the scenes that its lanes file does not answer yet.
+/// Runs a detector on the scenes that its lanes file does not yet answer.
 void answer_scenes(const ComparedDetector& compared, std::span<const AnnotatedScene> scenes,
                    RunOptions options, const fs::path& file) {
     if (fs::exists(file)) return;
     options.detector.nearest = compared.nearest;
     LaneLog log(file);
     const std::vector<std::size_t> starts = lap_starts(scenes);
-    // A lap that was broken off is driven again: a detector with state must see it from its beginning.
+    // An incomplete lap is driven again, because a detector with state must see it from its beginning.
     const std::size_t stored = std::min(log.stored(), scenes.size());
     const std::size_t done = *std::prev(std::ranges::upper_bound(starts, stored));
     log.keep(done);
@@ -58,8 +58,8 @@ void answer_scenes(const ComparedDetector& compared, std::span<const AnnotatedSc
     log.finish();
 }
 
-/// The answers of the lanes files among the detectors, by name. Read before anything is written: a file that
-/// is wrong must not stop a run that has begun.
+/// The answers of the lanes files among the detectors, by name. They are read before anything is written, so
+/// that an invalid file cannot stop a run that has begun.
 std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOptions& options,
                                                               std::span<const AnnotatedScene> scenes,
                                                               const fs::path& directory) {
@@ -69,7 +69,7 @@ std::map<std::string, std::vector<LaneRecord>> finished_lanes(const ComparisonOp
         const fs::path file = compared.outside->source;
         std::error_code ignored;
         if (fs::equivalent(fs::absolute(file).parent_path(), directory, ignored))
-            throw InputError(file, 0, "", "lies in the directory of the results, which are written there");
+            throw InputError(file, 0, "", "is in the directory of the results, whose files would replace it");
         lanes.emplace(compared.name, read_finished_lanes(*compared.outside, scenes));
     }
     return lanes;
@@ -104,7 +104,7 @@ ComparisonOutcome score_directory(const fs::path& directory, const SceneSet& set
     const std::vector<ScoreRow> rows = summarise(scored);
     const LeftOutScenes left_out = read_left_out(track_boundaries_path(directory / kScenesFile));
     const std::string table = score_table(rows) + outside_notes(scored, outside) + table_note_on(left_out);
-    // An earlier table stays beside the scores that it was made of until all are written.
+    // Earlier tables stay, with the scores that they belong to, until all new files are written.
     AtomicFile scores(directory / "scores.jsonl");
     AtomicFile results(directory / "results.jsonl");
     AtomicFile table_text(directory / "table.txt");

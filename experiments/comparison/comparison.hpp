@@ -10,31 +10,31 @@
 
 namespace conelane::experiments {
 
-/// What a comparison has to say beside its files.
+/// The output of a comparison apart from its files.
 struct ComparisonOutcome {
     std::string summary;  ///< for a terminal; the wide table is in table.txt
     AnswerErrors errors;
 };
 
-/// The main job. Every detector on the same scenes, scored in the same way, everything on file in the
+/// Runs every detector on the same scenes, scores all in the same way, and writes everything to files in the
 /// directory:
-///   run.json                                 what the run depends on
+///   run.json               what the run depends on
 ///   scenes.scenes.jsonl    what the detectors saw
-///   scenes.tracks.json     the boundaries they are scored against
-///   METHOD.lanes.jsonl     what they answered; METHOD.lanes.jsonl.part until it is whole
-///   echo_floor.json                          what an echo program takes, where a program from outside ran
+///   scenes.tracks.json     the boundaries that they are compared with
+///   METHOD.lanes.jsonl     their answers; METHOD.lanes.jsonl.part until it is complete
+///   echo_floor.json        round-trip time of an echo program, if there is a program from outside
 ///   scores.jsonl           a line per scene and detector
 ///   results.jsonl          a line per detector, rate and range, with provenance
 ///   table.txt              the same as a wide table for reading
 ///
-/// A run that was stopped goes on after its last whole lap. Throws InputError or
-/// InvalidInput, so where the directory holds another run (see open_run).
+/// A run that was stopped resumes after its last complete lap. Throws InputError or InvalidInput, also if the
+/// directory holds another run (see open_run).
 [[nodiscard]] ComparisonOutcome compare(const ComparisonOptions& options,
                                         const std::filesystem::path& directory);
 
-/// Joins the shards of one run into what the whole run would have written, but for the times. Throws
-/// InputError where they are not all shards of one run: other commit, compiler or options, one missing, one
-/// twice; where the directory is one of them, or holds another run that may not be overwritten.
+/// Joins the shards of one run. The result is what the whole run would have written, except for times. Throws
+/// InputError unless they are all shards of one run, each once, with equal commit, compiler and options; and
+/// if the directory is one of them, or holds another run that may not be overwritten.
 [[nodiscard]] ComparisonOutcome merge(const std::vector<std::filesystem::path>& shards,
                                       const std::filesystem::path& directory, bool overwrite = false);
 

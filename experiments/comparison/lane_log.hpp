@@ -10,8 +10,8 @@
 
 namespace conelane::experiments {
 
-/// A lanes file that grows while a detector runs. Until it is whole it bears the name FILE.part; a run that
-/// was stopped finds there what it had answered.
+/// A lanes file that grows while a detector runs. Until it is complete its name is FILE.part; a stopped run
+/// finds its answers there.
 class LaneLog {
   public:
     /// Opens FILE.part, and drops an unfinished last line. Throws InputError.
@@ -22,7 +22,7 @@ class LaneLog {
     /// Keeps the first `count` of them. Precondition: count <= stored(), nothing appended yet.
     void keep(std::size_t count);
 
-    /// Written through before it returns. Throws InputError where the disk is full.
+    /// The line is on the disk when this returns. Throws InputError if the disk is full.
     void append(std::span<const LaneRecord> records);
 
     /// Gives the file its name. Throws InputError.

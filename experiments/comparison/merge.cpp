@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// Takes one element after the other lap by lap: lap k of the whole is the next lap of part k mod count.
+/// Takes the laps from the parts in turn: lap k of the whole is the next lap of part k mod count.
 template <typename T>
 std::vector<T> interleave(std::span<const std::vector<std::size_t>> lap_starts_of_part,
                           std::vector<std::vector<T>>& parts) {
@@ -52,7 +52,7 @@ ShardedRun sort_shards(const std::vector<fs::path>& shards) {
         ordered_json record = ordered_json::parse(read_run_record(directory));
         const fs::path file = directory / "run.json";
         if (!record.contains("shard") || !record["shard"].is_array() || record["shard"].size() != 2) {
-            throw InputError(file, 0, "shard", "is missing: no shard of a run");
+            throw InputError(file, 0, "shard", "is missing: the directory is not a shard of a run");
         }
         const auto index = record["shard"][0].get<std::size_t>();
         const auto count = record["shard"][1].get<std::size_t>();
@@ -93,7 +93,8 @@ ComparisonOutcome merge(const std::vector<fs::path>& shards, const fs::path& dir
     for (const fs::path& shard : shards) {
         std::error_code ignored;
         if (fs::equivalent(shard, directory, ignored)) {
-            throw InputError(directory, 0, "", "is one of the shards, so the whole cannot go there");
+            throw InputError(directory, 0, "",
+                             "is one of the shards; the joined run needs another directory");
         }
     }
     const ShardedRun run = sort_shards(shards);

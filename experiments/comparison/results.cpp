@@ -83,7 +83,7 @@ nlohmann::ordered_json score_line(const ScoredRecord& scored) {
     return line;
 }
 
-/// What the detectors themselves say that they took, of the records that `is_meant` picks.
+/// The times that detectors report themselves, of the records that `is_meant` selects.
 template <typename IsMeant>
 std::vector<double> self_times_ms(std::span<const ScoredRecord> scored, IsMeant is_meant) {
     std::vector<double> times_ms;
@@ -109,7 +109,7 @@ nlohmann::ordered_json outside_part(const OutsideDetector& detector, const std::
     return part;
 }
 
-/// How many answers are errors, and the first of them; empty where none is.
+/// The number of errors, and the first message; empty if there is no error.
 std::string note_on_errors(std::span<const ScoredRecord> scored, const std::string& detector) {
     std::size_t answers = 0;
     std::size_t errors = 0;
@@ -194,7 +194,7 @@ std::vector<ScoredRecord> RecordScorer::score(std::span<const LaneRecord> record
     std::vector<const Truth*> truths;
     truths.reserve(records.size());
     std::map<std::string, std::size_t> answered;  // by detector and cone-set size
-    std::set<std::string> optimising;             // of these, those that state an objective
+    std::set<std::string> optimising;             // those among them that state an objective
     for (const LaneRecord& record : records) {
         truths.push_back(&truth_of(record, lanes_file));
         const std::string label = key_of(*truths.back()->scene, record).detector_label();

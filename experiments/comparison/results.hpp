@@ -22,7 +22,7 @@
 
 namespace conelane::experiments {
 
-/// A record, the scene it answers and what that is worth. Refers to both.
+/// A record with the scene that it answers and its score. Refers to record and scene.
 struct ScoredRecord {
     const AnnotatedScene* scene;
     const LaneRecord* record;
@@ -30,7 +30,7 @@ struct ScoredRecord {
     std::optional<LaneFailure> failure = {};  ///< why the lane is not usable
 };
 
-/// Scores records against the scenes of one set. What all detectors are held against is made once.
+/// Scores records against the scenes of one set. Data that all detectors share is computed once.
 class RecordScorer {
   public:
     /// The courses that a detector has learned from.
@@ -40,20 +40,20 @@ class RecordScorer {
     RecordScorer(std::span<const AnnotatedScene> scenes, const TrackBoundariesByName& tracks,
                  CoursesOf courses_of);
 
-    /// In the order of the records, on all processors. Every record's scene must be one of the set, and the
-    /// records of one detector and cone-set size must cover every scene once; a scene that does not count is
-    /// left out. A lane is held steady against the record before where that is of the same detector and lap.
-    /// Where a detector states the objective of its lanes, its status none is a proof and counts as solved.
-    /// `lanes_file` is named in errors; of several the first one is thrown. Throws InputError.
+    /// Scores in the order of the records, on all processors. Every record's scene must belong to the set,
+    /// and the records of one detector and cone-set size must cover every scene once; a scene that does not
+    /// count is left out. Whether a lane is steady is decided by the record before, if it has the same
+    /// detector and lap. If a detector states the objective of its lanes, its status none is a proof and
+    /// counts as solved. `lanes_file` is named in errors. Throws InputError, the first one of several.
     [[nodiscard]] std::vector<ScoredRecord> score(std::span<const LaneRecord> records,
                                                   const std::filesystem::path& lanes_file);
 
   private:
     struct Truth {
         const AnnotatedScene* scene;
-        const TrackBoundaries* boundaries;  ///< none where the tracks file has none of that name
+        const TrackBoundaries* boundaries;  ///< null if the tracks file has no track of that name
         bool counts;
-        CentreLine centre_line;  ///< empty where the truth is a driven path
+        CentreLine centre_line;  ///< empty if the truth is a driven path
     };
     [[nodiscard]] const Truth& truth_of(const LaneRecord& record, const std::filesystem::path& file) const;
     /// Fills in score and failure of `scored`.
@@ -67,28 +67,28 @@ class RecordScorer {
 /// A row for each detector, cone-set size, condition, rate and range.
 [[nodiscard]] std::vector<ScoreRow> summarise(std::span<const ScoredRecord> scored);
 
-/// Writes a line per record with every measure of it.
+/// Writes a line for each record with all its measures.
 void write_scores(std::ostream& output, std::span<const ScoredRecord> scored);
 
-/// The detectors from outside among those scored, and what an echo program takes.
+/// The detectors from outside among the scored ones, and the time of an echo program.
 struct OutsideDetectors {
     std::vector<OutsideDetector> detectors;
     EchoFloor echo;
 
-    /// The courses that a detector has learned from: those of its card where it is one of these, none where
-    /// it was `cross_validated`, else those of training_courses.
+    /// The courses that a detector has learned from: those of its card for a detector from outside, none if
+    /// it was `cross_validated`, else training_courses.
     [[nodiscard]] std::set<std::string> courses_of(const std::string& detector, bool cross_validated) const;
 };
 
-/// Writes a line per row: the summary, of a detector from outside also `outside` (exec, lanes or solver),
-/// `self_timed_ms` and `echo_floor_ms` where they are known and `card`; then commit, compiler and machine of
+/// Writes a line for each row. It has the summary; for a detector from outside also `outside` (exec, lanes or
+/// solver), `self_timed_ms` and `echo_floor_ms` if known, and `card`; then commit, compiler and machine of
 /// this program, and `run`, a JSON object with everything that the run depended on (options, parameters,
 /// seed).
 void write_results(std::ostream& output, std::span<const ScoreRow> rows, std::span<const ScoredRecord> scored,
                    const OutsideDetectors& outside, const std::string& run);
 
-/// What a table says below of detectors from outside: what its latencies are, how many scenes they failed on,
-/// and their cards. Empty where there are none.
+/// The lines below a table about detectors from outside: what their latencies mean, how many scenes they
+/// failed on, and their cards. Empty if there are none.
 [[nodiscard]] std::string outside_notes(std::span<const ScoredRecord> scored,
                                         const OutsideDetectors& outside);
 

@@ -50,7 +50,7 @@ std::vector<fs::path> files_of_a_run(const fs::path& directory) {
     return files;
 }
 
-/// Keys under which two records say different things; "its record" where the text differs otherwise.
+/// The keys in which two records differ; "its record" if the texts differ otherwise.
 std::vector<std::string> differing_keys(const std::string& stored, const std::string& wanted) {
     const nlohmann::json a = nlohmann::json::parse(stored);
     const nlohmann::json b = nlohmann::json::parse(wanted);

@@ -24,7 +24,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// What an RLD detector's lanes are checked against.
+/// The problem that an RLD detector's lanes are checked against.
 struct CheckedRld {
     ConeSet cones;
     RldParameters parameters;
@@ -62,10 +62,10 @@ class TimedLaneDetector : public TimedDetector {
     std::unique_ptr<LaneDetector> detector_;
     std::optional<std::size_t> nearest_;
     std::optional<CheckedRld> check_;
-    DoubledCones doubled_;  ///< a detector answers for the scene without doubles
+    DoubledCones doubled_;  ///< a detector answers for the scene without doubled cones
 };
 
-/// A program from outside, taken from those that run already and given back.
+/// A program from outside, taken from a pool of running programs and given back.
 class TimedProgram : public TimedDetector {
   public:
     TimedProgram(std::shared_ptr<OutsideProgramPool> pool, std::optional<std::size_t> nearest)
@@ -84,7 +84,7 @@ class TimedProgram : public TimedDetector {
         record.nearest = nearest_;
         return record;
     }
-    void warm_up(const Scene& /*scene*/) override {}  // once at its start
+    void warm_up(const Scene& /*scene*/) override {}  // warmed up once, at its start
     void reset() override { program_->reset(); }
 
   private:
@@ -106,7 +106,7 @@ std::vector<LaneRecord> drive_lap(const DetectorMaker& make, std::span<const Ann
     return records;
 }
 
-/// Passes laps on in their order, whatever order they end in.
+/// Passes laps on in their order, in whatever order they finish.
 class InOrder {
   public:
     InOrder(std::size_t laps, const LapSink& sink) : waiting_(laps), sink_(sink) {}
@@ -164,7 +164,7 @@ DetectorMaker maker_of_solver(const OutsideDetector& solver, const RunOptions& o
                                   .cones = {options.detector.nearest, {}}};
     validate(made.parameters);
     const OutsideSolverOptions how{solver.formulation.value_or(Formulation::tight)};
-    (void)OutsideSolver(solver, how);  // what is wrong with the command is said at once
+    (void)OutsideSolver(solver, how);  // throws at once if the command is invalid
     return [solver, options, made, how](const std::string& /*track*/) {
         auto detector =
             answer_drivable_lanes(make_rld_detector(std::make_unique<OutsideSolver>(solver, how), made));
@@ -202,7 +202,7 @@ void run(const std::string& name, const DetectorMaker& make, std::span<const Ann
         return;
     }
     InOrder in_order(laps, sink);
-    // Arenas above the processors there are make oneTBB warn.
+    // oneTBB warns if there are more arenas than processors.
     const int threads = std::min(static_cast<int>(options.threads), oneapi::tbb::info::default_concurrency());
     oneapi::tbb::task_arena arena(threads);
     arena.execute([&] {

@@ -18,7 +18,7 @@ namespace conelane::experiments {
 struct RunOptions {
     DetectorOptions detector;
     DetectionLimits limits{.time_limit_ms = std::numeric_limits<double>::infinity()};
-    /// One: on one processor. More disturb the latencies by contention.
+    /// One thread runs on one processor. With more threads, contention disturbs the latencies.
     unsigned threads = 1;
     bool show_progress = true;
 };
@@ -29,17 +29,17 @@ class TimedDetector {
   public:
     virtual ~TimedDetector() = default;
     [[nodiscard]] virtual LaneRecord answer(const Scene& scene) = 0;
-    /// Answers the scene untimed and forgets it, so that no latency holds the loading of code.
+    /// Answers the scene untimed and forgets it, so that no latency includes the loading of code.
     virtual void warm_up(const Scene& scene) = 0;
-    /// What follows is another lap.
+    /// Another lap begins.
     virtual void reset() = 0;
 };
 
-/// Makes what answers a lap of the course of this name, in any thread.
+/// Makes the detector for a lap of the course of this name, in any thread.
 using DetectorMaker = std::function<std::unique_ptr<TimedDetector>(const std::string& track)>;
 
-/// A detector of this program. What an RLD detector found and the independent checker rejects becomes an
-/// answer of status error (see check_answer; not timed). The detector must outlive what is made.
+/// A detector of this program. If the independent checker rejects the answer of an RLD detector, its status
+/// becomes error (see check_answer; not timed). The detector must outlive the result.
 [[nodiscard]] DetectorMaker maker_of(const KnownDetector& detector, const RunOptions& options);
 
 /// Any detector under a name, on all cones.
@@ -47,14 +47,14 @@ using DetectorMaker = std::function<std::unique_ptr<TimedDetector>(const std::st
                                      std::function<std::unique_ptr<LaneDetector>()> make_detector,
                                      const RunOptions& options);
 
-/// A program from outside, timed by its round trip. It stays from lap to lap, as long as the maker lives; of
-/// the options it knows the cone-set size alone, and has its own limits (see OutsideLimits).
+/// A program from outside, timed by its round trip. It runs from lap to lap, as long as the maker exists. Of
+/// the options it gets only the cone-set size, and it has limits of its own (see OutsideLimits).
 [[nodiscard]] DetectorMaker maker_of_program(const std::string& name, const std::string& command,
                                              const RunOptions& options);
 
-/// RLD by a solver from outside: on the cones and with the parameters of the options, otherwise on all cones
-/// with the default parameters. Timed and checked as a detector of this program: writing the files and
-/// reading the solution is inside the time. Each lap starts the program anew; its start is not timed.
+/// RLD by a solver from outside. It gets the cones and parameters of the options; without options, all cones
+/// and the default parameters. It is timed and checked like a detector of this program: the time includes
+/// writing the files and reading the solution. Each lap starts the program again; the start is not timed.
 [[nodiscard]] DetectorMaker maker_of_solver(const OutsideDetector& solver, const RunOptions& options);
 
 /// The RLD parameters that a solver from outside gets.
@@ -64,15 +64,15 @@ using DetectorMaker = std::function<std::unique_ptr<TimedDetector>(const std::st
 [[nodiscard]] bool same_lap(const AnnotatedScene& a, const AnnotatedScene& b);
 
 /// First scene of each lap, and the number of scenes at the end. A lap is a run of scenes of one track,
-/// condition, rate and range, the unit of work: a detector that carries state sees each lap from its
-/// beginning, alone.
+/// condition, rate and range. It is the unit of work, because a detector with state must see each lap alone
+/// and from its beginning.
 [[nodiscard]] std::vector<std::size_t> lap_starts(std::span<const AnnotatedScene> scenes);
 
 /// Gets the records of each lap, in the order of the laps, from one thread at a time.
 using LapSink = std::function<void(std::span<const LaneRecord>)>;
 
-/// Runs a detector on every scene, a TimedDetector for each lap. The first scene of a lap is answered once
-/// untimed before. The cut to the cone set is part of the detector and of its time.
+/// Runs a detector on every scene, with a new TimedDetector for each lap. The first scene of a lap is
+/// answered untimed before. The cut to the cone set is part of the detector and of its time.
 void run(const std::string& name, const DetectorMaker& make, std::span<const AnnotatedScene> scenes,
          const RunOptions& options, const LapSink& sink);
 

@@ -16,16 +16,16 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr std::size_t kMaxBlocks = 2;       ///< of columns below one another
-constexpr std::size_t kMinRows = 3;         ///< of methods, whatever else has no room
+constexpr std::size_t kMaxBlocks = 2;       ///< one below the other
+constexpr std::size_t kMinRows = 3;         ///< rows that are shown even if other lines have no room
 constexpr std::size_t kMaxLabelWidth = 24;  ///< a longer name is cut
 constexpr std::size_t kCellWidth = 6;       ///< " 100.0"
 constexpr std::size_t kLatencyWidth = 9;
 constexpr std::string_view kGroupGap = "  ";
 
-/// What is counted of some scenes of a method.
+/// Counts over some scenes of a method.
 struct Tally {
-    std::size_t known = 0;  ///< scenes of which it is known whether the lane is usable
+    std::size_t known = 0;  ///< scenes for which it is known whether the lane is usable
     std::size_t usable = 0;
     std::size_t scenes = 0;
     std::array<std::size_t, kLaneFailureCount> failures{};
@@ -55,7 +55,7 @@ struct Row {
 /// What a group of columns has in common.
 struct GroupKey {
     std::string condition;
-    std::optional<double> rate;  ///< of groups of cone-set sizes
+    std::optional<double> rate;  ///< for groups of cone-set sizes
     bool operator==(const GroupKey&) const = default;
 };
 
@@ -70,13 +70,13 @@ using Places = std::vector<std::size_t>;
 std::string cut(std::string text, std::size_t width) {
     if (text.size() <= width) return text;
     text.resize(width - 1);
-    // Not within a character of several bytes.
+    // Does not cut a character of several bytes.
     while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
     if (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80U) != 0U) text.pop_back();
     return text + "~";
 }
 
-/// 30, 16.7
+/// Formats such as 30 and 16.7.
 std::string percent_title(double share) {
     std::string text = fmt::format("{:.1f}", 100.0 * share);
     if (text.ends_with(".0")) text.resize(text.size() - 2);
@@ -98,7 +98,7 @@ class Summary {
     [[nodiscard]] std::string text(const std::vector<std::string>& notes) const {
         const std::vector<Places> blocks = fitting_blocks();
         const std::size_t blocks_count = blocks.size() * (by_size_ ? 2 : 1);
-        const std::size_t tables = blocks_count + 1;  // and what went wrong
+        const std::size_t tables = blocks_count + 1;  // and the line of failures
         bool any_trained = false;
         for (const Row& row : rows_) any_trained = any_trained || row.is_trained;
         const std::size_t fixed =
@@ -143,7 +143,7 @@ class Summary {
         row->of_column[place].add(record);
     }
 
-    /// Best first; those of which nothing is known last.
+    /// Best first; methods without known scenes last.
     void sort() {
         std::ranges::stable_sort(rows_, [](const Row& a, const Row& b) {
             if (a.all.known == 0 || b.all.known == 0) return a.all.known > b.all.known;
@@ -168,8 +168,8 @@ class Summary {
         return std::min(width, kMaxLabelWidth);
     }
 
-    /// Columns side by side as far as there is room, and below one another; those that are left over have
-    /// none.
+    /// Places columns side by side while there is room, then in a block below; columns that are left over
+    /// have no place.
     [[nodiscard]] std::vector<Places> fitting_blocks() const {
         std::vector<Places> blocks(1);
         std::size_t used = 0;
@@ -180,7 +180,7 @@ class Summary {
         for (std::size_t i = 0; i < order_.size(); ++i) {
             const bool begins_group =
                 blocks.back().empty() || !(columns_[order_[i]].group == columns_[order_[i - 1]].group);
-            // A group that fits into a block of its own is not parted.
+            // A group that fits into one block is not split.
             std::size_t needed = kCellWidth;
             if (begins_group) {
                 std::size_t members = 0;
@@ -291,7 +291,7 @@ class Summary {
         return row.is_trained ? cut(row.label, kMaxLabelWidth - 1) + '*' : cut(row.label, kMaxLabelWidth);
     }
 
-    /// The causes by their shares, equal ones in their own order, as far as there is room.
+    /// The causes by their shares; equal shares in the order of the causes; as many as there is room for.
     [[nodiscard]] std::string failures_line(const Row& row) const {
         std::string line = fmt::format("{:<{}}{}", label_of(row), label_width(), kGroupGap);
         if (row.all.known == 0) return line + "    -\n";
@@ -300,14 +300,14 @@ class Summary {
         std::iota(causes.begin(), causes.end(), 0U);
         std::ranges::stable_sort(causes, std::greater{}, [&](std::size_t i) { return row.all.failures[i]; });
         std::string_view between = "  ";
-        std::size_t rest = row.all.known - row.all.usable;  // what is not named yet
+        std::size_t rest = row.all.known - row.all.usable;  // not named so far
         for (const std::size_t i : causes) {
             const std::size_t count = row.all.failures[i];
             if (count == 0) break;
             std::string cause(to_string(static_cast<LaneFailure>(i)));
             std::ranges::replace(cause, '_', ' ');
             const std::string piece = fmt::format("{}{} {:.1f}", between, cause, row.all.percent(count));
-            constexpr std::size_t kRoomForTheRest = 12;  // ", other 12.3"
+            constexpr std::size_t kRoomForTheRest = 12;  // room for ", other 12.3"
             if (line.size() + piece.size() + (rest > count ? kRoomForTheRest : 0) > kSummaryColumns) break;
             line += piece;
             rest -= count;
@@ -333,8 +333,8 @@ class Summary {
     bool by_size_ = false;  ///< columns are cone-set sizes instead of rates
     std::set<std::optional<double>> ranges_m_;
     std::vector<Row> rows_;
-    std::vector<Column> columns_;  ///< as they are first met
-    Places order_;                 ///< of the columns as they are shown
+    std::vector<Column> columns_;  ///< in the order in which they are first met
+    Places order_;                 ///< order in which the columns are shown
 };
 
 }  // namespace

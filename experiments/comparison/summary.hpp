@@ -12,22 +12,22 @@ namespace conelane::experiments {
 
 inline constexpr std::size_t kSummaryColumns = 100;
 inline constexpr std::size_t kSummaryLines = 30;
-/// What a command says below the summary: where the files and the page are.
+/// The last lines of a command's output: where the files and the page are.
 inline constexpr std::size_t kLinesBelowSummary = 3;
 
-/// What a comparison says on a terminal, in at most kSummaryColumns columns and, with what stands below it,
-/// kSummaryLines lines: the share of usable lanes for each method, condition and rate of false positives, all
-/// ranges together; latency over all scenes (median and 99th percentile); and why the other lanes are not
-/// usable. Methods stand best first by their share of usable lanes in all scenes, equal ones in the order of
-/// the records.
+/// The summary of a comparison for a terminal, at most kSummaryColumns wide and, with the notes below it,
+/// kSummaryLines high. It shows the share of usable lanes for each method, condition and rate of false
+/// positives, over all ranges; the latency over all scenes (median and 99th percentile); and why the other
+/// lanes are not usable. Methods are sorted by their share of usable lanes in all scenes; equal ones stay in
+/// the order of the records.
 ///
-/// Where a method comes with several cone-set sizes these are the columns, for the usable lanes and for the
-/// median latency. Columns and methods that have no room are counted, and the wide table has them. `notes`
-/// are lines of their own without newline; each is cut where it is too long. Empty where nothing was scored.
+/// If a method has several cone-set sizes, the columns are the sizes, for the usable lanes and for the median
+/// latency. Columns and methods without room are counted; the wide table has them. `notes` are lines without
+/// newline, each cut if it is too long. Empty if nothing was scored.
 [[nodiscard]] std::string summary(std::span<const ScoredRecord> scored,
                                   const std::vector<std::string>& notes = {});
 
-/// What a summary says below: which methods are from outside, and what was left out.
+/// The notes below a summary: methods from outside, and scenes that were left out.
 [[nodiscard]] std::vector<std::string> summary_notes(const OutsideDetectors& outside,
                                                      const LeftOutScenes& left_out);
 

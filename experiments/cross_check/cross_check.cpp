@@ -31,11 +31,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kCasesOfABlock = 64;  // between two writes
+constexpr std::size_t kCasesOfABlock = 64;  // cases between two writes
 constexpr std::array kOutcomes{CrossCheckOutcome::same_optimum, CrossCheckOutcome::infeasible,
                                CrossCheckOutcome::undecided, CrossCheckOutcome::differ};
 
-/// All that the cases and their verdicts depend on, but the clock.
+/// Everything that the cases and their verdicts depend on, apart from the clock.
 nlohmann::ordered_json record_of(const CrossCheckOptions& options) {
     const Provenance origin = provenance();
     nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
@@ -64,10 +64,10 @@ nlohmann::ordered_json line_of(const JudgedCase& judged) {
     return json;
 }
 
-/// The lines of an earlier run, and where new ones go.
+/// The lines of an earlier run, to which new lines are added.
 class CaseLog {
   public:
-    /// Throws InputError where the file holds another run.
+    /// Throws InputError if the file holds another run.
     CaseLog(const fs::path& file, const nlohmann::ordered_json& record, CrossCheckSummary& summary)
         : file_(file), summary_(summary) {
         const std::uintmax_t whole = fs::exists(file) ? read(record) : 0;
@@ -95,7 +95,7 @@ class CaseLog {
             if (number == 1) {
                 const auto stored = nlohmann::ordered_json::parse(line, nullptr, false);
                 if (stored != record)
-                    throw InputError(file_, 1, "", "holds a run of other options or another program");
+                    throw InputError(file_, 1, "", "holds a run with other options or of another program");
                 continue;
             }
             with_json_line(line, file_, number, [&](const JsonNode& json) {
@@ -120,7 +120,7 @@ class CaseLog {
     OutputStream stream_;
 };
 
-/// Who a finding is about, and whether it is an error or a claim: "glpk (tight)", "cbc (paper): error".
+/// Subject and kind of a finding: "glpk (tight)", "cbc (paper): error".
 std::string subject_of(const std::string& finding) {
     const std::string who = finding.substr(0, std::min(finding.find(" within "), finding.find(": ")));
     return finding.find(": error, ") == std::string::npos ? who : who + ": error";
@@ -165,7 +165,7 @@ class CrossCheck {
                                      : make_checked_solvers(options_.solvers, formulation);
     }
 
-    /// By new solvers, so that it does not depend on the cases before.
+    /// With new solvers, so that it does not depend on earlier cases.
     [[nodiscard]] CrossCheckVerdict verdict_on(const CrossCheckCase& drawn) const {
         return judge(drawn, solvers(drawn.formulation), options_.time_limit_ms);
     }
@@ -178,7 +178,7 @@ class CrossCheck {
             block[k].verdict = verdict_on(block[k].drawn);
             progress.advance();
         };
-        // Arenas above the processors there are make oneTBB warn.
+        // oneTBB warns if there are more arenas than processors.
         const int threads =
             std::min(static_cast<int>(options_.threads), oneapi::tbb::info::default_concurrency());
         oneapi::tbb::task_arena arena(threads);
@@ -188,8 +188,8 @@ class CrossCheck {
 
     void write_shrunk(const JudgedCase& judged) const {
         CrossCheckVerdict verdict = judged.verdict;
-        // Under a tight limit a difference may not show again: the case is kept as it was then. Another
-        // difference on the way is none: it would hide the one that was found.
+        // Under a tight limit a difference may not occur again, so the case is kept as it was. A different
+        // difference met while shrinking does not count: it would hide the first one.
         const std::string subject = subject_of(judged.verdict.findings.front());
         const CrossCheckCase shrunk = shrink(judged.drawn, [&](const CrossCheckCase& smaller) {
             CrossCheckVerdict again = verdict_on(smaller);

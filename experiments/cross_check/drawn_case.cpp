@@ -19,7 +19,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Numbers are drawn without functions whose last digit depends on the machine's library, or rounded.
+/// Drawn numbers are rounded, or made without functions whose last digit depends on the machine's library.
 class Draw {
   public:
     explicit Draw(const boost::random::mt19937_64& random) : random_(random) {}
@@ -97,7 +97,7 @@ void make_collinear(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     const bool is_lane = draw.chance(0.6);
     const double width = is_lane ? draw.one_of(kWidths) : 0.0;
     const double offset = is_lane ? -width / 2.0 : draw.integer(-2, 2);
-    // Along an axis the line is exact, along a slope it is nearly so.
+    // Along an axis the line is exact; along a slope it is nearly exact.
     const bool slopes = draw.chance(0.3);
     if (slopes) drawn.scene.pose.yaw_rad = 0.75;
     const Point ahead = drawn.scene.pose.heading();
@@ -143,7 +143,7 @@ void make_symmetric(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     }
 }
 
-/// A number of the scene that the parameter is a limit of, or nothing.
+/// The scene's value that the parameter limits, or nothing.
 double measure(const CrossCheckCase& drawn, double RldParameters::*limit, Draw& draw) {
     const std::vector<Cone>& cones = drawn.scene.cones;
     const auto any = [&] { return cones[draw.index(cones.size())].position; };
@@ -159,7 +159,7 @@ double measure(const CrossCheckCase& drawn, double RldParameters::*limit, Draw& 
 }
 
 void make_at_limits(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
-    // A limit is met within 1e-9: these are clearly inside or outside.
+    // Offsets from a limit that are clearly inside or outside: the tolerance is 1e-9.
     constexpr std::array kBeside{0.0, 0.0, 1e-12, -1e-12, 1e-7, -1e-7};
     constexpr std::array kLimits{&RldParameters::d_near, &RldParameters::d_max,  &RldParameters::d_min,
                                  &RldParameters::d_h,    &RldParameters::s_crit, &RldParameters::t_crit};
@@ -185,7 +185,7 @@ constexpr std::array kKinds{
     Kind{"lane", make_lane},           Kind{"strewn", make_strewn},         Kind{"collinear", make_collinear},
     Kind{"lattice", make_lattice},     Kind{"coincident", make_coincident}, Kind{"symmetric", make_symmetric},
     Kind{"at_limits", make_at_limits}, Kind{"far_away", make_far_away},     Kind{"scaled", make_scaled}};
-constexpr std::size_t kPlainKinds = 7;  // the first ones; the others change one of these
+constexpr std::size_t kPlainKinds = 7;  // number of kinds before those that change one of them
 
 void make_far_away(CrossCheckCase& drawn, Draw& draw, std::size_t cones) {
     constexpr std::array kAway_m{1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e10, 1e12};
@@ -291,12 +291,12 @@ CrossCheckCase draw_cross_check_case(std::span<const AnnotatedScene> given, std:
     }
     drawn.scene.id = fmt::format("case_{}", number);
     drawn.tight_limit_ms = draw.one_of(kLimits_ms);
-    // Learned costs are of metres: not in scenes that are scaled, or so far away that metres are lost, nor
-    // where an edge of no length has no direction.
+    // Learned costs depend on metres. They are not used in scenes that are scaled or so far away that metres
+    // are lost, nor with an edge of length zero, which has no direction.
     constexpr std::array<std::string_view, 3> kWithout{"coincident", "far_away", "scaled"};
     if (draw.chance(0.2) && std::ranges::find(kWithout, drawn.kind) == kWithout.end())
         draw_learned_costs(drawn.parameters, draw);
-    // The paper's formulation grows with the fourth power of the cones.
+    // The program of the paper formulation grows with the fourth power of the cones.
     if (drawn.scene.cones.size() <= 8 && draw.chance(0.3)) drawn.formulation = Formulation::paper;
     return drawn;
 }

@@ -31,7 +31,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class Asked { generously, tightly, from_a_start };
 
-/// What someone claims, and how it was asked.
+/// A claim, and how the question was asked.
 struct Answer {
     std::string by;
     Asked asked;
@@ -43,7 +43,7 @@ struct NamedStart {
     LaneGraph graph;
 };
 
-/// Most edges of a lane graph and a few others: hardly ever a lane graph itself.
+/// Most edges of a lane graph and a few others: rarely a lane graph itself.
 LaneGraph random_edges(const LaneGraph& from, std::size_t cones, std::size_t seed) {
     boost::random::mt19937_64 random(seed);
     const auto one_in = [&](int count) {
@@ -107,7 +107,7 @@ class Judgement {
         return first.solve(previous, drawn_.parameters, time_limit_ms_).lane_graph;
     }
 
-    /// What there is to start from for the solver of this name.
+    /// The starts for the solver of this name.
     [[nodiscard]] std::vector<NamedStart> starts(const std::string& name,
                                                  const std::optional<LaneGraph>& previous) const {
         std::vector<NamedStart> all;
@@ -155,7 +155,7 @@ class Judgement {
     }
 
     void hold_against_start(const Answer& answer, double known) {
-        // A scene whose making hit the limit is answered without a look at the start.
+        // If the limit ends while the problem is made, the solver answers without checking the start.
         if (answer.report.status == SolveStatus::stopped) return;
         if (!answer.report.objective ||
             *answer.report.objective > known + kTolerance * std::max(1.0, std::abs(known)))

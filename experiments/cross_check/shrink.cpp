@@ -18,7 +18,7 @@ class Shrinking {
         while (remove_cones(1)) {
         }
         reset_parameters();
-        while (remove_cones(1)) {  // simpler parameters may do with fewer
+        while (remove_cones(1)) {  // simpler parameters may need fewer cones
         }
         return std::move(smallest_);
     }
@@ -32,7 +32,7 @@ class Shrinking {
         return true;
     }
 
-    /// Tries to leave out each run of so many cones; whether one went.
+    /// Tries to remove each run of so many cones. Returns whether one was removed.
     bool remove_cones(std::size_t together) {
         bool any = false;
         for (std::size_t first = 0; first < smallest_.scene.cones.size();) {

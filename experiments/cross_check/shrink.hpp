@@ -7,8 +7,8 @@
 
 namespace conelane::experiments {
 
-/// The case with as many cones left out, and as many parameters at their defaults, as `differs` allows: it
-/// holds for the result, and no single further cone can be left out. It is called at most `max_trials` times.
+/// The case with as many cones removed, and as many parameters at their defaults, as `differs` allows: it
+/// holds for the result, and not after any further cone is removed. It is called at most `max_trials` times.
 /// Precondition: it holds for `drawn`.
 [[nodiscard]] CrossCheckCase shrink(CrossCheckCase drawn,
                                     const std::function<bool(const CrossCheckCase&)>& differs,

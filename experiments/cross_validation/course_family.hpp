@@ -5,7 +5,7 @@
 
 namespace conelane::experiments {
 
-/// Courses of one place or one designer, so alike that a method which has seen one of them knows the others.
+/// Courses of one place or one designer, so similar that a method that has seen one of them knows the others.
 struct CourseFamily {
     std::string name;                 ///< of its folder
     std::vector<std::string> tracks;  ///< SPECs of load_tracks

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The family of each course by its name. Throws InputError where a course is there twice.
+/// The family of each course by its name. Throws InputError if a course occurs twice.
 std::map<std::string, std::string> family_of_courses(const CrossValidationOptions& options) {
     std::map<std::string, std::string> family_of;
     const auto add = [&](const std::vector<std::string>& specs, const std::string& family) {
@@ -49,7 +49,7 @@ LearningOptions without(const CrossValidationOptions& options, const CourseFamil
     return learning;
 }
 
-/// What the folds depend on, for the record of the comparison.
+/// Everything that the folds depend on, for the record of the comparison.
 std::string record_of(const CrossValidationOptions& options) {
     nlohmann::ordered_json families = nlohmann::ordered_json::object();
     for (const CourseFamily& family : options.families) families[family.name] = family.tracks;
@@ -65,7 +65,7 @@ std::string record_of(const CrossValidationOptions& options) {
 }
 
 void check(const CrossValidationOptions& options) {
-    if (options.families.size() < 2) throw InvalidInput("family", "there must be two at least");
+    if (options.families.size() < 2) throw InvalidInput("family", "there must be at least two");
     std::set<std::string> names;
     for (const CourseFamily& family : options.families) {
         if (!names.insert(family.name).second)

@@ -12,18 +12,18 @@ namespace conelane::experiments {
 
 struct CrossValidationOptions {
     std::vector<CourseFamily> families;  ///< at least two; each is held out once
-    std::vector<std::string> always;     ///< SPECs that every fold learns from, and none is scored on
+    std::vector<std::string> always;     ///< SPECs of tracks that every fold learns from; none is scored
     LearningOptions learning;            ///< its tracks are those of a fold
-    /// The detectors, the scenes they are scored on, and how they are run. Its tracks are those of the
+    /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.
     ComparisonOptions comparison;
 };
 
-/// A comparison in which no detector has seen a course that it is scored on: for each family, what learns
-/// does so on all others and `always`, then drives the courses of the family; a detector that learns nothing
-/// drives them as it is. Writes what `compare` writes to the directory, and what was learned to folds/FAMILY/
-/// below it. A run that was stopped goes on. Returns the table. Throws InputError or InvalidInput, so where a
-/// course belongs to two families, or to one and to those always learned from.
+/// A comparison in which no detector has seen a course that it is scored on. For each family, the detectors
+/// that learn do so on all other families and `always`, then drive the courses of the family; other detectors
+/// drive them unchanged. Writes the files of `compare` to the directory, and learned files to folds/FAMILY/
+/// in it. A stopped run resumes. Returns the table. Throws InputError or InvalidInput, also if a course
+/// belongs to two families, or to a family and to `always`.
 [[nodiscard]] ComparisonOutcome cross_validate(const CrossValidationOptions& options,
                                                const std::filesystem::path& directory);
 

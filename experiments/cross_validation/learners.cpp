@@ -134,7 +134,7 @@ DetectorMaker make_paper_clc(const fs::path& folder, const RunOptions& options) 
         "clc-paper", [clc] { return make_clc_detector(clc); }, options);
 }
 
-// What is tuned has a dozen numbers at most: every fourth pose tells enough of them.
+// Tuned methods have at most a dozen numbers, so every fourth pose is enough.
 
 SceneSet scenes_to_tune_on(const LearningOptions& options) {
     constexpr double kPoses = 4.0;
@@ -232,8 +232,8 @@ DetectorMaker make_learned_rld(const fs::path& folder, const RunOptions& options
     return maker_of(find_detector("rld-learned"), learned);
 }
 
-// The weights of front. It draws its scenes itself, so that of the options only seed, threads and whether
-// there are colors count. A set for colors is learned as the shipped one was, after the first set.
+// The weights of front. Its training draws its own scenes, so only these options count: seed, threads, and
+// whether there are colors. A set for colors is learned after the first set, like the shipped one.
 
 constexpr double kColoredShare = 0.85;
 constexpr std::size_t kColoredSearchSteps = 5000;

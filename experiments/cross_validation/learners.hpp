@@ -12,33 +12,33 @@
 
 namespace conelane::experiments {
 
-/// What a detector learns from, and how much work it may take.
+/// The data that a detector learns from, and the amount of work.
 struct LearningOptions {
     std::vector<std::string> tracks;  ///< SPECs of load_tracks
     SceneOptions scenes;              ///< with the seed of all draws, and the number of threads
     std::size_t variants = 1;         ///< of each track, for networks
-    std::size_t evaluations = 60;     ///< of parameters that are tuned, on every fourth pose
-    double front_steps = 1.0;  ///< of the training of `front`, as a share of those of the shipped weights
+    std::size_t evaluations = 60;     ///< number of parameter sets that tuning tries, on every fourth pose
+    double front_steps = 1.0;  ///< length of the training of `front`, as a share of the shipped training
     double rld_steps = 1.0;    ///< the same of the training of `rld-learned`
 };
 
 /// The file of the weights of front in the folder of a fold.
 inline constexpr std::string_view kFrontFoldFile = "front.json";
 
-/// A detector whose weights or parameters come from courses, by the recipe of those that are shipped.
+/// A detector whose weights or parameters come from courses, learned by the recipe of the shipped ones.
 struct Learner {
     std::string_view detector;
-    /// Learns and writes its files to the folder; what is there already is not learned again, so that
-    /// detectors share it and a run that was stopped goes on. Throws InputError or InvalidInput.
+    /// Learns and writes its files to the folder. Existing files are not learned again, so detectors share
+    /// them and a stopped run resumes. Throws InputError or InvalidInput.
     void (*learn)(const LearningOptions& options, const std::filesystem::path& folder);
-    /// What answers by these files. Throws InputError where one is missing or wrong.
+    /// The detector with these files. Throws InputError if one is missing or invalid.
     DetectorMaker (*maker)(const std::filesystem::path& folder, const RunOptions& options);
 };
 
 /// front, front-warm, clc, clc-warm, clc-paper, delaunay-beam, astar-lane, rld-shape and rld-learned.
 [[nodiscard]] std::span<const Learner> learners();
 
-/// None where the detector learns nothing, so answers the same in every fold.
+/// Null if the detector learns nothing, so its answers are the same in every fold.
 [[nodiscard]] const Learner* find_learner(std::string_view detector);
 
 }  // namespace conelane::experiments

@@ -1,5 +1,5 @@
-// A detector from outside in C++: conelane's own `clc` behind the line protocol, as any detector can stand
-// there. For `conelane compare --methods "exec:clc-stream=./clc_stream"`.
+// An example of a detector from outside in C++: conelane's own `clc` behind the line protocol. For `conelane
+// compare --methods "exec:clc-stream=./clc_stream"`.
 #include <iostream>
 #include <string>
 

@@ -44,7 +44,7 @@ def answer(planner, how, scene):
     try:
         lane = how(planner, cones, np.array([pose["x"], pose["y"]], dtype=float),
                    np.array([np.cos(pose["yaw"]), np.sin(pose["yaw"])]))
-    except Exception as failure:  # of the planner: one scene is lost, not the run
+    except Exception as failure:  # an error of the planner loses one scene, not the run
         lane = {"status": "error", "message": f"{type(failure).__name__}: {failure}"}
     return {"scene": scene["id"], "latency_ms": 1000 * (time.perf_counter() - start), **lane}
 

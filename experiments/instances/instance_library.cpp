@@ -31,19 +31,19 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::array kFormulations{Formulation::paper, Formulation::tight};
-/// Objectives of engines may differ by so much: CBC knows them to the tolerance of its LP.
+/// Objectives of two engines may differ by this much: CBC knows them to the tolerance of its LP.
 constexpr double kSameObjective = 1e-6;
 
-/// What a MILP solver says of a program, and the rows that were added on the way.
+/// The answer of a MILP solver to a program, and the rows that were added on the way.
 struct SolvedProgram {
     MilpReport report;
     std::vector<ProgramRow> added;
 };
 
-/// Solves the program, and adds the rows that its point violates, until there are none or the time is up.
+/// Solves the program and adds the rows that its point violates, until no row is violated or the time ends.
 SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formulation, double time_limit_ms) {
     const Deadline deadline(time_limit_ms);
-    // The printed program takes CBC's full machinery, the tight one is faster without.
+    // CBC's full machinery is faster on the printed program, `cbc` on the tight one.
     const std::unique_ptr<MilpSolver> solver =
         formulation == Formulation::paper ? make_cbc_main_solver() : make_cbc_solver();
     const std::unique_ptr<MilpSession> session = solver->load(model.program());
@@ -55,7 +55,7 @@ SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formul
         if (violated.empty()) break;
         session->add_rows(violated);
         for (ProgramRow& row : violated) {
-            // Rows of different rounds may have one name.
+            // Rows of different rounds may have the same name.
             row.label = {"separated", {static_cast<std::int32_t>(solved.added.size())}};
             solved.added.push_back(std::move(row));
         }
@@ -102,7 +102,7 @@ void add_rows(BinaryProgram& program, std::span<const ProgramRow> rows) {
     }
 }
 
-/// A scene's id as a name, "fsd_1/pose_0042/fp_0.30" as "fsd_1_pose_0042_fp_0.30".
+/// A scene's id as a file name: "fsd_1/pose_0042/fp_0.30" becomes "fsd_1_pose_0042_fp_0.30".
 std::string name_of(const std::string& id, const std::optional<std::size_t>& nearest) {
     std::string name = id + (nearest ? fmt::format("_n{}", *nearest) : "_all");
     for (char& letter : name) {
@@ -115,7 +115,7 @@ constexpr const char* kList = "conelane.test";
 constexpr const char* kSolutions = "conelane.solu";
 constexpr std::string_view kProgramEnding = ".mps.gz";
 
-/// Files that get their names together, when all of them are whole. Until then no more than one is open.
+/// Files that get their names together, once all of them are complete. Until then at most one is open.
 class Files {
   public:
     void add(const std::filesystem::path& file, const std::string& content) {
@@ -133,8 +133,8 @@ class Files {
     std::vector<std::unique_ptr<AtomicFile>> files_;
 };
 
-/// The programs of the library that a folder holds, by the names in its list. Throws InputError where the
-/// folder holds a program that its list does not name: nobody could tell it from those of another library.
+/// The programs of the library in a folder, by the names in its list. Throws InputError if the folder has a
+/// program that the list does not name: it may belong to another library.
 std::vector<std::filesystem::path> listed_programs(const std::filesystem::path& folder) {
     std::set<std::string> names;
     std::ifstream list(folder / kList);
@@ -162,7 +162,7 @@ std::string mps_text(const Instance& instance) {
 std::string solution_lines(const Instance& instance) {
     const KnownOptimum& known = instance.optimum;
     if (known.status == KnownOptimum::Status::infeasible) return fmt::format("=inf= {}\n", instance.name);
-    // Twelve digits: the engines agree on no more, and machines sum in one order only.
+    // Twelve digits: the engines agree on no more, and sums differ between machines after them.
     if (known.status == KnownOptimum::Status::optimal)
         return fmt::format("=opt= {} {:.12g}\n", instance.name, known.best.value());
     std::string lines;
@@ -207,7 +207,7 @@ std::optional<Instance> make_instance(const Scene& scene, const std::string& nam
     if (instance.optimum.status != KnownOptimum::Status::open) {
         add_rows(instance.program, solved.added);
     } else if (!solved.added.empty()) {
-        instance.optimum.bound.reset();  // of a program with more rows
+        instance.optimum.bound.reset();  // it is the bound of a program with more rows
     }
     return instance;
 }
@@ -246,7 +246,7 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
     }
     files.add(folder / kSolutions, solutions);
     files.add(folder / kList, list);
-    // A signal finds the old library or the new one.
+    // After a signal, the folder has either the old library or the new one.
     const auto held = hold_interruption();
     files.commit();
     for (const std::filesystem::path& file : earlier) {

@@ -24,7 +24,7 @@ void require_whole_list(const CLI::Option* option, std::string_view text) {
                                    fmt::format("'{}' is a list with an empty part", text));
 }
 
-/// The sub-command of that name; null where there is none.
+/// The sub-command of that name; null if there is none.
 CLI::App* find_command(CLI::App& app, const std::string& name) {
     for (CLI::App* command : app.get_subcommands({})) {
         if (!command->get_name().empty() && command->check_name(name)) return command;
@@ -40,7 +40,7 @@ bool takes_positionals(const CLI::App& app) {
 [[noreturn]] void refuse_name(CLI::App& app, const std::string& name) {
     std::vector<std::string> known;
     for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-    // The program's own name stands before every message.
+    // The program's own name begins every message.
     const std::string of = app.get_parent() == nullptr ? "" : app.get_name() + ": ";
     throw CLI::ParseError(fmt::format("{}there is no '{}', it has {}", of, name, fmt::join(known, ", ")),
                           CLI::ExitCodes::ExtrasError);
@@ -50,8 +50,8 @@ bool takes_positionals(const CLI::App& app) {
 
 void refuse_misread_words(CLI::App& program, std::span<char* const> arguments) {
     CLI::App* app = &program;
-    const CLI::Option* option = nullptr;  // the one that was named last
-    bool names_a_command = true;          // the next word, directly behind that of a command
+    const CLI::Option* option = nullptr;  // the option that was named last
+    bool names_a_command = true;          // whether the next word, directly behind a command, names a command
     for (const std::string word : arguments) {
         if (word.starts_with("-") && word.size() > 1) {
             const std::size_t equals = word.find('=');

@@ -5,11 +5,11 @@
 namespace conelane::experiments {
 namespace {
 
-constexpr std::size_t kIndent = 2;        ///< of a name
-constexpr std::size_t kMoreIndent = 6;    ///< of the second line of a name
+constexpr std::size_t kIndent = 2;        ///< indentation of a name
+constexpr std::size_t kMoreIndent = 6;    ///< indentation of the second line of a name
 constexpr std::size_t kDescription = 30;  ///< the column where descriptions begin, as CLI11 has it
 
-/// Where a line that has no space ends.
+/// Place of the break in a line without a space.
 std::size_t break_within(std::string_view text, std::size_t width) {
     const std::size_t mark = text.substr(0, width).find_last_of(",|/");
     return mark == std::string_view::npos || mark == 0 ? width : mark + 1;
@@ -26,10 +26,10 @@ void wrap_line(std::string_view text, std::size_t width, std::vector<std::string
     lines.emplace_back(text);
 }
 
-/// A name on the left and what it means on the right, below it where the name is long.
+/// A name on the left and its description on the right, or below a long name.
 std::string entry(const std::string& name, const std::string& description) {
     std::string text;
-    std::size_t at = 0;  // in the last line
+    std::size_t at = 0;  // position in the last line
     std::vector<std::string> names = wrapped(name, kHelpColumns - kIndent);
     if (names.size() > 1) {
         names = wrapped(name, kHelpColumns - kMoreIndent);
@@ -62,7 +62,7 @@ std::string in_lines(const std::string& text) {
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
     std::vector<std::string> lines;
     for (std::size_t begin = 0;;) {
-        const std::size_t end = std::min(text.find('\n', begin), text.size());  // npos is beyond it
+        const std::size_t end = std::min(text.find('\n', begin), text.size());  // npos is larger
         wrap_line(text.substr(begin, end - begin), width, lines);
         if (end == text.size()) return lines;
         begin = end + 1;

@@ -12,8 +12,8 @@ namespace conelane::experiments {
 /// Columns of every line of help.
 inline constexpr std::size_t kHelpColumns = 100;
 
-/// The text in lines of at most `width` characters, broken at spaces; a word that is longer is broken behind
-/// a comma, bar or slash, else where the line ends. A newline of the text stays one. One line at least.
+/// The text in lines of at most `width` characters, broken at spaces; a longer word is broken after a comma,
+/// bar or slash, else at the end of the line. A newline in the text stays. Returns at least one line.
 /// Precondition: `width` > 0.
 [[nodiscard]] std::vector<std::string> wrapped(std::string_view text, std::size_t width);
 

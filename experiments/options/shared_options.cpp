@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr const char* kOutput = "output";
 constexpr unsigned kMaxThreads = 1024;
 
-/// What is wrong with the text of a seed, nothing where it is right. Negative and larger ones would wrap.
+/// The fault of the text of a seed, or nothing. Negative and larger numbers would wrap around.
 std::string seed_fault(const std::string& text) {
     std::uint64_t seed = 0;
     const char* const end = text.data() + text.size();
@@ -38,7 +38,7 @@ std::string seed_fault(const std::string& text) {
     return fmt::format("'{}' is not a non-negative integer of 64 bits", text);
 }
 
-/// Why a file cannot be written, nothing where it can.
+/// The reason why a file cannot be written, or nothing.
 std::string output_fault(const std::string& file) {
     try {
         require_writable(file);
@@ -56,7 +56,7 @@ bool is_output(CLI::Option& option) {
     }
 }
 
-/// Options whose texts are names of other things, which files may have too.
+/// Options whose values are names, which may also be the names of files.
 bool names_no_file(const CLI::Option& option) {
     constexpr std::array<std::string_view, 7> kOptions{"--method", "--methods",     "--solver", "--solvers",
                                                        "--id",     "--formulation", "--pairing"};
@@ -71,8 +71,8 @@ void append_files_of(const fs::path& folder, std::span<const std::string_view> e
     }
 }
 
-/// The files that the text of an option may mean: the one of that name, the one behind the kind of a track or
-/// behind NAME=, those of a folder of tracks or of results, the companion of scenes.
+/// The files that the value of an option may mean: the file of that name, the one after the kind of a track
+/// or after NAME=, the files of a folder of tracks or of results, the companion of scenes.
 std::vector<fs::path> files_meant(const std::string& text) {
     constexpr std::array<std::string_view, 3> kTracks{".yaml", ".csv", ".json"};
     constexpr std::array<std::string_view, 3> kResults{".json", ".jsonl", ".txt"};
@@ -91,7 +91,7 @@ std::vector<fs::path> files_meant(const std::string& text) {
     return files;
 }
 
-/// Whether writing the output would replace the file, or both are one that is not there yet.
+/// Whether writing the output would replace the file, or both mean the same file that does not exist yet.
 bool are_the_same(const fs::path& output, const fs::path& file) {
     std::error_code ignored;
     if (fs::exists(output, ignored)) {
@@ -110,7 +110,7 @@ void refuse_to_replace(const CLI::Option& output, std::span<const fs::path> writ
     }
 }
 
-/// The options that were given, those of groups too.
+/// The options that were given, including those of groups.
 void collect_options(CLI::App& app, std::vector<CLI::Option*>& options) {
     for (CLI::Option* option : app.get_options(nullptr)) {
         if (option->count() > 0) options.push_back(option);
@@ -120,7 +120,7 @@ void collect_options(CLI::App& app, std::vector<CLI::Option*>& options) {
     }
 }
 
-/// What is wrong with the text of a time limit, nothing where it is right.
+/// The fault of the text of a time limit, or nothing.
 std::string time_limit_fault(const std::string& text) {
     double limit_ms = 0.0;
     if (CLI::detail::lexical_cast(text, limit_ms) && limit_ms > 0.0) return {};

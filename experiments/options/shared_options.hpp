@@ -16,21 +16,21 @@
 /// Options that several commands have, declared once.
 namespace conelane::experiments {
 
-/// The options of scene making but --tracks, --out and --nearest. Absent lists keep what `options` holds.
+/// The options of scene making without --tracks, --out and --nearest. Lists not given keep their values.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
 /// --params and --pairing.
 struct ParameterSource {
     std::string name;     ///< of a shipped set, else a file; empty: the command's default
     std::string pairing;  ///< empty: as in the parameters
-    /// What was asked for, RldParameters{} where nothing was.
+    /// The parameters that were asked for; RldParameters{} if none were.
     [[nodiscard]] RldParameters load() const;
-    /// Tells detectors what was asked for; they have parameters of their own.
+    /// Passes them to a detector's options if they were given; detectors have parameters of their own.
     void apply_to(DetectorOptions& options) const;
-    /// Throws InvalidInput naming the option that was given although `who` has no RLD parameters.
+    /// Throws InvalidInput naming the option that was given, because `who` has no RLD parameters.
     void require_not_given(const std::string& who) const;
 };
-/// `without` says what holds where --params is not given.
+/// `without`: the help text for a missing --params.
 void add_parameter_options(CLI::App& command, ParameterSource& source, const std::string& without);
 
 /// --nearest N
@@ -38,18 +38,18 @@ void add_nearest_option(CLI::App& command, std::optional<std::size_t>& nearest,
                         const std::string& description);
 /// For detectors that are compared in real time, as in the RLD paper.
 inline constexpr double kRealTimeLimit_ms = 400.0;
-/// --time-limit MS; what `time_limit_ms` holds is the default
+/// --time-limit MS; the value of `time_limit_ms` is the default
 void add_time_limit_option(CLI::App& command, double& time_limit_ms);
-/// A file to write, or standard output by the name "-" where that is allowed. That it can be written is
-/// looked at before the work, not after it.
+/// A file to write, or standard output by the name "-" if that is allowed. Whether it can be written is
+/// checked before the work.
 CLI::Option* add_output_option(CLI::App& command, const std::string& name, std::string& file,
                                const std::string& description, bool or_standard_output = false);
-/// Refuses the options of a command that is about to run where a file of add_output_option would replace an
-/// input or another output: the same file, be it under another name, through a symbolic or a hard link. Any
-/// other option that names a file counts as an input, a track by its SPEC and a scenes file with its
-/// companion too. Throws CLI::ValidationError naming both.
+/// Rejects the options of a command that is about to run if a file of add_output_option would replace an
+/// input or another output: the same file, also through another name, a symbolic or a hard link. Every other
+/// option that names a file counts as an input, a track by its SPEC, a scenes file with its companion. Throws
+/// CLI::ValidationError naming both.
 void refuse_lost_inputs(CLI::App& command);
-/// --seed N, for where another place holds the default
+/// --seed N, if the default is set elsewhere
 void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& description);
 /// --threads T
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& description);

@@ -6,7 +6,7 @@
 
 namespace conelane::experiments {
 
-/// Of a cone set.
+/// Largest size of a cone set.
 inline constexpr std::size_t kMaxCones = 100'000;
 
 /// Accepts the texts of whole numbers in a range. CLI::Range would report any other text as out of range.

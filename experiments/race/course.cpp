@@ -30,7 +30,7 @@ void add_pair(RaceCourse& course, double x_m, double half_width_m, ConeColor lef
     add_cone(course, x_m, -half_width_m, right);
 }
 
-/// A line that is driven once, put together from straights and arcs.
+/// A line that is driven once, made of straights and arcs.
 class LineMaker {
   public:
     LineMaker(const Pose& start, double step_m) : pose_(start), step_m_(step_m) {}
@@ -66,7 +66,7 @@ class LineMaker {
     std::vector<Pose> poses_;
 };
 
-constexpr double kBehind_m = 20.0;  ///< of the start line: where the lines of missions begin
+constexpr double kBehind_m = 20.0;  ///< length behind the start line at which the lines of missions begin
 
 constexpr double kAccelerationHalfWidth_m = 1.9;
 constexpr double kAcceleration_m = 75.0;
@@ -111,7 +111,7 @@ RaceCourse skidpad_shape() {
     return course;
 }
 
-/// Draws what an event leaves open.
+/// Draws the properties that the rules of an event leave open.
 class Variation {
   public:
     Variation(Mission mission, std::uint64_t seed)
@@ -125,7 +125,7 @@ class Variation {
     int count(int low, int high) { return boost::random::uniform_int_distribution<int>(low, high)(random_); }
     bool chance(double share) { return boost::random::uniform_01<double>()(random_) < share; }
 
-    /// Sets a cone near its place, or forgets it.
+    /// Places a cone near its nominal place, or leaves it out.
     void set(RaceCourse& course, const Point& place, ConeColor color) {
         if (!chance(missing_)) set_surely(course, place, color);
     }
@@ -147,7 +147,7 @@ class Variation {
     double missing_;
 };
 
-/// Cones that have nothing to do with the lane: at least `clear_m` from its centre line.
+/// Cones that do not belong to the lane: at least `clear_m` from its centre line.
 void strew(Variation& vary, RaceCourse& course, int count, double clear_m, const Point& low,
            const Point& high) {
     for (int i = 0; i < count; ++i) {
@@ -177,7 +177,7 @@ RaceCourse varied_acceleration(std::uint64_t seed) {
     course.start_m = kBehind_m + vary.number(-3.0, -0.3);
     const double spacing_m = vary.number(4.0, 6.0);
     const double gate_half_m = vary.number(0.25, 0.6);
-    const double wider_m = vary.chance(0.3) ? vary.number(0.0, 0.4) : 0.0;  // the big cones stand
+    const double wider_m = vary.chance(0.3) ? vary.number(0.0, 0.4) : 0.0;  // setback of the big cones
     const ConeColor gate_color = vary.chance(0.3) ? ConeColor::unknown : ConeColor::orange;
     const bool has_start_gate = vary.chance(0.85);
     for (double x_m = has_start_gate ? spacing_m : 0.0; x_m < kAcceleration_m - 1.5; x_m += spacing_m) {
@@ -189,7 +189,7 @@ RaceCourse varied_acceleration(std::uint64_t seed) {
             vary.set_surely(course, {kAcceleration_m + offset_m, side * (half_m + wider_m)}, gate_color);
         }
     }
-    const int exit = vary.count(0, 2);  // nothing, cones at the sides, also closed
+    const int exit = vary.count(0, 2);  // 0: no cones, 1: cones at the sides, 2: also closed
     const double exit_m = kAcceleration_m + vary.number(60.0, 100.0);
     if (exit > 0) {
         for (double x_m = kAcceleration_m + spacing_m; x_m < exit_m; x_m += spacing_m) {
@@ -213,13 +213,13 @@ RaceCourse varied_skidpad(std::uint64_t seed) {
     RaceCourse course = skidpad_shape();
     Variation vary(course.mission, seed);
     course.start_m = kBehind_m + vary.number(-17.0, -14.0);
-    const double wider_m = vary.number(0.0, 0.2);  // where the rules measure to the edge of a cone
+    const double wider_m = vary.number(0.0, 0.2);  // if measured to the edges of cones
     const double inner_m = kSkidpadInner_m - wider_m;
     const double outer_m = kSkidpadOuter_m + wider_m;
     const double half_m = kSkidpadHalfWidth_m + wider_m;
     const bool has_outer = vary.chance(0.85);
     const int outer_places = vary.chance(0.7) ? 16 : vary.count(14, 20);
-    // The ring turned, in places.
+    // Places along the ring, turned by a random angle.
     const double turned = vary.chance(0.5) ? 0.0 : vary.number(0.0, 1.0);
     for (const double side : {-1.0, 1.0}) {
         const Point centre(0.0, side * kSkidpadRadius_m);
@@ -326,9 +326,9 @@ RaceCourse skidpad_course() {
             const Point direction(std::sin(angle_rad), -side * std::cos(angle_rad));
             const Point inner = centre + kSkidpadInner_m * direction;
             const Point outer = centre + kSkidpadOuter_m * direction;
-            // Right of the car in the right circle are its inner cones, and they are yellow.
+            // In the right circle, the inner cones are on the right of the car, so they are yellow.
             add_cone(course, inner.x(), inner.y(), side < 0.0 ? ConeColor::yellow : ConeColor::blue);
-            // Outer cones that would stand in the lane of entry, exit or the other circle are not set.
+            // Outer cones inside the lane of entry, exit or the other circle are left out.
             if (std::abs(outer.y()) > kSkidpadHalfWidth_m + 0.1 && side * outer.y() > 0.0) {
                 add_cone(course, outer.x(), outer.y(), side < 0.0 ? ConeColor::blue : ConeColor::yellow);
             }

@@ -11,27 +11,27 @@
 
 namespace conelane::experiments {
 
-/// Where a race is driven. Positions are true ones, in the frame of the course.
+/// The course of a race. Positions are true ones, in the frame of the course.
 struct RaceCourse {
     std::string name;
     std::vector<Cone> cones;  ///< with their true colors
     std::vector<Pose> line;   ///< the true centre line from the start to the end, one pose every step_m
-    bool closed = false;      ///< the line comes round; else it is driven once
+    bool closed = false;      ///< the line returns to its start; otherwise it is driven once
     double step_m = 0.25;
-    double length_m = 0.0;  ///< of the line, once around where it is closed
-    TrackBoundaries lane;   ///< what must not be left; empty where `half_width_m` says it
-    /// The lane is all that is at most this far from the line; where lines cross, from the stretch being
+    double length_m = 0.0;  ///< of the line; once around if it is closed
+    TrackBoundaries lane;   ///< the lane that must not be left; empty if `half_width_m` defines it
+    /// The lane is everything within this distance of the line; where lines cross, only of the stretch being
     /// driven.
     std::optional<double> half_width_m;
     Mission mission = Mission::trackdrive;
-    double start_m = 0.0;                       ///< along the line: where the car is put
-    std::optional<double> finish_m = {};        ///< along the line of a course that is not closed
-    double rest_m = 0.0;                        ///< behind the finish: the car has come to rest
-    std::vector<std::string_view> phases = {};  ///< that a planner tells, in order
+    double start_m = 0.0;                       ///< along the line: start position of the car
+    std::optional<double> finish_m = {};        ///< along the line; absent for a closed course
+    double rest_m = 0.0;                        ///< behind the finish: the car must be at rest there
+    std::vector<std::string_view> phases = {};  ///< phases that a planner must report, in order
 };
 
-/// A closed course with annotated boundaries, from where its first left cone stands. Throws InvalidInput
-/// where the track is not closed, and as centre_line_poses.
+/// A closed course with annotated boundaries, starting at its first left cone. Throws InvalidInput if the
+/// track is not closed, and like centre_line_poses.
 [[nodiscard]] RaceCourse circuit(const Track& track);
 
 /// Acceleration by the rules: a straight lane 3.8 m wide, cones every 5 m, big cones at the start line at
@@ -49,10 +49,10 @@ struct RaceCourse {
 [[nodiscard]] RaceCourse mission_course(Mission mission, const Track& track);
 [[nodiscard]] RaceCourse mission_course(Mission mission);
 
-/// Acceleration or skidpad as an event might set it up, another one for each seed: width, spacing, gates,
-/// entry and exit as the rules leave room, cones some decimetres off their place, missing ones, and some
-/// that are no part of the course. The frame is as above, the start within 1.5 m of that of the rules. The
-/// big cones of an acceleration's finish are always there.
+/// Acceleration or skidpad as an event might set it up, different for each seed: width, spacing, gates, entry
+/// and exit vary as the rules allow; cones are some decimetres off their places, some are missing, and some
+/// do not belong to the course. The frame is as above, the start within 1.5 m of the start of the rules. The
+/// big cones of an acceleration's finish are always present.
 [[nodiscard]] RaceCourse varied_mission_course(Mission mission, std::uint64_t seed);
 
 }  // namespace conelane::experiments

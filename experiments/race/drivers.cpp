@@ -13,7 +13,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// A path is due in 100 ms; the limit is so wide that no wall clock decides what is answered.
+/// A path is due in 100 ms. The limit is longer, so that the wall clock does not influence answers.
 constexpr double kNoLimit_ms = 10'000.0;
 
 std::vector<Point> points_of(const DrivableLane& lane) {
@@ -86,7 +86,7 @@ Driver outside_driver(const std::shared_ptr<OutsideProgramPool>& programs) {
             if (record.points) return drive_by_points(*record.points, record.answer.lane.closed, frame);
             return drive_by(record.answer, scene);
         } catch (const InvalidInput&) {
-            return Drive{};  // what it says bounds no lane
+            return Drive{};  // its answer bounds no lane
         }
     };
 }
@@ -110,7 +110,7 @@ Driver planner_driver(const std::string& detector, const DetectorOptions& detect
             drive.lap = plan.lap;
             drive.brake = plan.state == PlanState::lost;
         } catch (const InvalidInput&) {
-            drive.is_refused = true;  // a frame that is older than the last one, say
+            drive.is_refused = true;  // for example if a frame is older than the last one
         }
         return drive;
     };
@@ -132,10 +132,12 @@ std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts, 
         }
         if (const std::optional<OutsideDetector> outside = find_outside_detector(text)) {
             if (!outside->is_program()) {
-                throw InvalidInput("--methods", "'" + text + "' answers no frames of a race");
+                throw InvalidInput("--methods", "'" + text + "' cannot answer the frames of a race");
             }
             if (with_planner == WithPlanner::only) {
-                throw InvalidInput("--planner", "a program from outside has none: '" + outside->name + "'");
+                throw InvalidInput(
+                    "--planner",
+                    "'" + outside->name + "' is a program from outside, which cannot have a planner");
             }
             all.push_back({outside->name, outside->source, false, false,
                            std::make_shared<OutsideProgramPool>(outside->name, outside->source)});

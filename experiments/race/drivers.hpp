@@ -12,7 +12,7 @@
 
 namespace conelane::experiments {
 
-/// Who races, as a table names it.
+/// A method in a race, with its name in tables.
 struct RaceDetector {
     std::string name;      ///< `front`, or `front+planner`
     std::string detector;  ///< truth, none, a detector, or a command of a program from outside
@@ -21,9 +21,9 @@ struct RaceDetector {
     std::shared_ptr<OutsideProgramPool> programs = {};  ///< of a program from outside
 };
 
-/// The detectors as a user lists them, each also or only with a planner. truth is the true centre line; none
-/// answers no frame; neither gets a planner. Throws InvalidInput where a detector is unknown, answers no
-/// frames (`lanes:`), or cannot have a planner (one from outside, one that is not of the library).
+/// The detectors as a user lists them, each with or without a planner. truth is the true centre line; none
+/// answers no frame; neither gets a planner. Throws InvalidInput if a detector is unknown, does not answer
+/// frames (`lanes:`), or cannot have a planner (one from outside, or one that is not in the library).
 enum class WithPlanner { no, only, both };
 [[nodiscard]] std::vector<RaceDetector> race_detectors(const std::vector<std::string>& texts,
                                                        WithPlanner with_planner);

@@ -30,9 +30,9 @@ constexpr double kHalfWidth_m = 0.75;
 constexpr double kHalfLength_m = 1.4;
 constexpr double kMiddleAhead_m = 0.775;  ///< of the rear axle
 constexpr double kUnsteady_m = 0.3;
-constexpr double kNear_m = 10.0;  ///< how far ahead a path counts as driven
+constexpr double kNear_m = 10.0;  ///< length ahead of the car in which a path is compared
 constexpr double kTruthAhead_m = 20.0;
-constexpr double kStopMargin_m = 0.5;  ///< of the truth, whose pose is noisy
+constexpr double kStopMargin_m = 0.5;  ///< tolerance for the driver `truth`, whose pose is noisy
 constexpr double kMaxAcceleration_mps2 = 6.0;
 constexpr double kMaxHalt_s = 5.0;
 
@@ -50,13 +50,13 @@ Point middle_of(const Pose& rear_axle) {
     return rear_axle.position + kMiddleAhead_m * rear_axle.heading();
 }
 
-/// The foot of a car on the true line, followed from step to step: other stretches of the line that are as
-/// near do not count.
+/// The foot of a car on the true line, followed from step to step, so that other stretches of the line at the
+/// same distance do not count.
 class Follower {
   public:
     Follower(const RaceCourse& course, double at_m) : course_(course), at_m_(at_m) {}
 
-    /// Moves on by at most `reach_m`, either way.
+    /// Moves by at most `reach_m`, forward or backward.
     void follow(const Point& point, double reach_m = 3.0) {
         const auto steps = static_cast<long>(std::ceil(reach_m / course_.step_m));
         const auto middle = static_cast<long>(std::floor(at_m_ / course_.step_m));
@@ -75,7 +75,7 @@ class Follower {
         at_m_ = best_at_m;
     }
 
-    /// Along the line, rounds included. A step counts as step_m: the last one of a round may be shorter.
+    /// Arc length with completed rounds. A step counts as step_m, also a shorter last step of a round.
     [[nodiscard]] double at_m() const { return at_m_; }
     [[nodiscard]] double distance_m() const { return distance_m_; }
     [[nodiscard]] double round_m() const { return static_cast<double>(course_.line.size()) * course_.step_m; }
@@ -97,7 +97,7 @@ class Follower {
 bool crosses(const std::vector<Point>& boundary, const Segment& way) {
     for (std::size_t i = 0; i < boundary.size(); ++i) {
         const Segment edge{boundary[i], boundary[(i + 1) % boundary.size()]};
-        // Most are far away.
+        // Skips the boundary points that are far away, which are most of them.
         if ((edge.from - way.from).squaredNorm() > 400.0 && (edge.to - way.from).squaredNorm() > 400.0 &&
             (edge.to - edge.from).squaredNorm() < 100.0) {
             continue;
@@ -120,14 +120,14 @@ bool is_inside(const std::vector<Point>& polygon, const Point& point) {
     return inside;
 }
 
-/// Whether the way from one point to the next stays inside the lane of a circuit: it crosses no boundary,
-/// cone to cone, and ends in the ring between both.
+/// Whether the segment between two points stays inside the lane of a circuit: it crosses no boundary between
+/// neighbouring cones, and ends in the ring between the boundaries.
 bool stays_in_ring(const TrackBoundaries& lane, const Segment& way) {
     if (crosses(lane.left, way) || crosses(lane.right, way)) return false;
     return is_inside(lane.left, way.to) != is_inside(lane.right, way.to);
 }
 
-/// Whether the first metres of a path leave the lane. `at` is the car's place.
+/// Whether the first metres of a path leave the lane. `at`: the car's position.
 bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_to_m, Follower at) {
     double along_m = 0.0;
     for (std::size_t i = 1; i < path.size(); ++i) {
@@ -144,7 +144,7 @@ bool leaves(const RaceCourse& course, const std::vector<Point>& path, double up_
     return false;
 }
 
-/// Whether a line moved by more than kUnsteady_m within kNear_m of the car, as far as both go.
+/// Whether a line moved by more than kUnsteady_m within kNear_m of the car, where both lines exist.
 bool moved(const std::vector<Point>& before, const std::vector<Point>& now) {
     double along_m = 0.0;
     for (std::size_t i = 0; i < now.size(); ++i) {
@@ -190,7 +190,7 @@ class Delivery {
         last_due_ = due;
         if (is_faulty && fault_ == RaceFault::twice) waiting_.push_back({due, frame});
         waiting_.push_back({due, std::move(frame)});
-        // Behind all that are due before: of two that come together the younger one is first.
+        // Behind all frames that are due earlier; of frames due together, the latest of the run is first.
         std::ranges::stable_sort(waiting_, {}, &Waiting::due);
         if (fault_ == RaceFault::order) {
             std::ranges::stable_sort(waiting_, [](const Waiting& a, const Waiting& b) {
@@ -216,7 +216,7 @@ class Delivery {
     std::vector<Waiting> waiting_;
 };
 
-/// One race as it goes on.
+/// One race in progress.
 class Run {
   public:
     Run(const RaceCourse& course, const RaceOptions& options, const Driver& driver)
@@ -231,7 +231,7 @@ class Run {
         place_car();
         const double way_m = course_.closed ? foot_.round_m() * options_.laps : *course_.finish_m - start_m_;
         finish_m_ = course_.closed ? start_m_ + way_m : *course_.finish_m;
-        // Who drives in circles does not finish.
+        // A car that drives in circles does not finish.
         longest_s_ = 2.5 * way_m / options_.speed_mps + 10.0 + (options_.with_stop ? 20.0 : 0.0);
         lap_m_ = course_.closed ? foot_.round_m() : way_m;
         drift_direction_rad_ = uniform(random_, -std::numbers::pi, std::numbers::pi);
@@ -275,7 +275,7 @@ class Run {
             const Pose at = car_.pose;
             Pose moved = at;
             moved.yaw_rad += uniform(random_, -options_.start_error_rad, options_.start_error_rad);
-            // Aside no farther than the car fits into the lane.
+            // The largest offset at which the car still fits into the lane.
             double left_m = distance_m * std::sin(angle_rad);
             for (int i = 0; i < 20; ++i, left_m *= 0.8) {
                 moved.position = at.position + ahead_m * at.heading() +
@@ -326,7 +326,7 @@ class Run {
         delivery_.put(std::move(frame), step);
     }
 
-    /// Between frames the car knows its motion: the error stays.
+    /// Between frames the car knows its own motion, so the error of the pose stays constant.
     [[nodiscard]] Pose believed() const {
         const Point heading = car_.pose.heading();
         return map_.to_map(Pose{car_.pose.position + error_left_m_ * Point(-heading.y(), heading.x()),
@@ -377,7 +377,7 @@ class Run {
         while (!coming_.empty() && coming_.front().arrives <= step) {
             Path next = std::move(coming_.front());
             coming_.erase(coming_.begin());
-            // What an older frame said is worth less than what is driven by.
+            // An answer to an older frame is worth less than the path that is being driven.
             if (next.frame_s < newest_s_) continue;
             newest_s_ = next.frame_s;
             is_stopping_ = next.drive.stop;
@@ -394,7 +394,7 @@ class Run {
             }
         }
         const double time_s = step * kStep_s;
-        // A path of the frame before the last is the freshest while the last one is being answered.
+        // While a frame is being answered, the path of the frame before it is the latest one.
         const bool is_old =
             driven_ && driven_->frame_s - driven_->drive.age_s < last_frame_s_ - kFrame_s - 1e-9;
         if (is_old) result_.old_path_s += kStep_s;
@@ -415,7 +415,7 @@ class Run {
         change_speed();
         const double wanted_rad = driven_ ? pursue(believed(), driven_->drive.path, lookahead_m(speed_mps_),
                                                    driven_->from_m)
-                                          : 0.0;  // without a path straight on
+                                          : 0.0;  // straight on without a path
         const Point before = middle_of(car_.pose);
         car_.drive(speed_mps_, wanted_rad, kStep_s);
         const Point middle = middle_of(car_.pose);
@@ -514,7 +514,7 @@ class Run {
     bool has_begun_ = false;
     bool is_stopping_ = false;
     bool is_braking_ = false;
-    bool is_planner_ = false;  ///< answers have a state
+    bool is_planner_ = false;  ///< whether answers have a state
     int halted_steps_ = 0;
 
     std::vector<Point> path_before_;  ///< in the world

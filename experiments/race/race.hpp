@@ -15,7 +15,7 @@
 
 namespace conelane::experiments {
 
-/// What goes wrong between the world and who answers frames.
+/// Faults of the transmission of frames from the world to the method.
 enum class RaceFault {
     none,
     jump,      ///< every 5 s the map moves by 0.5 m, all cones and the pose at once
@@ -26,7 +26,7 @@ enum class RaceFault {
     ids,       ///< every 5 s each cone gets another id
 };
 [[nodiscard]] std::string_view to_string(RaceFault fault);
-/// Throws InvalidInput where there is none of that name.
+/// Throws InvalidInput if there is none of that name.
 [[nodiscard]] RaceFault race_fault(std::string_view name);
 
 struct RaceOptions {
@@ -34,12 +34,12 @@ struct RaceOptions {
     int laps = 1;  ///< of a circuit
     double speed_mps = 6.0;
     double latency_s = 0.05;  ///< from a frame to its path; simulated, so that a race can be repeated
-    /// The car starts at rest and has to stop by itself; else it rolls, and the last lap ends the race.
+    /// True: it starts at rest and has to stop by itself. False: it rolls; the last lap ends the race.
     bool with_stop = false;
     double start_error_m = 0.0;    ///< the car starts within this distance of the start
     double start_error_rad = 0.0;  ///< and of its direction
-    bool with_any_map = false;     ///< the map frame lies anywhere; else it is that of the course
-    double drift_m = 0.0;          ///< of the map in a lap (of an event that has none, along the whole way)
+    bool with_any_map = false;     ///< the map frame is random; otherwise it is that of the course
+    double drift_m = 0.0;          ///< of the map in a lap, or along the whole way if there are no laps
     double drift_rad = 0.0;
     RaceFault fault = RaceFault::none;
     bool keep_replay = false;
@@ -49,15 +49,15 @@ struct RaceOptions {
 struct Drive {
     std::vector<Point> path;  ///< from the car on, in the map frame; fewer than two points: none
     bool stop = false;
-    /// The path is said to be an earlier one, or that there is none.
+    /// Whether the path is said to be an earlier one, or absent.
     bool is_flagged = false;
-    double age_s = 0.0;                                       ///< of the frame that the path stems from
-    double safe_m = std::numeric_limits<double>::infinity();  ///< of the path
+    double age_s = 0.0;                                       ///< age of the frame that the path belongs to
+    double safe_m = std::numeric_limits<double>::infinity();  ///< along the path: how far it is trusted
     std::string_view state;                                   ///< of a planner, else empty
     std::string_view phase;
     int lap = 0;
-    bool brake = false;       ///< the way is lost
-    bool is_refused = false;  ///< the frame was not accepted; the path before goes on
+    bool brake = false;       ///< brake, because the way is lost
+    bool is_refused = false;  ///< the frame was not accepted; the car keeps its path
 };
 
 using Driver = std::function<Drive(const Frame&)>;
@@ -74,11 +74,11 @@ struct ReplayFrame {
 enum class RaceEnd {
     finished,
     departed,       ///< the car's middle left the lane
-    stopped_early,  ///< a stop was said before the line
-    not_stopped,    ///< not at rest where it has to be
+    stopped_early,  ///< the planner said stop before the line
+    not_stopped,    ///< not at rest within the allowed distance
     halted,         ///< at rest on the way for 5 s: lost, or without a first path
-    wrong_phases,   ///< at rest in time, but the phases told are not those of the mission
-    too_long,       ///< 2.5 times the time of a perfect race are over
+    wrong_phases,   ///< at rest in time, but the reported phases are not those of the mission
+    too_long,       ///< longer than 2.5 times the time of a perfect race
 };
 [[nodiscard]] std::string_view to_string(RaceEnd end);
 
@@ -94,26 +94,26 @@ struct RaceResult {
     int frames = 0;                             ///< answered
     int frames_without_path = 0;
     int frames_refused = 0;
-    int wrong_unflagged = 0;  ///< frames whose path leaves the lane within 10 m and is not said to be old
+    int wrong_unflagged = 0;  ///< frames whose path leaves the lane within 10 m without being marked as old
     double time_s = 0.0;
-    double old_path_s = 0.0;               ///< driven by a path of an earlier frame than the last but one
-    std::optional<double> unsteady_share;  ///< of pairs of paths: farther than 0.3 m apart within 10 m
-    std::vector<std::string_view> phases;  ///< told, in order
+    double old_path_s = 0.0;               ///< time driven by a path older than the last frame but one
+    std::optional<double> unsteady_share;  ///< of successive paths: more than 0.3 m apart within 10 m
+    std::vector<std::string_view> phases;  ///< as reported, in order
     int laps_told = 0;
 
-    std::vector<double> answer_ms;  ///< real time of each answer; does not decide anything
+    std::vector<double> answer_ms;  ///< real time of each answer; without influence on the race
     std::vector<ReplayFrame> replay;
     std::vector<Point> false_positives;
 
     [[nodiscard]] bool finished() const { return end == RaceEnd::finished; }
 };
 
-/// Answers the next 20 m of the true centre line, by the pose that the car believes; stops behind the last
-/// line. It takes the map frame for that of the world: not for any map, drift or jumps.
+/// A driver that returns the next 20 m of the true centre line, from the pose that the car believes, and
+/// stops behind the last line. Its map frame is that of the world: no random map frame, drift or jumps.
 [[nodiscard]] Driver truth_driver(const RaceCourse& course, int laps);
 
-/// Drives a course by the answers of a driver. The result, `answer_ms` aside, depends on nothing but the
-/// arguments and what the driver answers. Precondition: the course was made by a function of course.hpp.
+/// Drives a course by the answers of a driver. The result, without `answer_ms`, depends only on the arguments
+/// and the answers. Precondition: the course was made by a function of course.hpp.
 [[nodiscard]] RaceResult race(const RaceCourse& course, const RaceOptions& options, const Driver& driver);
 
 }  // namespace conelane::experiments

@@ -24,7 +24,7 @@ std::optional<double> quantile(std::vector<double> values, double share) {
     return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
 }
 
-/// Keys in the order in which they come first.
+/// The different keys, in the order in which they first occur.
 template <typename Key, typename Of>
 std::vector<Key> distinct(std::span<const Heat> heats, const Of& of) {
     std::vector<Key> keys;
@@ -57,7 +57,7 @@ struct Sums {
         frames += static_cast<std::size_t>(result.frames);
         without += static_cast<std::size_t>(result.frames_without_path);
         wrong += static_cast<std::size_t>(result.wrong_unflagged);
-        // The lap in which a race ended counts as one.
+        // The unfinished lap counts as one.
         hit += result.cones_hit / static_cast<double>(std::max(1, result.finished_laps + !result.finished()));
         time_s += result.time_s;
         old_s += result.old_path_s;

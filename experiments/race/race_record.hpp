@@ -10,7 +10,7 @@
 
 namespace conelane::experiments {
 
-/// A race of a table.
+/// A race as an entry of a table.
 struct Heat {
     std::string course;
     std::string detector;
@@ -19,15 +19,15 @@ struct Heat {
     RaceResult result = {};
 };
 
-/// A row for each detector and share of false positives, in the order in which they come first; then, for
-/// each course and detector, how far the races went that were not finished.
+/// A row for each detector and share of false positives, in the order in which they first occur; then, for
+/// each course and detector, how far the unfinished races went.
 [[nodiscard]] std::string race_table(std::span<const Heat> heats, int laps);
 
-/// Median and 99th percentile of the real time of an answer, by detector; not the same in two runs.
+/// Median and 99th percentile of the real time of an answer, by detector. They differ from run to run.
 [[nodiscard]] std::string answer_time_table(std::span<const Heat> heats);
 
 [[nodiscard]] nlohmann::ordered_json heat_json(const Heat& heat);
-/// What was driven: places of the car, paths and seen points of each frame, rounded to 1 cm.
+/// The record of a drive: positions of the car, paths and seen points of each frame, rounded to 1 cm.
 [[nodiscard]] nlohmann::ordered_json replay_json(const Heat& heat, const RaceCourse& course);
 
 }  // namespace conelane::experiments

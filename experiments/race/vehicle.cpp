@@ -7,7 +7,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// How far along the path the car may have come since it was asked last [m].
+/// Longest travel along the path between two calls [m].
 constexpr double kMaxProgress_m = 3.0;
 
 Point target_at(std::span<const Point> path, double arc_length_m) {
@@ -16,7 +16,7 @@ Point target_at(std::span<const Point> path, double arc_length_m) {
         if (arc_length_m < segment_m) return path[i] + arc_length_m / segment_m * (path[i + 1] - path[i]);
         arc_length_m -= segment_m;
     }
-    // Past its end a path goes on straight: a short one then keeps its direction.
+    // Behind its end, a path continues straight, so that a short path keeps its direction.
     const Point last = path.back() - path[path.size() - 2];
     return last.norm() > 0.0 ? Point(path.back() + arc_length_m * last.normalized()) : path.back();
 }

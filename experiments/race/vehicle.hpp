@@ -22,7 +22,7 @@ struct Vehicle {
 };
 
 /// The steering angle of pure pursuit along `path`, followed from its beginning on by arc length: the far
-/// end of a U-turn may be nearer to the car. `from_m` is the arc length reached and is moved on. 0 where
+/// end of a U-turn may be nearer to the car. `from_m` is the arc length reached and is moved on. 0 if
 /// the path has fewer than two points.
 [[nodiscard]] double pursue(const Pose& car, std::span<const Point> path, double lookahead_m, double& from_m,
                             const VehicleLimits& limits = {});

@@ -19,7 +19,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Between the poses whose views decide where false positives persist, as in scenes.
+/// Travel between the poses whose views decide where persistent false positives are, as in scenes.
 constexpr double kViewStep_m = 1.1;
 
 Point rotated(const Point& point, double angle_rad) {
@@ -65,7 +65,7 @@ World::World(const RaceCourse& course, const SightOptions& options)
         cone.confidence = 1.0;
     }
     if (options_.condition.persistent) add_persistent(course);
-    // Neither ids nor their order tell what a point is.
+    // Neither ids nor their order reveal what a point is.
     id_space_ = std::max<ConeId>(100'000, 256 * static_cast<ConeId>(points_.size()));
     change_ids();
 }
@@ -77,7 +77,7 @@ ConeId World::new_id() {
         const auto place = std::ranges::lower_bound(used_ids_, id);
         if (place != used_ids_.end() && *place == id) continue;
         used_ids_.insert(place, id);
-        // Fresh false positives use up ids without end: room for as many again.
+        // Fresh false positives use new ids in every frame, so there is room for as many again.
         if (used_ids_.size() * 4 > static_cast<std::size_t>(id_space_)) id_space_ *= 2;
         return id;
     }
@@ -138,11 +138,11 @@ void World::add_persistent(const RaceCourse& course) {
         PersistentView view{view_from(course.line[i], options_.range_m)};
         const auto in_view = std::ranges::count_if(
             course.cones, [&](const Cone& cone) { return view.view.contains(cone.position); });
-        // They are missed as often as cones are: the share among what is seen is that of what is there.
+        // False positives are missed as often as cones: so their share is that among all points.
         view.expected_points = false_to(static_cast<double>(in_view));
         views.push_back(view);
     }
-    // Drawn by a generator of their own: they are the same whatever is drawn later.
+    // Drawn by a generator of their own, so that they do not depend on other draws.
     Generator random = generator_of(key_of(course, options_, "persistent false positives"), options_.seed);
     false_positives_ = draw_persistent_points(views, random);
     for (const Point& point : false_positives_) points_.push_back(false_positive(point));

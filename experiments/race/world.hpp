@@ -45,10 +45,10 @@ class World {
     /// which cones and persistent false positives are missed, and their noise.
     [[nodiscard]] Frame look(const Pose& believed, const MapFrame& map, double time_s);
 
-    /// Every point in the world gets another id.
+    /// Gives every point in the world another id.
     void change_ids();
 
-    /// False positives that persist; empty where the condition draws fresh ones in each frame.
+    /// Persistent false positives; empty if the condition draws new ones in each frame.
     [[nodiscard]] const std::vector<Point>& false_positives() const { return false_positives_; }
 
   private:
@@ -60,7 +60,7 @@ class World {
     [[nodiscard]] double false_to(double seen) const;
 
     const SightOptions options_;
-    std::vector<Cone> points_;  ///< of the world: cones and what persists
+    std::vector<Cone> points_;  ///< of the world: cones and persistent false positives
     std::vector<Point> false_positives_;
     Generator random_;
     ConeId id_space_ = 0;

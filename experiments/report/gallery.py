@@ -142,7 +142,7 @@ def drawing(results, frame, slot, track, longest_gap_m, view=None):
 
 
 def said(answer):
-    """What became of an answer, in words."""
+    """The outcome of an answer, in words."""
     if not answer:
         return "no answer stored"
     iou, category, usable, cause = answer[4], answer[5], answer[7], answer[8]

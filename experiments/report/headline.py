@@ -44,7 +44,7 @@ def _recommended(results, samples):
         return None, ""
     best = leaders[1][0]
     level = [f"<b>{escape(sample.label)}</b>" for sample in leaders[1][1:]]
-    tail = f" The tracks do not tell {_joined(level)} from it." if level else ""
+    tail = f" On these tracks, {_joined(level)} cannot be distinguished from it." if level else ""
     what = "usable lanes" if values_of is usable_values else "success"
     return best, (f"<b>{escape(best.label)}</b>: {what} in {100 * leaders[0]:.1f}{_NBSP}% of {len(values_of(best)[0])} scenes"
                   f"{_by_condition(results, best, values_of)}, 99{_NBSP}% of the answers within "
@@ -64,7 +64,7 @@ def _sentence(results):
     sentence = f'<p class="headline">{"Run" if is_in_time else "Most often right:"} {text_of_best}</p>'
     if best.carries_state:
         _, without = _recommended(results, [sample for sample in in_time if not sample.carries_state])
-        sentence += f"<p>It carries its last lane along.{f' Without such memory, {without}' if without else ''}</p>"
+        sentence += f"<p>It keeps its last lane from scene to scene.{f' Without such memory, {without}' if without else ''}</p>"
     if not is_in_time:
         _, fast = _recommended(results, in_time)
         sentence += (f"<p>That is more than the {REAL_TIME_BUDGET_MS:g}{_NBSP}ms of a 20{_NBSP}Hz LiDAR. "
@@ -149,9 +149,9 @@ def _block(results, conditions, condition, rate):
 
 _COLUMNS = (Column("success %"), Column("mean IoU %"), Column("exact %"), Column("p99 ms"), Column("max ms"),
             Column("scenes"))
-_NOTE = ("Usable: the lane is right for the first 20 m and long enough to drive by. Success: the CLC paper's, which a stub of "
-         "two metres has too. Exact: the very cones of the ground truth. Small: 95 % interval, tracks resampled. Bold: "
-         "ahead, or not told from the method ahead by its paired difference, tracks resampled.")
+_NOTE = ("Usable: the lane is right for the first 20 m and long enough to drive by. Success: that of the CLC paper, which a lane of "
+         "two metres has too. Exact: exactly the cones of the ground truth. Small: 95 % interval, tracks resampled. Bold: "
+         "the best, or not distinguishable from it by the paired difference, tracks resampled.")
 
 
 def _measured(results, part, is_marked_by_success, marks):

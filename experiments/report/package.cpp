@@ -20,8 +20,8 @@
 namespace conelane::experiments {
 namespace {
 
-/// Runs a program found on PATH; its exit code, or -1 where there is no such program or it was killed. It
-/// ends with this one.
+/// Runs a program found on PATH. Returns its exit code, or -1 if there is no such program or it was killed.
+/// It is killed if this program ends.
 int run(std::vector<std::string> command, bool quiet) {
     std::vector<char*> arguments;
     for (std::string& word : command) arguments.push_back(word.data());
@@ -29,7 +29,7 @@ int run(std::vector<std::string> command, bool quiet) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     if (quiet) posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    // A group of its own: Ctrl-C ends it by this program, without a traceback.
+    // Its own process group: with Ctrl-C, this program ends it, and it prints no traceback.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -49,14 +49,14 @@ int run(std::vector<std::string> command, bool quiet) {
     siginfo_t ended{};
     while (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) {
     }
-    held.lock();  // only now may its number go to another program
+    held.lock();  // only now may the system give its number to another program
     int status = 0;
     if (::waitpid(child, &status, 0) != child) return -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// The first Python that has what the report draws with. The second place is where Debian's own packages go,
-/// should another Python come first on PATH.
+/// The first Python that has the modules of the report. The second place has Debian's own packages, in case
+/// another Python is first on PATH.
 std::string find_python(const std::string& wished) {
     const std::vector<std::string> candidates =
         wished.empty() ? std::vector<std::string>{"python3", "/usr/bin/python3"} : std::vector{wished};

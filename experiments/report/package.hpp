@@ -50,7 +50,7 @@ struct MadeFile {
     std::filesystem::path file;
     std::filesystem::path place;
 };
-/// Puts all files into their places: all of them or none. Throws InputError naming the place that fails.
+/// Puts all files in place, or none. Throws InputError naming the place that fails.
 void put_in_place(const std::vector<MadeFile>& files);
 
 }  // namespace conelane::experiments

@@ -95,8 +95,8 @@ def _one_condition(results):
     """Which of several conditions the figures of a section take."""
     if len(results.conditions) < 2:
         return ""
-    return (f'<p class="note">What follows takes condition {escape(results.main_condition)} alone, as the papers '
-            "measured.</p>")
+    return (f'<p class="note">This section uses condition {escape(results.main_condition)} only, as the papers '
+            "do.</p>")
 
 
 def _sections(results, published, data, advance):
@@ -115,13 +115,13 @@ def _sections(results, published, data, advance):
         ("comparison", "Comparison", "Comparison",
          filters.html(results, published["conditions"]) + shown(experiments.COMPARISON)
          + headline.by_rate(results, published["conditions"])),
-        ("race", "Race", "An event, driven by the answers", shown(experiments.RACE)),
+        ("race", "Race", "Races driven with the answers", shown(experiments.RACE)),
         ("failures", "Failures", "Where lanes go wrong", shown(experiments.FAILURES) + gallery.html(results, data)),
         ("play", "Viewer", "Scene viewer", _viewer(results, data)),
         ("speed", "Speed", "Speed on the same cones", alone(experiments.SPEED)),
-        ("exactness", "Exactness", "What exactness buys", headline.exactness(results) + shown(experiments.EXACTNESS)),
-        ("rld", "RLD paper", "Beside the RLD paper", alone(experiments.RLD_PAPER)),
-        ("clc", "CLC paper", "Beside the CLC paper", alone(experiments.CLC_PAPER))]
+        ("exactness", "Exactness", "The benefit of exact solvers", headline.exactness(results) + shown(experiments.EXACTNESS)),
+        ("rld", "RLD paper", "Compared with the RLD paper", alone(experiments.RLD_PAPER)),
+        ("clc", "CLC paper", "Compared with the CLC paper", alone(experiments.CLC_PAPER))]
     missing = f'<div class="absent"><h3>Not in these results</h3><ul>{"".join(absent)}</ul></div>' if absent else ""
     sections.append(("protocol", "Protocol", "Protocol and provenance",
                      provenance.html(results, data, published["conditions"]) + missing))
@@ -132,7 +132,7 @@ def _lead(results):
     """What kind of comparison this is."""
     held_out = results.run.get("cross_validation")
     families = held_out.get("families", {}) if isinstance(held_out, dict) else {}
-    how = (f" Held out: what learns was fitted anew for each of {len(families)} families of courses, without them."
+    how = (f" Held out: methods that learn were trained again for each of {len(families)} families of courses, without this family."
            if families else "")
     scenes = len(set().union(*(set(sample.scene) for sample in results.samples)))
     tracks = len(set().union(*(set(sample.track) for sample in results.samples)))
@@ -140,7 +140,7 @@ def _lead(results):
             '<b class="left-key">left</b> and the one on its <b class="right-key">right</b> between which the course goes on. '
             '</p><p class="lead">Compared: '
             f"{len(results.samples)} methods on the same {scenes} scenes of {tracks} track{'s' if tracks > 1 else ''}, scored by "
-            f"the same code, beside what the papers print.{how} "
+            f"the same code; the figures of the papers are shown beside them.{how} "
             f"Commit <code>{escape(str(results.run.get('commit', 'unknown')))}</code>.")
 
 

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Conditions whose parts were replaced are called NAME+PART; their noise is taken for that of NAME.
+/// A condition with replaced parts is called NAME+PART; its noise is assumed to be that of NAME.
 double noise_of(const std::string& condition) {
     for (const Condition& known : named_conditions()) {
         if (condition == known.name || condition.starts_with(known.name + "+")) return known.noise_sigma_m;
@@ -24,14 +24,14 @@ double noise_of(const std::string& condition) {
     return 0.0;
 }
 
-/// The boundary on one side of the driving direction at a point of the centre line.
+/// The point of the boundary on one side of a point of the centre line.
 ordered_json beside(const DrivablePoint& point, bool on_left) {
     const Point normal(-std::sin(point.heading_rad), std::cos(point.heading_rad));
     const Point at = point.position + (on_left ? point.width_left_m : -point.width_right_m) * normal;
     return ordered_json::array({at.x(), at.y()});
 }
 
-/// What is drawn of a lane beside its cones.
+/// The drawn parts of a lane besides its cones.
 ordered_json overlay(const DrivableLane& lane) {
     ordered_json json = ordered_json::object();
     if (lane.left_inferred || lane.right_inferred) {

@@ -37,8 +37,8 @@ def html(results, data, conditions):
         return f'<dl class="run">{rows}</dl>'
 
     kept = ("" if not results.run.get("candidates") else
-            "<li>This run kept all enumerated lanes to score them, which costs time: the latencies of enumerating "
-            "methods hold it.</li>")
+            "<li>This run kept all enumerated lanes to score them. This takes time, which is part of the latencies of enumerating "
+            "methods.</li>")
     parameters = next((method["rld_parameters"] for method in results.run.get("methods", ())
                        if isinstance(method, dict) and "rld_parameters" in method), {})
     left_out = sum(len(track.get("left_out", ())) for track in results.tracks.values())
@@ -54,21 +54,21 @@ def html(results, data, conditions):
     return f"""
 <p>A car drives the centre line of each track. A scene is what it sees from one pose: the points within range in the
 half-plane ahead, and false positives drawn uniformly among them until they make up the stated share of all points. A
-scene of a run of a real car is a frame of its map; where nobody annotated boundaries the truth is the path it drove.
+scene of a run of a real car is a frame of its map; without annotated boundaries, the truth is the path that it drove.
 Every method answers the same scenes, in order, and the same code scores the answers.</p>
 <ul>
 <li><b>Usable</b>: a lane was found, does not diverge from the annotated boundary within 20 m and, where it does not
 diverge at all, is at least 20 m or 75 % of the ground truth long. <b>Success</b>: a lane was found and does not diverge
-within 20 m, as the CLC paper counts. <b>Exact</b>: the very cones of the ground truth, in order.
-<b>IoU</b>: area common to lane and ground truth over the area of both; 0 where no lane was found.
+within 20 m, as the CLC paper counts. <b>Exact</b>: exactly the cones of the ground truth, in order.
+<b>IoU</b>: area common to lane and ground truth over the area of both; 0 without a lane.
 <b>Accurate</b>: at most one cone differs from the ground truth of the method's own cone set, each boundary lies on its
 side of the car, no edges cross, the width is 2.5 m to 6.5 m.</li>
 <li>A method marked n=12 saw only the 12 nearest cones ahead. Success and IoU still refer to all that is visible.</li>
-<li>Intervals are percentile bootstraps over whole tracks ({RESAMPLES} resamples, 95 %), as scenes of one track are
-alike; with few tracks they are rough. There are none where there is one track only.</li>
+<li>Intervals are percentile bootstraps over whole tracks ({RESAMPLES} resamples, 95 %), because scenes of one track
+are similar; with few tracks they are rough. With one track there are none.</li>
 {_conditions(results, conditions)}{kept}
-<li>The papers' own numbers were measured on other machines and other data; they stand beside ours for orientation.</li>
-{degenerate}<li>{escape(shown)} A cone counts as a false positive in the drawings where it lies on no annotated boundary.</li>
+<li>The papers' own numbers were measured on other machines and other data; they are shown for orientation only.</li>
+{degenerate}<li>{escape(shown)} In the drawings, a cone on no annotated boundary counts as a false positive.</li>
 </ul>
 <h3>Run</h3>{listed(results.run)}
 <h3>Parameters of RLD</h3>{listed(parameters) if parameters else "<p>No method of this run has them.</p>"}"""

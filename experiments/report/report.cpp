@@ -16,8 +16,8 @@
 namespace conelane::experiments {
 namespace {
 
-/// What the papers print, for the report to show beside, what the named conditions are, and from which gap on
-/// a boundary is drawn as bridged.
+/// Data for the report: the figures of the papers, the named conditions, and the gap from which a boundary is
+/// drawn as bridged.
 std::string published() {
     nlohmann::ordered_json clc = nlohmann::ordered_json::array();
     for (const PublishedClcRow& row : kPublishedClc) {

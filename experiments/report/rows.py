@@ -4,7 +4,7 @@ from .load import label_of
 from .tables import Cell, Column, method_cell, percent, text
 
 
-CATEGORY_NOTE = ("Ground truth: the very same cones. Near: does not diverge and is long enough, but not of the very same "
+CATEGORY_NOTE = ("Ground truth: exactly the same cones. Near: does not diverge and is long enough, but has other "
                  "cones. Too short: does not diverge, but is below 75 % of the ground truth's length.")
 TRAINED = " *: with courses that the method has learned from, no held-out figure."
 

@@ -102,7 +102,7 @@ class AnytimeStudy : public Study {
 
 std::vector<AnytimeRow> anytime_rows(std::span<const AnnotatedScene> scenes, const AnytimeOptions& options) {
     if (!std::ranges::is_sorted(options.limits_ms, std::less_equal()) || options.limits_ms.empty())
-        throw InvalidInput("--limits", "must ascend");
+        throw InvalidInput("--limits", "must be in ascending order");
     const std::unique_ptr<RldSolver> solver = find_rld_solver("path-pair")->make(Formulation::tight);
     const std::size_t count = std::min(options.limit.value_or(scenes.size()), scenes.size());
     std::vector<AnytimeRow> rows;

@@ -29,7 +29,7 @@ std::string instance_name(const SizeAndScene& instance) {
     return fmt::format("'{} n={}'", instance.second->scene.id, size_name(instance.first));
 }
 
-/// ARFF takes names with blanks and slashes in quotes.
+/// ARFF requires quotes around names with blanks and slashes.
 std::string quoted(const std::string& name) {
     return "'" + name + "'";
 }
@@ -100,7 +100,7 @@ void write_aslib_scenario(const std::filesystem::path& folder, std::span<const B
              << ',' << number(std::min(row.latency_ms, options.time_limit_ms) / kMsPerS) << ','
              << run_status(row, options.time_limit_ms) << '\n';
     }
-    if (instances.empty()) throw InvalidInput("--aslib", "there is no run from nothing");
+    if (instances.empty()) throw InvalidInput("--aslib", "there is no run without a start");
     const std::string instance_attributes = "@ATTRIBUTE instance_id STRING\n@ATTRIBUTE repetition NUMERIC\n";
     std::ostringstream values, status, costs, cv;
     values << "@RELATION FEATURE_VALUES_CONELANE\n\n" << instance_attributes;

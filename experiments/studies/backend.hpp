@@ -35,11 +35,11 @@ struct Backend {
 [[nodiscard]] std::vector<Backend> exact_backends();
 
 /// "SOLVER" or "SOLVER/FORMULATION", tight where none is named; or exec:NAME=COMMAND, exec:NAME/FORMULATION=
-/// COMMAND. Throws InvalidInput where the registry has no such exact solver, there is no such formulation, or
+/// COMMAND. Throws InvalidInput if the registry has no such exact solver, there is no such formulation, or
 /// the solver uses none.
 [[nodiscard]] Backend backend_of(std::string_view name);
 
-/// A solver of a backend, ready to solve. Throws InvalidInput where the backend's solver is not in this
+/// A solver of a backend, ready to solve. Throws InvalidInput if the backend's solver is not in this
 /// build, and as SolverProgram does.
 class BackendSolver {
   public:
@@ -48,11 +48,11 @@ class BackendSolver {
     explicit BackendSolver(const Backend& backend, std::uint64_t seed = 0);
 
     [[nodiscard]] RldSolver& solver() { return outside_ ? *outside_ : *inside_; }
-    /// What the solver says that its own search took, of the last solve [ms]; absent where it says nothing.
+    /// What the solver says that its own search took, of the last solve [ms]; absent if it says nothing.
     [[nodiscard]] std::optional<double> engine_ms() const;
-    /// Changes the order of rows and columns of a program from outside; false where that takes a new object.
+    /// Changes the order of rows and columns of a program from outside; false if that takes a new object.
     [[nodiscard]] bool set_seed(std::uint64_t seed);
-    /// Name and version of the solver, and of its libraries; empty where it says nothing.
+    /// Name and version of the solver, and of its libraries; empty if it says nothing.
     [[nodiscard]] std::string version() const;
     /// Ends a program from outside; the largest resident memory that it had [bytes], absent of other solvers.
     [[nodiscard]] std::optional<std::size_t> end();

@@ -31,7 +31,7 @@ SolverRun run_of(const BackendRow& row, double limit_ms) {
     return {row.latency_ms, is_solved(row, limit_ms)};
 }
 
-/// The rows of one size and condition, by backend in the order in which they are met, each by its runs.
+/// The rows of one size and condition, by backend in the order in which they first occur, each with its runs.
 struct Group {
     std::size_t size = 0;
     std::string condition;
@@ -220,7 +220,7 @@ void add_gaps(const Group& group, double limit_ms, std::vector<BackendGap>& gaps
             if (!row->steps.empty() && best && !row->refuted) with_steps.emplace_back(row, *best);
         }
         if (with_steps.empty()) continue;
-        constexpr double kStep = 1.2589254117941673;  // ten a decade
+        constexpr double kStep = 1.2589254117941673;  // ten steps a decade
         for (double time_ms = 0.1; time_ms <= limit_ms * (1.0 + 1e-9); time_ms *= kStep) {
             BackendGap gap{group.size, group.backends[b], time_ms, 0.0, 0.0};
             for (const auto& [row, best] : with_steps) {

@@ -81,7 +81,7 @@ class Driver {
         return row;
     }
 
-    /// What is known under each of the limits, from nothing, and at the end of the row.
+    /// What is known under each of the limits, without a start, and at the end of the row.
     void add_steps(BackendRow& row, const Scene& cones) {
         for (const double limit_ms : options_.gap_limits_ms) {
             if (limit_ms >= std::min(row.latency_ms, options_.time_limit_ms)) break;
@@ -138,7 +138,7 @@ Scene cones_of(const AnnotatedScene& scene, std::size_t size) {
     return size == kAllVisible ? scene.scene : nearest_ahead(scene.scene, size);
 }
 
-/// The scenes that have as many cones, lap by lap.
+/// The scenes with enough cones, lap by lap.
 void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedScene> scenes,
            const BackendOptions& options, ReferenceProblem& reference, BackendResults& results) {
     const std::vector<const AnnotatedScene*> wanted =
@@ -147,7 +147,7 @@ void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedSc
     const std::vector<std::size_t> starts = lap_starts(scenes);
     Progress progress(fmt::format("{} n={}", backend.label(), size_name(size)), wanted.size());
     Driver driver(backend, options);
-    if (!wanted.empty()) {  // code is loaded outside of any time
+    if (!wanted.empty()) {  // code is loaded before times are taken
         (void)driver.solve(*wanted.front(), cones_of(*wanted.front(), size));
         driver.forget();
     }
@@ -173,7 +173,7 @@ void drive(const Backend& backend, std::size_t size, std::span<const AnnotatedSc
     results.blocks.push_back(std::move(block));
 }
 
-/// What the rows of one size and backend add up to.
+/// Sums over the rows of one size and backend.
 struct Sums {
     std::size_t optimal = 0, infeasible = 0, unproven = 0, errors = 0, refuted = 0;
     double nodes = 0.0;
@@ -289,7 +289,7 @@ class BackendsStudy : public Study {
 
     StudyResult run() override {
         if (!std::ranges::is_sorted(options_.gap_limits_ms, std::less_equal()))
-            throw InvalidInput("--gap-limits", "must ascend");
+            throw InvalidInput("--gap-limits", "must be in ascending order");
         options_.parameters = input_.parameters.load();
         options_.backends = backends_asked_for();
         if (all_visible_) options_.sizes.push_back(kAllVisible);
@@ -314,7 +314,7 @@ class BackendsStudy : public Study {
         return all;
     }
 
-    /// In the order of --solvers, with --all-rows and --warm-start each once more.
+    /// In the order of --solvers; with --all-rows and --warm-start, each solver once more for each option.
     [[nodiscard]] std::vector<Backend> backends_asked_for() const {
         std::vector<Backend> all;
         const auto add = [&](const Backend& backend, bool names_formulation) {
@@ -343,7 +343,7 @@ class BackendsStudy : public Study {
         std::vector<std::string> labels;
         for (const Backend& backend : all) {
             if (std::ranges::find(labels, backend.label()) != labels.end())
-                throw InvalidInput("--solvers", "two are called " + backend.label());
+                throw InvalidInput("--solvers", "two backends have the name " + backend.label());
             labels.push_back(backend.label());
         }
         return all;
@@ -371,7 +371,7 @@ class BackendsStudy : public Study {
         }
         std::string lines;
         for (const auto& [backend, version] : versions)
-            lines += fmt::format("{}: {}\n", backend, version.empty() ? "tells no version" : version);
+            lines += fmt::format("{}: {}\n", backend, version.empty() ? "version unknown" : version);
         lines += provenance().machine + '\n';
         if (reference_ms.empty()) return lines;
         return lines + fmt::format(

@@ -39,7 +39,7 @@ bool holds_out(const HeldOut& fold, const std::string& track) {
     return std::ranges::find(fold.tracks, track) != fold.tracks.end();
 }
 
-/// Sums of values over scenes by rate.
+/// Sums of values over scenes, by rate.
 using ByRate = std::map<double, LapFigure>;
 
 void add_held_out(ByRate& sums, const HeldOut& fold, const std::vector<std::string>& only,
@@ -89,7 +89,7 @@ void require_held_out_tracks(const SceneSet& set, const ConfidenceColorOptions& 
     }
 }
 
-/// The fold's parameters under each weight of what is known.
+/// The fold's parameters with each value of the weight.
 std::vector<RldParameters> choices(const SimulatedKnowledge& knowledge, const HeldOut& fold,
                                    const ConfidenceColorOptions& options) {
     std::vector<RldParameters> choices;
@@ -171,7 +171,7 @@ class ConfidenceAndColorStudy : public Study {
         command.add_option("--only", only_, "names of the tracks that count; all without it");
         command.add_option("--every", every_m_, "travel between poses instead of the record's [m]");
         add_seed_option(command, seed_, "base seed instead of the record's");
-        add_threads_option(command, threads_, "nothing is timed");
+        add_threads_option(command, threads_, "number of threads; nothing is timed");
     }
 
     StudyResult run() override {
@@ -207,7 +207,7 @@ ConfidenceColorOptions read_tuning_record(const std::filesystem::path& file) {
         scenes.ranges_m = numbers_of(json.member("range"));
         scenes.every_m = json.member("every").number();
         if (const auto names = json.find("condition")) {
-            scenes.conditions = strings_of(*names);  // hold all that is disturbed
+            scenes.conditions = strings_of(*names);  // they include all disturbances
         } else {
             scenes.noise_sigma_m = json.member("noise").number();
             const JsonNode pose_noise = json.member("pose_noise");

@@ -31,7 +31,7 @@ double thread_cpu_ms() {
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-// Written by the signal handler, in the thread that reads them.
+// Written by the signal handler, which runs in the thread that reads them.
 volatile double cpu_at_limit_ms = 0.0;
 volatile std::sig_atomic_t limit_struck = 0;
 
@@ -99,7 +99,7 @@ DeadlineRow measure(std::span<const AnnotatedScene> scenes, const TimedCall& cal
     std::vector<double> cpu_ms;
     double max_cpu_ms = -1.0;
     LimitProbe probe;
-    call.run(scenes.front().scene, limit_ms);  // code and memory are loaded outside of any time
+    call.run(scenes.front().scene, limit_ms);  // code and memory are loaded before times are taken
     for (std::size_t k = 0; k < count * options.repeats; ++k) {
         const Scene& scene = scenes[(k % count) * scenes.size() / count].scene;
         const Stopwatch watch;

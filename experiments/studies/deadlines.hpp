@@ -20,7 +20,7 @@ class Study;
 struct DeadlineOptions {
     std::vector<double> limits_ms{1.0, 5.0, 20.0, 50.0, 400.0};
     std::size_t repeats = 1;           ///< of each scene under each limit
-    std::optional<std::size_t> limit;  ///< scenes at most, evenly spread; all where absent
+    std::optional<std::size_t> limit;  ///< largest number of scenes, evenly spread; all if absent
 };
 
 /// Quantiles by nearest rank.
@@ -30,7 +30,7 @@ struct OverrunStatistics {
     double p999_ms = 0.0;
     double max_ms = 0.0;
 };
-/// Zeros where the sample is empty.
+/// All zero if the sample is empty.
 [[nodiscard]] OverrunStatistics overrun_statistics(std::span<const double> overruns_ms);
 
 /// One method under one limit. Statistics are of the calls that were still running when the limit expired.
@@ -38,14 +38,14 @@ struct DeadlineRow {
     std::string detector;
     double limit_ms = 0.0;
     std::size_t calls = 0;
-    std::size_t struck = 0;     ///< of these, those still running
-    OverrunStatistics wall;     ///< wall clock from the limit to the answer
-    OverrunStatistics cpu;      ///< the thread's processor time between the two: other programs do not count
-    std::string slowest_scene;  ///< of the largest overrun by processor time; empty where none was struck
-    std::size_t slowest_cones = 0;  ///< that it has
+    std::size_t struck = 0;         ///< of these, those still running
+    OverrunStatistics wall;         ///< wall clock from the limit to the answer
+    OverrunStatistics cpu;          ///< the thread's processor time in it: without other programs
+    std::string slowest_scene;      ///< of the largest overrun by processor time; empty if there is none
+    std::size_t slowest_cones = 0;  ///< number of its cones
 };
 
-/// Detector by detector, in the order of the limits. Throws InvalidInput where there is no scene, or an
+/// Detector by detector, in the order of the limits. Throws InvalidInput if there is no scene, or if an
 /// answer is an error.
 [[nodiscard]] std::vector<DeadlineRow> deadline_rows(std::span<const AnnotatedScene> scenes,
                                                      std::span<const TimedCall> calls,

@@ -28,7 +28,7 @@ constexpr std::size_t kMinConesDrawn = 12;
 constexpr std::size_t kMaxConesDrawn = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What the solver proved and found: the optimum is in [lower, upper].
+/// The proven interval: the optimum is in [lower, upper].
 struct Range {
     double lower = -kInfinity;
     double upper = kInfinity;
@@ -49,7 +49,7 @@ RldParameters parameters_of(const DifferentialCase& drawn) {
     return parameters;
 }
 
-/// What the checker or the solver says against the answer; empty where nothing is.
+/// The objection of the checker or the solver to the answer; empty if there is none.
 std::string objection(const RldReport& report, const Scene& cones, const RldParameters& parameters) {
     if (report.status == SolveStatus::error) return report.message;
     if (!report.lane_graph) return {};
@@ -99,15 +99,15 @@ class DifferentialStudy : public Study {
         : Study(
               {"differential", "do path-pair and another exact solver ever contradict each other?",
                "Case k of a seed draws a scene, its 12 to 40 nearest cones, the pairing and the costs. Both "
-               "solve it; every lane graph passes the independent checker. They differ where a bound that "
-               "one has proven is above what the other has found, by more than 1e-6."}) {}
+               "solve it; every lane graph passes the independent checker. They differ if the proven bound "
+               "of one is above the objective of the other by more than 1e-6."}) {}
 
     void add_options(CLI::App& command) override {
         command.add_option("--scenes", scenes_, "*.scenes.jsonl")->required();
-        command.add_option("--seed", options_.seed, "of the cases")->capture_default_str();
+        command.add_option("--seed", options_.seed, "seed of the cases")->capture_default_str();
         command.add_option("--first", options_.first, "number of the first case, to cut a run into parts")
             ->capture_default_str();
-        command.add_option("--cases", options_.cases, "how many")
+        command.add_option("--cases", options_.cases, "number of cases")
             ->check(whole_number(1, 10'000'000))
             ->capture_default_str();
         command.add_option("--reference", options_.reference, "the other solver, an exact one of any size")

@@ -30,7 +30,7 @@ struct DifferentialCase {
 
 /// Case `number` of a seed: the scene, 12 to 40 cones, pairing and costs, each drawn uniformly. It depends
 /// only on these two and the scenes, so a run may be cut into parts. A scene with fewer cones gives all of
-/// them.
+/// only on these two and the scenes, so a run may be split into parts. A scene with fewer cones gives all of
 [[nodiscard]] DifferentialCase draw_case(std::span<const AnnotatedScene> scenes, std::uint64_t seed,
                                          std::size_t number);
 

@@ -21,7 +21,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// A formulation and who solves it.
+/// A formulation and its solver.
 struct FormulatedSolver {
     Formulation formulation;
     std::string_view name;
@@ -37,7 +37,7 @@ std::unique_ptr<RldSolver> solver_of(const FormulatedSolver& solver) {
     return entry->make(solver.formulation);
 }
 
-/// What the scenes of one row add up to.
+/// Sums over the scenes of one row.
 class RowSums {
   public:
     RowSums(std::size_t cones, const FormulatedSolver& solver, const FormulationOptions& options)
@@ -47,7 +47,7 @@ class RowSums {
         row_.solver = solver.name;
     }
 
-    /// The optimum, where it was proven.
+    /// The optimum, if it was proven.
     std::optional<double> add(const Scene& scene) {
         const auto [problem, report, solved_ms] =
             solve_scene(*solver_, scene, options_.parameters, {options_.time_limit_ms});

@@ -27,7 +27,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Scores that differ by less are equal: sums in another order.
+/// Scores that differ by less are equal: the order of the sums may differ.
 constexpr double kSameScore = 1e-4;
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
@@ -41,7 +41,7 @@ class Width {
         row_.drop = search.drop;
     }
 
-    /// The highest score of a lane; minus infinity where there is none.
+    /// The highest score of a lane; minus infinity if there is none.
     double drive(const AnnotatedScene& scene, const TrackBoundaries* boundaries) {
         const auto begin = std::chrono::steady_clock::now();
         SearchBudget budget;
@@ -158,9 +158,10 @@ class FrontBeamStudy : public Study {
                "how often does the beam of front miss the lane of the highest score, and what does the judge "
                "add to the score?",
                "Each scene with a ground truth by each width, one thread, times as wall clock; the last row "
-               "is the widest search, but for --exhaustive. Best score: as high as that of any row. Proven: "
-               "nothing was left out, so no lane that the rules allow has a higher score. Any usable: among "
-               "the best 20 lanes, which the judge chooses from. *.tracks.json beside the scenes has the "
+               "is the widest search, except for --exhaustive. Best score: the highest of all rows was "
+               "found. "
+               "Proven: nothing was left out, so no allowed lane has a higher score. Any usable: one of the "
+               "best 20 lanes, from which the judge chooses. *.tracks.json beside the scenes has the "
                "boundaries."}) {}
 
     void add_options(CLI::App& command) override {

@@ -23,7 +23,7 @@ struct FrontBeamOptions {
     /// compared.
     std::size_t reference_beam = 400;
     double reference_drop = 12.0;
-    /// A row for each: the search that leaves out nothing (no drop, no merge), stopped after this time.
+    /// A row for each: the search that leaves nothing out (no drop, no merge), stopped after this time.
     std::vector<double> exhaustive_ms;
 };
 
@@ -32,7 +32,7 @@ struct FrontBeamRow {
     std::size_t beam = 0;  ///< 0: no limit
     double drop = 0.0;     ///< infinity: none
     std::size_t scenes = 0;
-    double proven = 0.0;        ///< share whose search left out nothing: no lane has a higher score
+    double proven = 0.0;        ///< share whose search left nothing out: no lane has a higher score
     double best_score = 0.0;    ///< share with a lane of the highest score that any row has met
     double first_usable = 0.0;  ///< by score alone
     double usable = 0.0;        ///< as the judge orders the best lanes
@@ -43,7 +43,7 @@ struct FrontBeamRow {
     double worst_ms = 0.0;
 };
 
-/// Throws InvalidInput where a width or drop is out of range, or no scene has a ground truth.
+/// Throws InvalidInput if a width or drop is out of range, or no scene has a ground truth.
 [[nodiscard]] std::vector<FrontBeamRow> front_beam_rows(const SceneSet& set, const FrontBeamOptions& options);
 
 }  // namespace conelane::experiments

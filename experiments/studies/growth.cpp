@@ -27,7 +27,7 @@ namespace {
 constexpr double kNeighbourhood_m = 5.5;
 constexpr std::array<std::size_t, 6> kEdgeClasses{0, 100, 200, 300, 500, 1000};
 
-/// Other programs do not count.
+/// Processor time, so that other programs do not count.
 double thread_cpu_ms() {
     timespec time{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -158,7 +158,7 @@ std::vector<GrowthRow> growth_rows(std::span<const AnnotatedScene> scenes, const
     Progress progress("growth", count);
     for (std::size_t k = 0; k < count; ++k) {
         const AnnotatedScene& scene = scenes[k * scenes.size() / count];
-        if (k == 0) (void)solve(scene, scene.scene, *solver, options);  // code is loaded outside of any time
+        if (k == 0) (void)solve(scene, scene.scene, *solver, options);  // loads code before times are taken
         for (const std::size_t size : options.sizes) {
             if (size < scene.scene.cones.size())
                 rows.push_back(solve(scene, nearest_ahead(scene.scene, size), *solver, options));

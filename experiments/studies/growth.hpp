@@ -24,7 +24,7 @@ struct GrowthOptions {
     RldParameters parameters;
     std::vector<std::size_t> sizes{12, 20, 30, 40, 60, 80, 120};
     double time_limit_ms = 1000.0;     ///< a solve
-    std::optional<std::size_t> limit;  ///< scenes at most, evenly spread; all where absent
+    std::optional<std::size_t> limit;  ///< largest number of scenes, evenly spread; all if absent
 };
 
 struct GrowthRow {
@@ -46,7 +46,7 @@ struct GrowthRow {
 [[nodiscard]] std::vector<GrowthRow> growth_rows(std::span<const AnnotatedScene> scenes,
                                                  const GrowthOptions& options);
 
-/// By size; and of all visible cones by density, number of edges and course.
+/// By size; and for all visible cones by density, number of edges and course.
 [[nodiscard]] std::string growth_tables(std::span<const GrowthRow> rows);
 
 }  // namespace conelane::experiments

@@ -118,7 +118,7 @@ std::vector<MemoryRow> memory_rows(std::span<const AnnotatedScene> scenes, std::
                                    const MemoryOptions& options) {
     if (scenes.empty()) throw InvalidInput("--scenes", "hold no scene");
     if (options.calls < 2 * scenes.size() || options.calls < 4)
-        throw InvalidInput("--calls", "must be two for each scene at least, and four");
+        throw InvalidInput("--calls", "must be at least 4, and at least 2 for each scene");
     Progress progress("memory", calls.size() * options.calls);
     std::vector<MemoryRow> rows;
     for (const TimedCall& call : calls) rows.push_back(measure(scenes, call, options, progress));

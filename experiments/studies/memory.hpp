@@ -22,11 +22,11 @@ struct MemoryOptions {
     double time_limit_ms = std::numeric_limits<double>::infinity();
 };
 
-/// What the process holds.
+/// Memory of the process at one time.
 struct MemoryReading {
-    std::size_t calls = 0;           ///< made until then
+    std::size_t calls = 0;           ///< made so far
     std::size_t resident_bytes = 0;  ///< by the operating system
-    std::size_t heap_bytes = 0;      ///< allocated and not freed; 0 where the C library does not tell
+    std::size_t heap_bytes = 0;      ///< allocated and not freed; 0 if the C library does not report it
 };
 [[nodiscard]] MemoryReading memory_now();
 
@@ -39,8 +39,8 @@ struct MemoryRow {
     double bytes_per_call = 0.0;  ///< of the heap, from `warm` to `end`
 };
 
-/// All scenes in turn, over and over. Throws InvalidInput where there is no scene, there are fewer than two
-/// calls a scene, or an answer is an error.
+/// All scenes in turn, repeatedly. Throws InvalidInput if there is no scene, if there are fewer than two
+/// calls a scene, or if an answer is an error.
 [[nodiscard]] std::vector<MemoryRow> memory_rows(std::span<const AnnotatedScene> scenes,
                                                  std::span<const TimedCall> calls,
                                                  const MemoryOptions& options);

@@ -132,7 +132,7 @@ class Lap {
                                              const char* what) const {
         require_accepted(check(cones, problem.parameters, graph, {false, value, {}}), cones.id, what);
         if (row.status == SolveStatus::infeasible) {
-            throw InvalidInput(cones.id, fmt::format("a {} is feasible where none was proven to be", what));
+            throw InvalidInput(cones.id, fmt::format("a {} is feasible, but the exact search proved that there is none", what));
         }
         if (row.status == SolveStatus::optimal && value < *row.optimum->objective - kObjectiveTolerance) {
             throw InvalidInput(cones.id, fmt::format("a {} has the objective {}, below the proven optimum {}",

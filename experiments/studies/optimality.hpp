@@ -28,7 +28,7 @@ struct NamedCosts {
 struct OptimalityOptions {
     std::string detector = "clc";        ///< one that enumerates
     std::string beside = "front";        ///< one whose lanes are held against the optimum; none if empty
-    std::optional<std::size_t> nearest;  ///< cone set of all; all cones where absent
+    std::optional<std::size_t> nearest;  ///< cone set of all; all cones if absent
     std::vector<NamedCosts> costs{{}};   ///< at least one
     std::size_t beam_width = 100;        ///< see beam_lane_graph
     double time_limit_ms = 400.0;        ///< of the exact search, a scene
@@ -37,7 +37,7 @@ struct OptimalityOptions {
 
 /// A lane under an objective and against the ground truth.
 struct JudgedLane {
-    std::optional<double> objective;  ///< absent where RLD's constraints forbid the lane
+    std::optional<double> objective;  ///< absent if RLD's constraints forbid the lane
     Category category = Category::none;
     double iou = 0.0;
     std::optional<bool> usable;  ///< absent where no boundaries are known

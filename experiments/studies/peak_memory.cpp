@@ -28,7 +28,7 @@ PeakMemory::PeakMemory() {
     malloc_trim(0);
 #endif
     std::ofstream peak("/proc/self/clear_refs");
-    peak << "5";  // the peak is what it is now
+    peak << "5";  // resets the peak to the current value
     peak.close();
     if (peak) before_bytes_ = status_bytes("VmRSS:");
 }

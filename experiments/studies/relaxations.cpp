@@ -21,7 +21,7 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::string_view kExact = "path-pair";
-/// What the scenes of one row add up to.
+/// Sums over the scenes of one row.
 class RowSums {
   public:
     RowSums(std::size_t cones, const RldSolverEntry& entry, const RelaxationOptions& options)
@@ -30,7 +30,7 @@ class RowSums {
         row_.solver = entry.name;
     }
 
-    /// `least`: the proven least cost; nothing in the exact solver's own row, which then gives it.
+    /// `least`: the proven least cost; absent in the exact solver's own row, which determines it.
     std::optional<double> add(const AnnotatedScene& annotated, std::optional<double> least,
                               AnswerErrors& errors) {
         const Scene scene = nearest_ahead(annotated.scene, row_.cones);
@@ -105,14 +105,13 @@ nlohmann::ordered_json to_json(const RelaxationRow& row) {
 class RelaxationsStudy : public Study {
   public:
     RelaxationsStudy()
-        : Study(
-              {"relaxations",
-               "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
-               "cost in accuracy?",
-               "The nearest cones of each scene that has as many and holds a ground truth among them; every "
-               "solver that proves nothing, and path-pair, which gives the optimum; one thread. Times are "
-               "wall clock with the making of the problem. Gap: (objective - optimum) / max(1, |optimum|), "
-               "over the answers."}) {}
+        : Study({"relaxations",
+                 "does relaxing the binary constraints decrease latency (RLD paper, V), and what does it "
+                 "cost in accuracy?",
+                 "The nearest cones of each scene that has enough cones and a ground truth among them; every "
+                 "solver that proves nothing, and path-pair, which gives the optimum; one thread. Times are "
+                 "wall clock, including making the problem. Gap: (objective - optimum) / max(1, |optimum|), "
+                 "over the answers."}) {}
 
     void add_options(CLI::App& command) override {
         add_input_options(command, input_);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kNever_m = std::numeric_limits<double>::infinity();
 
-/// `count` of the numbers below `size`, ascending, each set of them as likely as any other.
+/// `count` of the numbers below `size`, ascending; all such sets are equally likely.
 std::vector<std::size_t> draw(std::size_t count, std::size_t size, const std::string& scene_id,
                               std::uint64_t seed) {
     std::vector<std::size_t> numbers(size);

@@ -10,7 +10,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// -log(probability) of what came out.
+/// -log(probability) of the outcome.
 double cross_entropy(double probability, bool happened) {
     constexpr double kMin = 1e-9;
     return -std::log(std::max(kMin, happened ? probability : 1.0 - probability));
@@ -66,7 +66,7 @@ double FrontJudgeLearner::judge_noise(const Scene& scene, const FrontWeights& we
     return cross_entropy(confidence, false) + cross_entropy(first.right, false);
 }
 
-/// Sets the contenders and their lanes, the best by its score first.
+/// Sets the contenders and their lanes, the one with the highest score first.
 void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontJudgeLossOptions& options) {
     front_.begin(scene, cost, options.search);
     SearchBudget unlimited;
@@ -84,7 +84,7 @@ void FrontJudgeLearner::search(const Scene& scene, FrontCost& cost, const FrontJ
     }
 }
 
-/// The contender that the detector answers; nothing where none is a lane.
+/// The contender that the detector answers; nothing if none is a lane.
 std::optional<std::size_t> FrontJudgeLearner::answered(const FrontJudge& judge) const {
     const auto is_lane = [&](std::size_t place) {
         return lanes_[place][kLeft].size() > 1 && lanes_[place][kRight].size() > 1;
@@ -130,7 +130,7 @@ void FrontJudgeLearner::add_right(const TrackBoundaries& boundaries, const Front
             place = {1, 1};
         } else {
             const std::size_t cone = place[node.side]++;
-            if (cone >= lane[node.side].size()) continue;  // off the lane as it is answered
+            if (cone >= lane[node.side].size()) continue;  // beyond the part of the lane that is answered
             is_right = cone < right_cones[node.side];
         }
         loss.sum += cross_entropy(step.right, is_right);

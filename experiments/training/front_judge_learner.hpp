@@ -38,8 +38,8 @@ class FrontJudgeLearner {
                FrontCost& cost, FrontJudge& judge, const FrontJudgeLossOptions& options,
                FrontWeights* derivatives);
 
-    /// The same of a scene of false cones alone, in which no lane is usable and no first pair right: the
-    /// cross-entropy of `usable`, and of `right` for the first pair. 0 where no lane is found.
+    /// The same for a scene of false cones only, where no lane is usable and no first pair right: the
+    /// cross-entropy of `usable`, and of `right` for the first pair. 0 if no lane is found.
     double judge_noise(const Scene& scene, const FrontWeights& weights, FrontCost& cost, FrontJudge& judge,
                        const FrontJudgeLossOptions& options, FrontWeights& derivatives);
 

@@ -12,7 +12,7 @@ namespace conelane::experiments {
 namespace {
 
 constexpr std::size_t kNone = FrontSearch::kNone;
-/// A derivative below this is left out.
+/// Smaller derivatives are left out.
 constexpr double kMinFactor = 1e-4;
 
 }  // namespace
@@ -69,7 +69,7 @@ FrontLearner::Loss FrontLearner::imitate(const AnnotatedScene& scene, const Fron
         const double score = probabilities[right];
         loss.sum += to_probabilities(probabilities) - score;
         ++loss.decisions;
-        // The inputs seen stay as they are: what is added looks at nothing else.
+        // `cost` still has the inputs of its last call, and the derivatives need nothing else.
         std::array<float, kExtendInputs> inputs{};
         std::ranges::copy(cost.state_features_seen(), inputs.begin());
         for (std::size_t i = 0; i < probabilities.size(); ++i) {
@@ -182,7 +182,7 @@ FrontLearner::Loss FrontLearner::search(const AnnotatedScene& scene, const Track
     return loss;
 }
 
-/// The true lane before the first move; not reachable where none of the search's starts is its own.
+/// The true lane before the first move; not reachable if none of the search's starts is its own.
 FrontLearner::Follow FrontLearner::begin_truth(FrontCost& cost) {
     Follow truth;
     const std::size_t start = true_start();
@@ -200,8 +200,8 @@ FrontLearner::Follow FrontLearner::begin_truth(FrontCost& cost) {
     return truth;
 }
 
-/// The best finished lanes, best first, and the true one behind them where the search has kept it but does
-/// not list it.
+/// The best finished lanes, best first, then the true lane if the search kept it but it is not among
+/// them.
 std::vector<FrontSearch::Finished> FrontLearner::listed_lanes(const Follow& truth,
                                                               const FrontLossOptions& options,
                                                               Loss& loss) const {
@@ -218,8 +218,8 @@ std::vector<FrontSearch::Finished> FrontLearner::listed_lanes(const Follow& trut
     return lanes;
 }
 
-/// Minimum risk over the listed lanes, and the cross-entropy of their probabilities to those that their risks
-/// want.
+/// Minimum risk over the listed lanes, and the cross-entropy between their probabilities and those that
+/// follow from their risks.
 void FrontLearner::add_list_loss(std::span<const FrontSearch::Finished> lanes,
                                  const TrackBoundaries& boundaries, const FrontLossOptions& options,
                                  Loss& loss) {
@@ -254,7 +254,7 @@ void FrontLearner::add_coefficients(const FrontWeights& weights, FrontCost& cost
     for (const FinishingStop& stop : finishing_) {
         add_move(front_.node(stop.parent).state, stop.side, {}, stop.factor, weights, cost, derivatives);
     }
-    // A node comes after its parent.
+    // A node has a higher number than its parent.
     for (std::size_t number = coefficients_.size(); number-- > 0;) {
         const double factor = coefficients_[number];
         if (std::abs(factor) <= kMinFactor) continue;

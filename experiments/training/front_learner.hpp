@@ -15,7 +15,7 @@ namespace conelane::experiments {
 struct FrontLossOptions {
     FrontSearchOptions search;
     std::size_t listed = 20;    ///< number of best lanes that the loss of a whole lane compares
-    double fall_out = 1.0;      ///< weight of the cross-entropy where the true lane falls out of the beam
+    double fall_out = 1.0;      ///< weight of the cross-entropy where the beam loses the true lane
     double minimum_risk = 3.0;  ///< weight of the expected risk
     double listwise = 0.5;      ///< weight of the cross-entropy to lanes of low risk
     double risk_scale = 0.05;   ///< a lane with this much more risk should be e times less likely
@@ -30,8 +30,8 @@ class FrontLearner {
         double sum = 0.0;
         std::size_t decisions = 0;  ///< terms in the sum
         bool reached = false;       ///< whether the rules allow the whole true lane
-        bool kept = false;          ///< whether the beam kept it to its end
-        bool found = false;         ///< whether it is the best of all
+        bool kept = false;          ///< whether the beam kept it to the end
+        bool found = false;         ///< whether it has the highest score of all
         double risk = 0.0;          ///< of the best lane; FrontRiskOptions::worst without a lane
     };
 

@@ -27,25 +27,25 @@ using Random = boost::random::mt19937_64;
 
 constexpr double kPoseEvery_m = 0.5;
 constexpr double kDegree_rad = std::numbers::pi / 180.0;
-// How often and how far a course is changed and disturbed.
+// How often and how much a course is changed and disturbed.
 constexpr double kScaledShare = 0.7;
 constexpr double kMaxLogScale = 0.22;
 constexpr double kSwirledShare = 0.6;
 constexpr double kMaxSwirl = 0.22;  ///< displacement per metre of each wave
 constexpr double kRespacedShare = 0.5;
-constexpr double kMinSpacing = 0.6;  ///< of the course's own
+constexpr double kMinSpacing = 0.6;  ///< as a share of the course's spacing
 constexpr double kMaxSpacing = 1.5;
 constexpr double kSpacingJitter = 0.2;
 constexpr double kMaxSpacing_m = 5.6;
 constexpr double kOtherCourseShare = 0.35;
-constexpr double kOtherCourseOff_m = 3.4;  ///< from the centre line: outside the lane
+constexpr double kOtherCourseOff_m = 3.4;  ///< from the centre line, so outside the lane
 constexpr double kDisturbedShare = 0.68;
 constexpr double kMaxNoise_m = 0.2;
 constexpr double kMaxMissed = 0.1;
 constexpr double kMaxLateral_m = 0.5;
 constexpr double kMaxYaw_rad = 8.0 * kDegree_rad;
 constexpr double kShortSightShare = 0.15;
-// How well colors are seen.
+// Quality of the colors that are seen.
 constexpr double kAllRightShare = 0.25;  ///< of the coloured ones: no color is wrong
 constexpr double kMaxWrong = 0.35;       ///< share of the cones that show the other side's color
 constexpr double kAllSeenShare = 0.35;   ///< no color is missing
@@ -108,7 +108,7 @@ class Warp {
     std::array<Wave, 3> waves_;
 };
 
-/// A boundary with its cones placed anew along it, `spacing` times as far apart as they were.
+/// A boundary with its cones placed again along it, with `spacing` times their old distances.
 std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, double spacing, Random& random) {
     const auto last = static_cast<double>(closed ? boundary.size() : boundary.size() - 1);
     const auto at = [&](double place) {
@@ -129,14 +129,14 @@ std::vector<Point> respaced(const std::vector<Point>& boundary, bool closed, dou
     return result;
 }
 
-/// The course after the warp; boundaries swapped where that mirrors or the course is driven backwards.
+/// The course after the warp. The boundaries are swapped if it is mirrored or driven backwards.
 Track changed(const Track& track, const Warp& warp, bool backwards, bool respace, Random& random) {
     const double spacing =
         respace && one_in(random, kRespacedShare) ? uniform(random, kMinSpacing, kMaxSpacing) : 1.0;
     Track result;
     result.closed = track.closed;
     std::array<std::vector<Point>, 2> sides;
-    std::array<std::vector<ConeColor>, 2> colors;  // orange where a gate stands
+    std::array<std::vector<ConeColor>, 2> colors;  // orange at gates
     std::vector<bool> is_boundary(track.cones.size(), false);
     const std::array<const std::vector<std::size_t>*, 2> runs{&track.left, &track.right};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -183,8 +183,8 @@ Pose changed(const Pose& pose, const Warp& warp, bool backwards) {
     return {warp(pose.position), std::atan2(along.y(), along.x())};
 }
 
-/// Lays another course over this one, at any angle and through a place of it, but for the cones that would
-/// stand on its lane. So legs of other parts of a course lie near in every way, and lead astray.
+/// Adds another course at a random angle through a place of this one, without the cones that would be on this
+/// lane: parallel and crossing legs that may mislead a detector.
 void add_other_course(Track& track, const std::vector<Pose>& poses, const Track& other, Random& random) {
     const Warp warp(random, true);
     const double angle_rad = uniform(random, 0.0, 2.0 * std::numbers::pi);
@@ -209,7 +209,7 @@ void add_other_course(Track& track, const std::vector<Pose>& poses, const Track&
     }
 }
 
-/// How the colors of a scene's cones are seen.
+/// Draws how the colors of a scene's cones are seen.
 class ColorSight {
   public:
     explicit ColorSight(Random& random) : random_(random) {
@@ -222,14 +222,14 @@ class ColorSight {
         soft_ = one_in(random, kSoftShare);
     }
 
-    /// `boundary`: of a cone of a boundary its true color, of any other one nothing.
+    /// `boundary`: the true color of a cone of a boundary; nothing for any other cone.
     void show(Cone& cone, std::optional<ConeColor> boundary) const {
         const bool is_false = !boundary;
         cone.color = is_false ? (one_in(random_, 0.5) ? ConeColor::blue : ConeColor::yellow) : *boundary;
         const double unseen = is_false ? false_unseen_ : unseen_[cone.color == ConeColor::yellow ? 1 : 0];
         if (one_in(random_, unseen)) cone.color = ConeColor::unknown;
         if (cone.color == ConeColor::unknown) return;
-        // A softened color is wrong as often as it says.
+        // The label is wrong with the probability that the softened color states.
         const bool is_drawn = soft_ && wrong_ > 0.0;
         const double wrong = is_drawn ? uniform(random_, 0.0, std::min(0.5, 2.0 * wrong_)) : wrong_;
         const bool is_orange = cone.color == ConeColor::orange;
@@ -268,7 +268,7 @@ void show_colors(Scene& scene, const Track& track, SceneOptions options, Random&
     }
 }
 
-/// Adds so many false positives, anywhere in view.
+/// Adds this many false positives, anywhere in view.
 void add_false_positives(Scene& scene, long count, double range_m, Random& random) {
     ConeId id = 0;
     for (const Cone& cone : scene.cones) id = std::max(id, cone.id);
@@ -333,7 +333,7 @@ FrontScenes::Drawn FrontScenes::draw(std::uint64_t number) const {
         scenes.false_positive_rates = {short_sight ? 0.0 : rate};
         for (AnnotatedScene& scene : generate_scenes(track, std::span(&pose, 1), scenes)) {
             if (short_sight) {
-                // The cones of the course are not seen so far.
+                // The cones of the course are seen only to a shorter distance.
                 const auto seen = static_cast<double>(scene.scene.cones.size());
                 add_false_positives(scene.scene, std::lround(rate * seen / (1.0 - rate)), range_m, random);
             }

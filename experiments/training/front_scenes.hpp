@@ -25,10 +25,10 @@ struct FrontSceneOptions {
     double highest_rate = 0.7;   ///< some views reach it if false positives persist at a rate of 0.5
 };
 
-/// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in either direction,
-/// may mirror it, scales it, bends it by a smooth swirl, places its cones again along its boundaries, lays
-/// another course beside it, and shows it from a few poses anywhere along it, with new false positives at any
-/// rate, and with colors or without.
+/// Scenes for training, drawn from whole courses. Each draw takes a course, drives it in a random direction,
+/// may mirror it, scales it, bends it by a smooth swirl, places its cones again along its boundaries and adds
+/// another course beside it. It shows the course from a few random poses, with new false positives at any
+/// rate, and with or without colors.
 class FrontScenes {
   public:
     /// Throws InvalidInput without a course, or if one has no centre line.

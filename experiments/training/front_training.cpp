@@ -26,12 +26,12 @@
 namespace conelane::experiments {
 namespace {
 
-/// Where a weight hardly ever counts, its derivative is mostly rounding.
+/// If a weight rarely has an effect, its derivative is mostly rounding.
 constexpr double kMinDeviation = 1e-5;
-/// No step follows a longer gradient: single scenes that went all wrong.
+/// Limit of the gradient's length, because single scenes may be completely wrong.
 constexpr double kMaxGradient = 5.0;
 
-/// He's initial values for the hidden layer, small ones for the outputs.
+/// Initial values: He's for the hidden layer, small ones for the outputs.
 FrontWeights initial_weights(std::uint64_t seed) {
     FrontWeights weights = FrontWeights::zero();
     auto random = generator_of("front weights", seed);
@@ -47,7 +47,7 @@ FrontWeights initial_weights(std::uint64_t seed) {
     return weights;
 }
 
-/// The names of what the networks of the cost see, in the order of their inputs.
+/// The names of the inputs of the networks of the cost, in their order.
 std::array<std::vector<std::string_view>, 3> cost_inputs() {
     std::array<std::vector<std::string_view>, 3> names;
     const auto add = [](std::vector<std::string_view>& to, std::span<const FrontFeature> table) {
@@ -76,7 +76,7 @@ void leave_out(const std::vector<std::string>& names, FrontWeights& weights) {
     }
 }
 
-/// The set that a training begins with, as weights of their own: while it is learned it serves every scene.
+/// The weights with which a training begins; the set that is learned serves every scene meanwhile.
 FrontWeights first_weights(const FrontTrainingOptions& options) {
     if (!options.initial) return initial_weights(options.seed);
     const FrontWeightSet& plain = *options.initial;
@@ -86,7 +86,7 @@ FrontWeights first_weights(const FrontTrainingOptions& options) {
     return weights;
 }
 
-/// The courses that least_trust is chosen on, all with colors where the set is for colors.
+/// The courses on which least_trust is chosen, all with colors if the set is for colors.
 std::optional<FrontScenes> scenes_of_trust(const FrontTrainingOptions& options) {
     if (options.trust_courses.empty()) return std::nullopt;
     FrontSceneOptions scenes = options.scenes;
@@ -94,7 +94,7 @@ std::optional<FrontScenes> scenes_of_trust(const FrontTrainingOptions& options) 
     return FrontScenes(options.trust_courses, scenes, options.seed);
 }
 
-/// What one draw of a step gives.
+/// The result of one draw of a step.
 struct Slot {
     FrontLearner learner;
     FrontJudgeLearner judge_learner;
@@ -132,7 +132,7 @@ class Training {
     }
 
     [[nodiscard]] std::size_t steps() const { return first_judging() + options_.judge_steps; }
-    /// With the set that is not learned, if there is one.
+    /// Together with the set that is not learned, if there is one.
     [[nodiscard]] FrontWeights weights() const {
         FrontWeights result = weights_;
         if (!options_.initial) return result;
@@ -144,7 +144,7 @@ class Training {
         result.colored = weights_;
         return result;
     }
-    [[nodiscard]] Eigen::Index size() const { return values_.size(); }  ///< of all numbers
+    [[nodiscard]] Eigen::Index size() const { return values_.size(); }  ///< number of all weights
 
     [[nodiscard]] FrontProgress::Stage stage(std::size_t step) const {
         if (step < options_.imitation_steps) return FrontProgress::Stage::move_by_move;
@@ -174,8 +174,8 @@ class Training {
         set(weights_, values_);
     }
 
-    /// Sets least_trust so that on scenes of trust_courses, or without these on scenes drawn after all those
-    /// learned from, the share of lanes asked for is right up to their trusted length.
+    /// Sets least_trust so that the requested share of lanes is right up to their trusted length: on scenes
+    /// of trust_courses, or else on scenes drawn after all those learned from.
     void choose_least_trust() {
         std::vector<std::vector<double>> wrong(options_.trust_draws);
         std::vector<std::size_t> scenes(options_.trust_draws);
@@ -200,7 +200,7 @@ class Training {
         }
         std::ranges::sort(all, std::greater());
         const auto allowed = static_cast<std::size_t>((1.0 - options_.trusted) * static_cast<double>(count));
-        // Above the first one too many.
+        // Just above the value at which one wrong lane more than allowed would count as right.
         weights_.least_trust = allowed < all.size() ? std::nextafter(all[allowed], 2.0) : 0.0;
         weights_.least_trust = std::min(weights_.least_trust, 1.0);
     }
@@ -214,7 +214,7 @@ class Training {
         set(weights_, values_);
     }
 
-    /// Counts that `note` adds up, until they are reported.
+    /// Sums that `note` adds up until they are reported.
     struct Counts {
         std::size_t scenes = 0;
         std::size_t decisions = 0;
@@ -226,7 +226,7 @@ class Training {
         return options_.imitation_steps + options_.search_steps;
     }
 
-    /// Of each stage it falls from its beginning to its end.
+    /// In each stage it falls from the beginning to the end.
     [[nodiscard]] double rate(std::size_t number) const {
         const auto falling = [&](double learning_rate, std::size_t first, std::size_t steps) {
             return cosine_rate(learning_rate,

@@ -18,15 +18,15 @@ namespace conelane::experiments {
 struct FrontTrainingOptions {
     FrontSceneOptions scenes;
     FrontLossOptions loss;
-    /// Weights that the training begins with, instead of drawn ones, and what a record calls them.
+    /// Weights with which the training begins, instead of random ones, and their name in the record.
     std::optional<FrontWeights> initial;
     std::string initial_name;
-    /// Only FrontWeights::colored is learned, beginning with that of `initial`, or its first set if it has
-    /// none: where no cone has a color, nothing changes. Needs `initial`.
+    /// Only FrontWeights::colored is learned. It begins with that of `initial`, or with its first set if it
+    /// has none. Answers to scenes without colors do not change. Needs `initial`.
     bool only_colors = false;
     /// Inputs of the cost that get no weight, by their names in the feature tables. For ablations.
     std::vector<std::string> without;
-    std::size_t draws_per_step = 8;     ///< changed courses to a step of Adam
+    std::size_t draws_per_step = 8;     ///< changed courses in each step of Adam
     std::size_t imitation_steps = 800;  ///< of teacher forcing
     std::size_t search_steps = 7000;    ///< through the search, after these
     std::size_t judge_steps = 4000;     ///< of FrontJudge, after these
@@ -35,8 +35,8 @@ struct FrontTrainingOptions {
     double judge_rate = 2e-3;
     /// Target share of lanes that are right up to their trusted length.
     double trusted = 0.995;
-    std::size_t trust_draws = 1000;  ///< changed courses that least_trust is chosen on
-    /// The courses of these; without any, those that are learned from.
+    std::size_t trust_draws = 1000;  ///< changed courses on which least_trust is chosen
+    /// These are drawn from the following courses, or from those that are learned from.
     std::vector<Track> trust_courses;
     std::size_t figures_every = 1000;  ///< steps between two measurements on the scenes held out
     std::uint64_t seed = 0;
@@ -67,7 +67,7 @@ struct FrontProgress {
     double loss = 0.0;                   ///< mean of a decision, since the last report
     double reached = 0.0;                ///< share of the scenes whose true lane the rules allow
     double kept = 0.0;                   ///< share of the scenes whose true lane the beam kept
-    double found = 0.0;                  ///< and whose answer it is
+    double found = 0.0;                  ///< share of the scenes whose answer is the true lane
     double risk = 0.0;                   ///< mean of the answers
     std::vector<FrontFigures> held_out;  ///< of each set held out
 };

@@ -31,7 +31,7 @@ Json describe(const FrontFigures& figures) {
             {"right_where_trusted", rounded(figures.calibration.right_where_trusted().value_or(0.0))}};
 }
 
-/// Without those that have no annotated boundaries.
+/// Without tracks that have no annotated boundaries.
 std::vector<Track> annotated_tracks(const std::vector<std::string>& specs) {
     std::vector<Track> tracks;
     for (const std::string& spec : specs) std::ranges::move(load_tracks(spec), std::back_inserter(tracks));

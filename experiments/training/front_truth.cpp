@@ -9,7 +9,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Cones of one lane but not of the other, as a share of the true ones.
+/// Number of cones in one of the lanes but not in the other, as a share of the true ones.
 double cone_error(const FrontTruth::Cones& lane, const FrontTruth::Cones& truth) {
     std::size_t shared = 0;
     for (const Side side : {kLeft, kRight}) {
@@ -26,7 +26,7 @@ double cone_error(const FrontTruth::Cones& lane, const FrontTruth::Cones& truth)
 void FrontTruth::set(const AnnotatedScene& scene, const FrontMap& map) {
     scene_ = &scene;
     map_ = &map;
-    // From the place in the scene to that in the map.
+    // From cones of the scene to cones of the map.
     std::vector<Vertex> vertex_of(map.size());
     for (Vertex cone = 0; cone < vertex_of.size(); ++cone) vertex_of[map.scene_index(cone)] = cone;
     const auto index_of = index_by_id(scene.scene);

@@ -22,14 +22,14 @@ namespace {
 
 using Generator = boost::random::mt19937_64;
 
-/// As Adam's authors propose.
+/// Adam's constants as proposed by its authors.
 constexpr double kMinDeviation = 1e-8;
 
-/// All candidates, a column each, and where each list of them begins.
+/// All candidates, one column each, and the beginning of each list.
 struct Candidates {
     Eigen::MatrixXd inputs;
-    std::vector<double> quality;      ///< IoU, lowered where the lane diverges or is not usable
-    std::vector<std::size_t> begins;  ///< one more than there are lists
+    std::vector<double> quality;      ///< IoU, lowered if the lane diverges or is not usable
+    std::vector<std::size_t> begins;  ///< one entry more than lists
 };
 
 double penalty(double divergence_m, bool usable, const RankNetTrainingOptions& options) {
@@ -65,7 +65,7 @@ Candidates gather(std::span<const CandidateList> lists, const RankNetTrainingOpt
     return all;
 }
 
-/// Standardises the inputs; returns their mean and deviation, 1 for the deviation of what does not vary.
+/// Standardises the inputs. Returns mean and deviation; 1 for the deviation of a constant input.
 std::pair<Eigen::VectorXd, Eigen::VectorXd> standardise(Eigen::MatrixXd& inputs) {
     const Eigen::VectorXd mean = inputs.rowwise().mean();
     inputs.colwise() -= mean;
@@ -78,8 +78,8 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> standardise(Eigen::MatrixXd& inputs)
     return {mean, deviation};
 }
 
-/// Uniform within plus and minus the root of 6 / (number of inputs) for the hidden layer (He), of 6 / (inputs
-/// + outputs) for the output; no bias.
+/// Uniform initial values within +-sqrt(6 / number of inputs) for the hidden layer (He), and +-sqrt(6 /
+/// (inputs + outputs)) for the output; biases are 0.
 RankNetParameters initial(const RankNetTrainingOptions& options, Generator& random) {
     const auto units = static_cast<Eigen::Index>(options.units);
     const auto inputs = static_cast<Eigen::Index>(options.inputs);
@@ -106,7 +106,7 @@ Eigen::RowVectorXd scores(const RankNetParameters& parameters, const Eigen::Matr
     return result;
 }
 
-/// One layer's way forward and back.
+/// Forward and backward pass of one layer.
 struct Pass {
     Eigen::MatrixXd units;
     Eigen::RowVectorXd scores;
@@ -117,7 +117,7 @@ struct Pass {
         units = units.cwiseMax(0.0);
         scores.noalias() = parameters.output.transpose() * units;
     }
-    /// Adds the derivatives, given that of the loss by each score.
+    /// Adds the derivatives, given the derivative of the loss by each score.
     void add_gradient(const RankNetParameters& parameters, const Eigen::MatrixXd& inputs,
                       const Eigen::RowVectorXd& by_score, RankNetParameters& gradient) const {
         gradient.output.noalias() += units * by_score.transpose();
@@ -187,7 +187,7 @@ std::vector<Pair> draw_pairs(const Candidates& all, const RankNetParameters& par
     return pairs;
 }
 
-/// One epoch. `rate`: the learning rate by the share of the epoch that is done.
+/// One epoch. `rate`: the learning rate as a function of the completed share of the epoch.
 template <typename Rate>
 void train_on_pairs(const Candidates& all, const RankNetTrainingOptions& options, const Rate& rate,
                     Generator& random, Optimiser& optimiser, RankNetParameters& parameters) {
@@ -280,7 +280,7 @@ double pair_loss(const RankNetParameters& parameters, const CandidatePairs& pair
     const Eigen::RowVectorXd difference = first.scores - second.scores;
     double loss = 0.0;
     for (Eigen::Index i = 0; i < difference.size(); ++i) {
-        // -p log(sigmoid(d)) - (1 - p) log(1 - sigmoid(d)), so that nothing overflows.
+        // -p log(sigmoid(d)) - (1 - p) log(1 - sigmoid(d)), in a form that does not overflow.
         const double d = difference(i);
         loss += std::max(d, 0.0) - pairs.first_is_better(i) * d + std::log1p(std::exp(-std::abs(d)));
     }

@@ -22,38 +22,38 @@ namespace conelane::experiments {
 /// Precondition: as many as `flat` gives.
 void set(LearnedCosts& costs, const Eigen::ArrayXd& values);
 
-/// The truth of a scene as a lane graph of its cones. Precondition: it has a ground truth, whose boundaries
-/// are not closed.
+/// The truth of a scene as a lane graph of its cones. Precondition: it has a ground truth with open
+/// boundaries.
 [[nodiscard]] LaneGraph true_lane_graph(const AnnotatedScene& scene);
 
-/// What is subtracted from the cost of an edge that the truth has not, and added to that of an edge that it
-/// has, while a rival of the truth is searched: the rival is the lane graph that is cheap and wrong.
+/// While the rival of the truth is searched, this margin is subtracted from the cost of each edge that is not
+/// in the truth, and added to the cost of each edge that is. The rival is a cheap lane graph that is wrong.
 struct RldMargin {
     double near = 0.4;  ///< of an edge within near_m of the car
-    double far = 0.2;   ///< of any other one
+    double far = 0.2;   ///< of any other edge
     double near_m = 20.0;
 };
 
-/// Adds the derivatives of the learned cost of a lane graph by all numbers, times `factor`. Where a limit of
-/// LearnedCosts holds, such as a turn that would gain, the derivative counts only if a step along it leaves
-/// the limit.
+/// Adds `factor` times the derivatives of the learned cost of a lane graph by all numbers. At a limit of
+/// LearnedCosts, such as a turn that would gain, the derivative counts only if a step along it leaves the
+/// limit.
 void add_cost_gradient(const LaneGraphProblem& problem, const LearnedFeatures& features,
                        const LaneGraph& graph, double factor, LearnedCosts& gradient);
 
-/// The structured hinge loss of one scene after another: what the truth costs beyond its cheapest rival,
-/// after the margin. The rival comes from path-pair, which begins at the truth; a limit of its work may end
-/// the search, then the rival is the best one found. Reuses memory.
+/// The structured hinge loss of one scene after another: the cost of the truth minus that of its cheapest
+/// rival, with the margin. The rival comes from path-pair, which starts from the truth. If a limit of its
+/// work ends the search, the rival is the best one found. Reuses memory.
 class RldLearner {
   public:
     RldLearner(const RldMargin& margin, std::int64_t max_work);
 
     struct Loss {
-        bool allowed = false;  ///< the truth is a lane graph of the problem; else nothing else is said
+        bool allowed = false;  ///< the truth is a lane graph of the problem; else the rest is unset
         bool proven = false;   ///< there is no cheaper rival
         bool found = false;    ///< the truth is its own cheapest rival
         double hinge = 0.0;    ///< not negative
     };
-    /// Adds the derivatives of the loss. Precondition: the scene has a ground truth that is not closed, and
+    /// Adds the derivatives of the loss. Precondition: the scene has a ground truth with open boundaries, and
     /// the parameters have learned costs.
     Loss add(const AnnotatedScene& scene, const RldParameters& parameters, LearnedCosts& gradient);
 

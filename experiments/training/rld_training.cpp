@@ -21,9 +21,9 @@
 namespace conelane::experiments {
 namespace {
 
-/// Where a weight hardly ever counts, its derivative is mostly rounding.
+/// If a weight rarely has an effect, its derivative is mostly rounding.
 constexpr double kMinDeviation = 1e-3;
-/// No step follows a longer gradient: single scenes that went all wrong.
+/// Limit of the gradient's length, because single scenes may be completely wrong.
 constexpr double kMaxGradient = 20.0;
 
 double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
@@ -32,7 +32,7 @@ double& weight(LearnedCosts& costs, LearnedPart part, std::string_view name) {
     return costs.of(part).linear.at(static_cast<std::size_t>(found - features.begin()));
 }
 
-/// What one draw of a step gives.
+/// The result of one draw of a step.
 struct Slot {
     std::unique_ptr<RldLearner> learner;
     LearnedCosts gradient;
@@ -65,7 +65,7 @@ class Training {
     [[nodiscard]] const LearnedCosts& costs() const { return costs_; }
     [[nodiscard]] Eigen::Index size() const { return values_.size(); }
 
-    /// Adds what happened to the sums of `progress`.
+    /// Adds the result of a draw to the sums of `progress`.
     void step(std::size_t number, RldProgress& progress) {
         RldParameters parameters = options_.parameters;
         parameters.learned_costs = std::make_shared<const LearnedCosts>(costs_);
@@ -143,7 +143,7 @@ RldParameters rld_learning_parameters() {
 }
 
 LearnedCosts shape_as_learned_costs() {
-    // Of each turn and end: so that they may become cheaper before a limit of LearnedCosts holds.
+    // Cost of each turn and end, so that training can lower it before a limit of LearnedCosts holds.
     constexpr double kMoved = 0.5;
     constexpr double kEnd = -1.0;
     const RldParameters shape = rld_parameter_set("shape").value();

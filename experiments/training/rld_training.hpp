@@ -14,29 +14,29 @@
 
 namespace conelane::experiments {
 
-/// The parameters that costs are learned with: no cost but the learned ones; limits that allow most true
-/// lanes, also where a cone is missed.
+/// The parameters for learning costs: all other costs are 0, and the limits allow most true lanes, also with
+/// missed cones.
 [[nodiscard]] RldParameters rld_learning_parameters();
 
 /// The costs of the shipped set `shape` as linear learned costs, with a constant moved from edges to turns
 /// and ends, which changes no optimum.
 [[nodiscard]] LearnedCosts shape_as_learned_costs();
 
-/// Linear costs with so many hidden units, drawn by the seed, that add nearly nothing. Precondition: `linear`
-/// has none.
+/// Linear costs with this number of hidden units, drawn by the seed, which contribute almost nothing.
+/// Precondition: `linear` has none.
 [[nodiscard]] LearnedCosts with_hidden_units(const LearnedCosts& linear, std::size_t units,
                                              std::uint64_t seed);
 
 struct RldTrainingOptions {
-    /// Limits and costs that the learned ones are added to. Where they have learned costs, the training
-    /// begins with those, with hidden units added to linear ones; else with shape_as_learned_costs.
+    /// Limits and costs to which the learned ones are added. If they have learned costs, the training begins
+    /// with them, and linear ones get hidden units; otherwise it begins with shape_as_learned_costs.
     RldParameters parameters = rld_learning_parameters();
     FrontSceneOptions scenes{.colored_share = 0.0, .noise_scenes = false, .highest_rate = 0.6};
     RldMargin margin;
     std::size_t units = 16;  ///< hidden units of each network; 0 for linear costs
     /// Limit of the search for a rival, in steps of about a nanosecond.
     std::int64_t max_work = 15'000'000;
-    std::size_t draws_per_step = 8;  ///< changed courses to a step of Adam
+    std::size_t draws_per_step = 8;  ///< changed courses in each step of Adam
     std::size_t steps = 2000;
     double learning_rate = 5e-3;     ///< of Adam, falls to 0 along a cosine
     std::size_t report_every = 100;  ///< steps

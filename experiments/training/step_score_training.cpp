@@ -20,18 +20,18 @@
 namespace conelane::experiments {
 namespace {
 
-/// Where a score hardly ever counts, its derivative is mostly rounding.
+/// If a score rarely has an effect, its derivative is mostly rounding.
 constexpr double kMinDeviation = 1e-6;
 
-/// A lane less likely than this adds nothing to a derivative.
+/// Less likely lanes add nothing to a derivative.
 constexpr double kMinProbability = 1e-3;
 
-/// A scene in the search graph with its ground truth, and the beam that is to keep it.
+/// A scene in the search graph with its ground truth, and the beam that should keep it.
 class RightLane {
   public:
     explicit RightLane(const CandidateSearchOptions& search) : search_(search) {}
 
-    /// What became of the right lane.
+    /// The fate of the right lane.
     struct Course {
         bool started = false;
         bool near_kept = false;
@@ -39,8 +39,8 @@ class RightLane {
         std::size_t levels = 0;  ///< whose loss was added up
     };
 
-    /// Follows the right lane as long as the beam keeps it; with `derivatives` to its end, and adds those of
-    /// the loss.
+    /// Follows the right lane while the beam keeps it; with `derivatives`, to its end, and adds the
+    /// derivatives of the loss.
     Course follow(const AnnotatedScene& annotated, const StepScores& scores,
                   std::vector<double>* derivatives) {
         Course course;
@@ -107,7 +107,7 @@ class RightLane {
         }
     }
 
-    /// Of the right lane among its level, to which it is added where it is not there.
+    /// The loss of the right lane among its level, to which it is added if it is missing.
     void add_loss(std::size_t right, Course& course, std::vector<double>& derivatives) {
         competitors_.assign(beam_.level().begin(), beam_.level().end());
         if (std::ranges::find(competitors_, right) == competitors_.end()) competitors_.push_back(right);

@@ -63,7 +63,7 @@ Json describe(const StepScoreFigures& figures) {
             {"kept_share", rounded(figures.kept_share)}};
 }
 
-/// The scenes to train on, and those held out, of which there may be none.
+/// The scenes to train on, and the held-out ones, which may be empty.
 template <typename Options>
 std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
     std::pair<SceneSet, SceneSet> sets{make_scene_set(options.tracks, options.scenes), {}};
@@ -81,7 +81,7 @@ std::pair<SceneSet, SceneSet> make_scene_sets(const Options& options) {
 void add_variants(const TrainingRunOptions& options, SceneSet& set) {
     for (const std::string& spec : options.tracks) {
         for (const Track& track : load_tracks(spec)) {
-            if (!track.frames.empty()) continue;  // the maps of a run are as they were recorded
+            if (!track.frames.empty()) continue;  // the maps of a run stay as they were recorded
             for (std::size_t number = 1; number <= options.variants; ++number) {
                 const Track variant = track_variant(track, number, options.scenes.seed);
                 set.tracks.emplace(variant.name, boundaries(variant));

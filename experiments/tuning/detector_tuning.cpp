@@ -23,11 +23,11 @@
 namespace conelane::experiments {
 namespace {
 
-/// Share of the evaluations that look everywhere, and the steps of the others as shares of a range.
+/// Share of the evaluations that cover the whole ranges, and the steps of the others as shares of a range.
 constexpr double kEverywhere = 0.4;
 constexpr double kFirstStep = 0.25;
 constexpr double kLastStep = 0.025;
-/// Of the parameters, those that one step moves.
+/// Share of the parameters that one step changes.
 constexpr double kMovedShare = 0.4;
 
 template <typename Parameters>
@@ -46,8 +46,8 @@ TunableDetector tunable(std::string_view name, std::span<const ParameterField<Pa
     return detector;
 }
 
-/// Four significant digits: short numbers in files, and the same ones on every machine, whose logarithms
-/// differ in the last bits.
+/// Four significant digits: short numbers in files, and the same on every machine, although logarithms differ
+/// in the last bits.
 double rounded(double value) {
     return value == 0.0 ? 0.0 : std::stod(fmt::format("{:.4g}", value));
 }
@@ -75,7 +75,7 @@ std::vector<double> anywhere(const TunableDetector& detector, boost::random::mt1
     return values;
 }
 
-/// Some of the values, one at least, moved by about `step` of their ranges.
+/// Changes some of the values, at least one, by about `step` of their ranges.
 std::vector<double> nearby(const TunableDetector& detector, std::vector<double> values, double step,
                            boost::random::mt19937_64& random) {
     boost::random::uniform_01<double> uniform;
@@ -108,7 +108,7 @@ const TunableDetector& find_tunable_detector(std::string_view name) {
         names += (names.empty() ? "" : ", ") + std::string(known.name);
     }
     throw InvalidInput("method",
-                       fmt::format("'{}' has no parameters that are tuned so, only {} have", name, names));
+                       fmt::format("'{}' has no parameters for this command, only {} have", name, names));
 }
 
 DetectorFigure evaluate(const TunableDetector& detector, std::span<const double> values, const SceneSet& set,

@@ -28,7 +28,7 @@ struct EvaluationOptions {
     TuningObjective objective = TuningObjective::accuracy;
     std::optional<std::size_t> nearest{};  ///< cone-set size; all cones if absent
     std::optional<std::size_t> context{};  ///< as ConeSet::context
-    /// Slow parameters are not useful: a scene whose search takes more time or nodes has value 0.
+    /// A scene whose search exceeds one of these limits has value 0, because slow parameters are not useful.
     double time_limit_ms = 20.0;
     std::int64_t max_nodes = 1000;
     /// If more than this number of scenes have reached the time limit, all scenes have value 0.
@@ -71,8 +71,8 @@ class Evaluation {
     /// Keeps the scenes on which the objective is defined. Throws InvalidInput if there are none.
     Evaluation(SceneSet set, const EvaluationOptions& options);
 
-    /// A figure for each lap, in the order of the scenes. The same for any number of threads as long as no
-    /// scene runs into the time limit.
+    /// A figure for each lap, in the order of the scenes. The same for any number of threads, if no scene
+    /// reaches the time limit.
     [[nodiscard]] std::vector<LapFigure> operator()(const RldParameters& parameters) const;
 
     [[nodiscard]] const std::vector<AnnotatedScene>& scenes() const { return set_.scenes; }

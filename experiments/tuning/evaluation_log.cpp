@@ -52,7 +52,7 @@ std::string line_of(const std::vector<double>& key, const std::vector<LapFigure>
     return to_line({{"parameters", parameters}, {"laps", figures}});
 }
 
-/// Before anything is cut: a file of another kind stays as it is. The header itself may be unfinished.
+/// Checked before the file is changed: a file of another kind stays as it is. The header may be unfinished.
 void require_header(const fs::path& file, const std::string& header) {
     std::ifstream stream(file, std::ios::binary);
     std::string first_line;
@@ -63,7 +63,7 @@ void require_header(const fs::path& file, const std::string& header) {
     }
 }
 
-/// Cuts what follows the last line feed: a line that was being written when the program was stopped.
+/// Removes what follows the last line feed: a line that was being written when the program was stopped.
 void drop_unfinished_line(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

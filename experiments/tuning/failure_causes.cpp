@@ -16,7 +16,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// The first family of constraints that the ground truth breaks.
+/// The first family of constraints that the ground truth violates.
 FailureCause broken_constraint(const LaneGraphProblem& problem, const LaneGraph& graph) {
     std::vector<bool> chosen(problem.edges.size(), false);
     std::size_t listed = 0;
@@ -40,7 +40,7 @@ FailureCause broken_constraint(const LaneGraphProblem& problem, const LaneGraph&
     return along_heading < 2 ? FailureCause::breaks_heading : FailureCause::breaks_endpoints;
 }
 
-/// The term in which the cost of the ground truth is most above that of the answer.
+/// The term in which the ground truth costs most above the answer.
 FailureCause most_expensive_term(const LaneGraphProblem& problem, const LaneGraph& ground_truth,
                                  const LaneGraph& answer) {
     constexpr std::array<FailureCause, kObjectiveTermCount> kCheaper{

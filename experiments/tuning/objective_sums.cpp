@@ -20,7 +20,7 @@ ObjectiveSums objective_sums(const LaneGraphProblem& problem, const LaneGraph& g
         sum_of(ObjectiveTerm::color) += edge.color_cost;
         sum_of(ObjectiveTerm::facing) += edge.facing_cost;
         sum_of(ObjectiveTerm::near_ends) += near_ends;
-        // With confidences the benefit is no longer the same for all edges: it is what remains of the cost.
+        // With confidences, edges have different benefits: the benefit is then the rest of the cost.
         const double others = p.w_s * edge.spacing_cost + p.w_p * edge.heading_cost +
                               p.w_color * edge.color_cost + p.w_v * edge.facing_cost + p.w_n * near_ends;
         if (p.w_b > 0.0) sum_of(ObjectiveTerm::benefit) += (edge.cost - others) / p.w_b;

@@ -9,15 +9,15 @@ namespace {
 
 using P = RldParameters;
 
-/// A hard limit that cuts off lanes of an unseen track costs more than a tight one gains on the seen ones:
-/// with all limits free, a fold lost 12 points of accuracy on a track with cones 0.9 m apart. So limits begin
-/// where they cut off nothing real: turns of 70 degrees (t_crit), spacings 2.7 m off d_e (s_crit), lanes 2.8
-/// m wide (d_min), first cones 5 m away (d_near), far ends the widest lane apart (d_max), two edges near a
-/// car that stands across a bend (d_h, theta_heading). d_e ends at the largest spacing that the competition's
-/// rules allow.
+/// A limit that cuts off lanes of an unseen track costs more than a tight limit gains on the seen tracks:
+/// with all limits free, a fold lost 12 points of accuracy on a track with cones 0.9 m apart. So the ranges
+/// of limits begin at values that exclude no real lane: turns of 70 degrees (t_crit), spacings 2.7 m off d_e
+/// (s_crit), lanes 2.8 m wide (d_min), first cones 5 m away (d_near), far ends the widest lane apart (d_max),
+/// two edges near a car that is across a bend (d_h, theta_heading). d_e ends at the largest spacing of the
+/// rules.
 ///
-/// Beside the shape costs limits stay: these tell false edges from true ones without cutting off any, and
-/// with the limits tuned as well fewer lanes of held-out tracks were accurate.
+/// With shape costs, the limits stay: these costs distinguish false edges without excluding true ones, and
+/// with tuned limits fewer lanes of held-out tracks were accurate.
 constexpr std::size_t kShape = 7;
 constexpr std::size_t kCosts = 4;
 constexpr std::size_t kLimits = 7;

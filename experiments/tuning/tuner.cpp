@@ -14,10 +14,10 @@ namespace conelane::experiments {
 namespace {
 
 constexpr double kGlobalShare = 0.3;
-/// How far the global search goes from the start on each axis of the unit cube. In the whole cube nearly
-/// every point is worse than a start by hand: 118 evaluations there found none better.
+/// Largest distance of the global search from the start on each axis of the unit cube. In the whole cube,
+/// nearly every point is worse than a start set by hand: none of 118 evaluations was better.
 constexpr double kReach = 0.2;
-/// Of the unit cube: the figures are flat between points closer than that.
+/// Distance in the unit cube: between closer points, the figures are flat.
 constexpr double kFirstStep = 0.08;
 constexpr double kMinStep = 1e-3;
 
@@ -45,7 +45,7 @@ class Fit {
         best_parameters_ = parameters;
     }
 
-    /// From the best point so far, at most `reach` away from it on each axis.
+    /// Starts from the best point so far and stays within `reach` of it on each axis.
     void run(nlopt::algorithm algorithm, std::size_t evaluations, double reach) {
         if (evaluations == 0) return;
         nlopt::opt search(algorithm, static_cast<unsigned>(best_point_.size()));
@@ -61,8 +61,8 @@ class Fit {
         search.set_maxeval(static_cast<int>(evaluations));
         search.set_initial_step(kFirstStep);
         search.set_xtol_abs(kMinStep);
-        // A random search must leave its first points behind: NLopt's ten of them a dimension are for longer
-        // ones.
+        // Fewer random points at first than NLopt's ten for each dimension, which are meant for longer
+        // searches.
         if (algorithm == nlopt::GN_CRS2_LM) {
             const std::size_t fewest = best_point_.size() + 1;
             search.set_population(static_cast<unsigned>(std::clamp(evaluations / 4, fewest, 10 * fewest)));
@@ -72,7 +72,7 @@ class Fit {
         try {
             search.optimize(point, reached);
         } catch (const nlopt::roundoff_limited&) {
-            // The best point stands.
+            // The best point is kept.
         } catch (const nlopt::forced_stop&) {
             std::rethrow_exception(failure_);
         }
@@ -96,7 +96,7 @@ class Fit {
             }
             return mean;
         } catch (...) {
-            failure_ = std::current_exception();  // NLopt passes on exceptions of its own only
+            failure_ = std::current_exception();  // NLopt passes on only exceptions of its own
             throw nlopt::forced_stop();
         }
     }

@@ -43,7 +43,7 @@ class Fit {
         try {
             search.optimize(point, reached);
         } catch (const std::runtime_error&) {
-            // No step made it better: the best point stands.
+            // If no step improved it, the best point is kept.
         }
     }
 

@@ -21,14 +21,14 @@
 namespace conelane::experiments {
 namespace {
 
-/// Besides the weights themselves: the first round has only the start to learn from.
+/// Parameter sets besides the weights themselves: in the first round, only the start is known.
 constexpr std::size_t kDrawnFirst = 5;
 constexpr std::size_t kDrawnLater = 2;
 /// Standard deviation of a drawn weight's logarithm.
 constexpr double kSpreadFirst = 0.5;
 constexpr double kSpreadLater = 0.25;
 
-/// What is known of one scene, from all rounds.
+/// The knowledge about one scene from all rounds.
 struct KnownScene {
     const AnnotatedScene* annotated;
     std::vector<LaneGraph> graphs;
@@ -55,7 +55,7 @@ void add_ground_truth(KnownScene& known, const EvaluatedScene& evaluated, const 
         add(known, evaluated.seen, evaluated.problem, *graph, evaluation);
 }
 
-/// A problem has no number of a term whose weight is zero: one that is fitted is not.
+/// A problem does not compute a term with weight zero; a fitted weight is never zero.
 RldParameters moved_into_ranges(RldParameters parameters) {
     for (const auto& [tuned, term] : tuned_weights(parameters)) {
         parameters.*tuned.value = std::clamp(parameters.*tuned.value, tuned.lowest, tuned.highest);
@@ -82,7 +82,7 @@ std::vector<RldParameters> fit_weights_in_rounds(const Evaluation& evaluation, c
                                                  const std::set<std::string>& tracks,
                                                  const WeightRoundsOptions& options) {
     if (options.rounds > 0 && start.w_b <= 0.0) {
-        throw InvalidInput("w_b", "must be positive where weights are fitted: it is their unit");
+        throw InvalidInput("w_b", "must be positive to fit weights: it is their unit");
     }
     std::vector<KnownScene> known;
     for (const AnnotatedScene& scene : evaluation.scenes()) {

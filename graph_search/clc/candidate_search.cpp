@@ -63,7 +63,7 @@ CandidateSearch::Report CandidateSearch::run(const Scene& scene, const Request& 
     starts_.find(scene, options_.start, options_.bounds);
     report.exhausted = starts_.complete();
     has_remaining_ = request.last_lane != nullptr && find_remaining(*request.last_lane, scene);
-    // Without a start there is no lane, whatever the graph is.
+    // Without a start there is no lane, so the graph is not needed.
     if (starts_.ranked().empty() && !has_remaining_) return report;
 
     points_.clear();
@@ -168,7 +168,7 @@ void CandidateSearch::add_scene_features(const Scene& scene) {
     double max_length_m = 0.0;
     for (const LaneFeatures& lane : features) max_length_m = std::max(max_length_m, lane[kLength]);
     std::size_t i = 0;
-    for (const Seed& seed : seeds()) {  // those behind them are of scenes before
+    for (const Seed& seed : seeds()) {  // later entries are left over from earlier scenes
         const StartPairMeasures measures = start_pair_measures(scene, seed.start);
         for (; i < seed.found_end; ++i) {
             LaneFeatures& lane = features[i];

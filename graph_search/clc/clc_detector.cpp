@@ -13,17 +13,17 @@
 namespace conelane {
 namespace {
 
-/// Cones stand at most 5 m apart by the rules, so this is the gap that one missed cone leaves. With the 5.5 m
-/// of the paper a lane ends there, and where one cone in twenty is missed a third of the lanes is too short
-/// to be driven by.
+/// By the rules, cones stand at most 5 m apart, so this is the gap that one missed cone leaves. With the 5.5
+/// m of the paper, a lane ends at such a gap: with 5 % of the cones missed, a third of the lanes is too short
+/// to drive.
 constexpr double kMaxGap_m = 10.0;
-/// Raises the share of scenes with a near ground truth among the candidates, most at high rates of false
-/// positives.
+/// Raises the share of scenes with a near ground truth among the candidates, most of all at high rates of
+/// false positives.
 constexpr double kNextVertexDistanceWeight = 1.45;
-/// The same.
+/// Has the same purpose.
 constexpr std::uint32_t kSecondSearchDiscrepancies = 3;
 
-/// Candidates between two looks at the clock: under 1 ms of work, and more than 2500 iterations find.
+/// Candidates between two checks of the clock: under 1 ms of work, and more than 2500 iterations find.
 constexpr std::size_t kRankedAtOnce = 4096;
 
 class ClcDetector final : public LaneDetector {
@@ -54,7 +54,7 @@ class ClcDetector final : public LaneDetector {
         if (found.empty()) {
             answer.status = report.exhausted ? LaneStatus::none : LaneStatus::stopped;
             if (!report.exhausted && !report.stopped_by) answer.stopped_by = StopReason::iterations;
-            // The beam's half of the time may be gone; the enumeration after it was complete.
+            // The beam search may have used its half of the time; the enumeration after it was complete.
             if (report.exhausted) answer.stopped_by.reset();
             return answer;
         }
@@ -65,8 +65,8 @@ class ClcDetector final : public LaneDetector {
         return answer;
     }
 
-    /// Returns the place of the answer among the pairs found, of which there must be one. Where the time is
-    /// up before all are ranked, the others are left out and `stopped_by` says so.
+    /// Returns the index of the answer among the pairs found. Precondition: there is a pair. If the time ends
+    /// before all are ranked, the others are left out and `stopped_by` says so.
     std::size_t choose(const Deadline& deadline, std::optional<StopReason>& stopped_by) {
         const std::vector<PathPair>& found = search_.pairs().found();
         if (!ranking_) {

@@ -50,7 +50,7 @@ constexpr std::array<std::size_t, kStepMeasureCount + 1> offsets() {
 }
 constexpr std::array<std::size_t, kStepMeasureCount + 1> kOffsets = offsets();
 
-/// The two scores that a value stands between, of which `share` belongs to the second.
+/// The two scores around a value; `share` is the weight of the second.
 struct Place {
     std::size_t first;
     std::size_t second;
@@ -65,13 +65,13 @@ Place place(std::size_t measure, double value) {
             at - static_cast<double>(below)};
 }
 
-/// A first segment may turn farther from the heading than two segments from each other: the car need not
-/// stand along the lane.
+/// A first segment may turn farther from the heading than later segments from each other, because the car
+/// need not be parallel to the lane.
 constexpr double kMaxFirstTurn_rad = 110.0 * kDegree;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
 
-/// A bit of 64 for each vertex, shared by others.
+/// One of 64 bits for each vertex; several vertices share a bit.
 std::uint64_t bit_of(Vertex vertex) {
     return std::uint64_t{1} << (vertex % 64);
 }
@@ -146,7 +146,7 @@ bool LaneBeam::advance(SearchBudget& budget) {
         const Vertex facing = from.last[opposite(side)];
         const bool is_lane = from.vertices[opposite(side)] > 1;
         const std::span<const Vertex> neighbours = graph_->neighbours(from.last[side]);
-        // Looking for a vertex on the lane goes back along it, looking about a segment sees all neighbours.
+        // A test of membership walks back along the lane; looking around a segment visits all neighbours.
         const std::size_t work =
             10 + (from.vertices[kLeft] + from.vertices[kRight]) / 8 + neighbours.size() / 8;
         for (const Vertex vertex : neighbours) {
@@ -303,8 +303,8 @@ bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
 }
 
 void LaneBeam::keep_best() {
-    // A heap, of which the first few are taken. Of equal scores by what does not change where the scene is
-    // mirrored.
+    // A heap, because only the first few are taken. Ties are decided by values that do not change when the
+    // scene is mirrored.
     const auto is_worse = [](const Extension& a, const Extension& b) {
         return std::tuple(-a.score, a.length_m, a.low, a.high) >
                std::tuple(-b.score, b.length_m, b.low, b.high);
@@ -331,7 +331,7 @@ bool LaneBeam::is_known(const Extension& extension) const {
         before[side] = last[side];
         last[side] = extension.vertex;
     }
-    // With a segment on each side, whatever goes on from there goes on alike.
+    // States with a segment on each side and the same last vertices have the same continuations.
     return std::ranges::any_of(level_, [&](std::size_t better) {
         return states_[better].last == last && states_[better].before == before;
     });

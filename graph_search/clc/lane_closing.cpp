@@ -45,7 +45,7 @@ bool meet(std::span<const Point> a, std::span<const Point> b) {
     return false;
 }
 
-/// For a point on no segment of the ring.
+/// Only for a point that is on no segment of the ring.
 bool encloses(std::span<const Point> ring, const Point& point) {
     double winding_rad = 0.0;
     for (std::size_t i = 0; i < ring.size(); ++i) {

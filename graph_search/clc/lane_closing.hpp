@@ -11,7 +11,7 @@ namespace conelane {
 /// within d_max of the first, and the closed lane satisfies the constraints. For a closed lane these are:
 /// C_seg also at both ends of each closing segment; C_width with the closing segments as queries and targets;
 /// and for C_poly, each boundary is a simple polygon, they have no point in common and one encloses the
-/// other. False where a side has fewer than three points.
+/// other. False if a side has fewer than three points.
 [[nodiscard]] bool can_be_closed(std::span<const Point> left, std::span<const Point> right, double d_max_m,
                                  const LaneBounds& bounds);
 

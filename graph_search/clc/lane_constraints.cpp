@@ -10,12 +10,12 @@
 namespace conelane {
 namespace {
 
-/// Segments of a boundary that are looked at together.
+/// Segments of a boundary that are tested together.
 constexpr std::size_t kChunk = 8;
 static_assert(kChunk <= BoundaryArrays::kSpare);
 
-/// Whether both ends of `line` and of the segment are on one side of the other, or have none in common in x
-/// or in y. Where not, they nearly always meet, which the exact predicate then tells.
+/// Whether two segments are apart in x or in y. Of segments whose ends are on different sides of each other,
+/// the others nearly always meet; the exact predicate decides.
 bool are_apart(const Segment& line, const Segment& segment) {
     const auto apart = [](double a, double b, double c, double d) {
         return std::max(a, b) < std::min(c, d) || std::max(c, d) < std::min(a, b);
@@ -28,9 +28,9 @@ bool segment_meets(const Segment& line, const Segment& segment) {
     return !are_apart(line, segment) && segments_intersect(line, segment);
 }
 
-/// The first of `count` segments of a boundary, from `first` on, that `line` may meet, rounded down to
-/// a whole number of chunks from `first`; `count` where there is none. Sides are told by the ends of each
-/// against the line through the other, without a branch, so that the loop vectorises.
+/// The first of `count` segments of a boundary, from `first` on, that `line` may meet, rounded down to a
+/// multiple of a chunk from `first`; `count` if there is none. The ends of each are tested against the line
+/// through the other without a branch, so that the loop vectorises.
 CONELANE_SIMD std::size_t first_suspicious_chunk(const BoundaryArrays& boundary, std::size_t first,
                                                  std::size_t count, const Segment& line) {
     const double* const x = boundary.x.data();
@@ -99,7 +99,7 @@ void LaneConstraints::push(Side side, const Point& point, bool turn_allowed) {
         next.hopeless = width.narrowest_squared <= bounds_.w_min_m * bounds_.w_min_m ||
                         (rule_ == WidthBacktracking::left_behind && width.too_wide_behind);
         if (!next.hopeless) {
-            // A vertex too far from the other boundary is helped by extending that boundary alone.
+            // A vertex that is too far from the other boundary needs an extension of that boundary.
             next.needs = {width.too_wide[kRight] > 0, width.too_wide[kLeft] > 0};
             next.end_line_meets = end_line_meets();
             next.feasible = !next.needs[kLeft] && !next.needs[kRight] && !next.end_line_meets;
@@ -118,7 +118,7 @@ bool LaneConstraints::new_segment_meets(Side side, const Point& point) const {
     const BoundaryArrays& other = width_.boundary(opposite(side));
     const Segment segment{own.vertex(own.size - 1), point};
     if (meets(other, other.size - 1, segment)) return true;
-    // The first segment of a side is a neighbour of the line between the first points.
+    // The first segment of a side is adjacent to the line between the first points.
     if (own.size == 1) return false;
     return meets(own, own.size - 2, segment) || segment_meets(segment, {own.vertex(0), other.vertex(0)});
 }

@@ -93,8 +93,8 @@ constexpr std::array<std::string_view, kLaneFeatureCount> kNames = [] {
     return names;
 }();
 
-/// From `middle` to the cubic through two points before and two after it at even steps, across the chord of
-/// its neighbours [m].
+/// Distance of `middle`, across the chord of its neighbours, from the cubic through the two points before and
+/// the two after it at even steps [m].
 double offset_m(const Point& second_before, const Point& before, const Point& middle, const Point& after,
                 const Point& second_after) {
     const Point expected = (4.0 * (before + after) - (second_before + second_after)) / 6.0;
@@ -220,7 +220,7 @@ void LaneGrowth::push(const SearchGraph& graph, Side side, Vertex vertex) {
     }
     if (facing.vertices > 1) step.skew = (direction - facing.direction).norm();
     step.cones = neighbourhood(graph, vertex, tip_[side], facing_tip, point);
-    // Up to where the step begins.
+    // The length up to the beginning of the step.
     const bool is_near = own.segment_lengths.sum <= kNearPart_m;
     add(step, side, whole_);
     if (is_near) add(step, side, near_);

@@ -15,7 +15,7 @@ std::vector<Segment> segments_of(std::span<const Point> vertices, bool closed) {
     return segments;
 }
 
-/// From here on a foot point counts as the end of its segment: a foot exactly there may be rounded below.
+/// From this parameter on, a foot point counts as the end of its segment: rounding may place it just below 1.
 constexpr double kEndOfSegment = 1.0 - 1e-9;
 
 struct SquaredDistance {
@@ -23,7 +23,7 @@ struct SquaredDistance {
     double foot;  ///< parameter on the segment, in [0, 1]
 };
 
-/// From a point at offset (px, py) of the segment's begin. As plain arithmetic, so that loops vectorise.
+/// Of a point at offset (px, py) from the segment's begin. Plain arithmetic, so that loops vectorise.
 SquaredDistance to_segment(double px, double py, double dx, double dy, double inverse_squared_length) {
     const double foot = std::min(1.0, std::max(0.0, (px * dx + py * dy) * inverse_squared_length));
     const double ex = px - foot * dx;
@@ -37,7 +37,7 @@ constexpr std::size_t whole_fours(std::size_t count) {
     return (count + kDoublesPerBatch - 1) / kDoublesPerBatch * kDoublesPerBatch;
 }
 
-/// Of the first `count`; those behind them, up to a whole number of fours, are overwritten.
+/// For the first `count`; values behind them, up to a multiple of four, are overwritten.
 inline double smallest(double* values, std::size_t count) {
     constexpr double kNone = std::numeric_limits<double>::infinity();
     const std::size_t end = whole_fours(count);
@@ -50,18 +50,18 @@ inline double smallest(double* values, std::size_t count) {
     return std::min(std::min(lanes[0], lanes[1]), std::min(lanes[2], lanes[3]));
 }
 
-/// What a push measures: the facing vertices against the new segment, the facing segments against the new
+/// What a push measures: the facing vertices against the new segment, and the facing segments against the new
 /// vertex.
 struct Measured {
     double* to_segment;  ///< squared, one for each facing vertex
-    double* foot;        ///< where on the segment that is attained, in [0, 1]
+    double* foot;        ///< parameter on the segment at which it is attained, in [0, 1]
     double* to_vertex;   ///< squared, one for each facing segment
     double nearest_to_segment;
     double nearest_to_vertex;
 };
 
-/// `i`: the segment of `own` that is new. Where there is one facing vertex, nothing is nearest to the new
-/// one.
+/// `i`: the new segment of `own`. If there is only one facing vertex, no facing segment is measured against
+/// the new vertex.
 CONELANE_SIMD void measure(const BoundaryArrays& own, std::size_t i, const BoundaryArrays& facing,
                            Measured& measured) {
     const std::size_t n = facing.size;
@@ -75,7 +75,7 @@ CONELANE_SIMD void measure(const BoundaryArrays& own, std::size_t i, const Bound
     const double dx = own.dx[i];
     const double dy = own.dy[i];
     const double inverse = own.inverse_squared_length[i];
-    // As to_segment does it, up to a whole number of fours: what lies behind the last one is spare.
+    // As in to_segment, up to a multiple of four: entries behind the last one are spare.
     for (std::size_t k = 0; k < whole_fours(n); k += kDoublesPerBatch) {
         const Doubles px = at(facing.x, k) - from_x;
         const Doubles py = at(facing.y, k) - from_y;
@@ -103,21 +103,21 @@ CONELANE_SIMD void measure(const BoundaryArrays& own, std::size_t i, const Bound
     measured.nearest_to_vertex = smallest(measured.to_vertex, n - 1);
 }
 
-/// Widths of one side's queries at some length of the other boundary.
+/// Widths of one side's queries for one length of the other boundary.
 struct Row {
     double* vertex_squared;
     double* segment_squared;
     std::int64_t* at_end;
 };
 
-/// How many vertices of the new row are w_max or more from the other boundary, and how many of these are not
-/// nearest to its end.
+/// How many vertices of the new row are w_max or more from the other boundary, and how many of these are
+/// nearest to a point before its end.
 struct TooWide {
     std::int64_t all = 0;
     std::int64_t not_at_end = 0;
 };
 
-/// The row of `n` queries, lowered by what was measured.
+/// Writes the row of `n` queries: the minimum of the old row and the new distances.
 CONELANE_SIMD TooWide lower(const Row& before, const Measured& measured, std::size_t n, double squared_w_max,
                             const Row& after) {
     const double* const __restrict old_vertex = before.vertex_squared;
@@ -268,7 +268,7 @@ void OnlineLaneWidth::push(Side side, const Point& point) {
         vertex_at_end = to_last.foot >= kEndOfSegment && to_last.value <= measured.nearest_to_vertex;
     }
 
-    // A new row for the queries of the facing boundary: the old one, lowered by what is new.
+    // A new row for the queries of the facing boundary: the minimum of the old row and the new distances.
     const std::size_t old_row = facing_rows.begins.back();
     const std::size_t new_row = old_row + n;
     facing_rows.make_room(new_row + n);
@@ -326,7 +326,7 @@ double OnlineLaneWidth::variance() const {
         const Rows& rows = rows_[side];
         const std::size_t size = boundaries_[side].size;
         add_widths(rows.vertex_squared.data() + rows.begins.back(), size, sums);
-        // The first entry of the segments stands for none.
+        // The first entry of the segments is not used.
         add_widths(rows.segment_squared.data() + rows.begins.back() + 1, size - 1, sums);
         count += static_cast<double>(2 * size - 1);
     }

@@ -5,7 +5,7 @@
 namespace conelane {
 namespace {
 
-/// (cos, sin) of the absolute angle between two directions; (1, 0) where one has no length.
+/// (cos, sin) of the absolute angle between two directions; (1, 0) if one has no length.
 Point absolute_angle_on_circle(const Point& a, const Point& b) {
     const double lengths = std::sqrt(a.squaredNorm() * b.squaredNorm());
     if (lengths == 0.0) return {1.0, 0.0};

@@ -9,7 +9,7 @@
 namespace conelane {
 namespace {
 
-/// Of each of four numbers: all bits where something holds, none where it does not.
+/// For each of four numbers: all bits set if the condition holds, no bit otherwise.
 using Masks [[gnu::vector_size(32)]] = std::int64_t;
 static_assert(kDoublesPerBatch <= SearchGraph::kSpare);
 constexpr auto kStep = static_cast<std::int64_t>(kDoublesPerBatch);

@@ -15,10 +15,10 @@ double measure(double sine, double cosine) {
     return cosine >= 0.0 ? sine / sum : 2.0 - sine / sum;
 }
 
-/// Insertion is fastest up to about so many.
+/// Up to about this number, insertion sort is fastest.
 constexpr std::size_t kFew = 48;
 
-/// Equal ones stay in the order of the vertices, which they come in.
+/// Stable: the options come in the order of their vertices, so equal ones stay in that order.
 void sort_by_cost(std::span<NextVertex> options) {
     if (options.size() > kFew) {
         std::ranges::sort(options, {},

@@ -8,7 +8,7 @@
 namespace conelane {
 namespace {
 
-/// Memory is added up once in so many iterations.
+/// Iterations between two computations of the memory in use.
 constexpr std::int64_t kIterationsPerSum = 32;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
@@ -118,7 +118,7 @@ std::size_t PathPairs::add_closed(const PathPair& pair, const LaneConstraints& b
         closing_points_[side].clear();
         for (std::size_t i = 0; i < boundary.size; ++i) closing_points_[side].push_back(boundary.vertex(i));
     }
-    // Each segment against each other one, several times.
+    // Every segment is tested against every other one, several times.
     const std::size_t work = 4 * (left.size + right.size) * (left.size + right.size);
     if (!can_be_closed(closing_points_[kLeft], closing_points_[kRight], rules.d_max_m, rules.bounds))
         return work;
@@ -155,7 +155,7 @@ bool PathPairEnumeration::run(const SearchGraph& graph, StartPair start, const P
         }
         const Choice choice = choose(call, extensible);
         extend(choice, extensible, budget, pairs);
-        // The lane is measured along its length; options are sorted and looked at as they come.
+        // Measuring the lane takes time proportional to its length; options are sorted as they come.
         const std::size_t measured =
             constraints_.width().boundary(kLeft).size + constraints_.width().boundary(kRight).size;
         (void)budget.spend(50 + measured + 10 * (next_vertex_.option_count() - options));
@@ -287,7 +287,7 @@ PathPairEnumeration::NextOptions PathPairEnumeration::guided_options(const Call&
             if (vertex == guide_[side][guide_position_[side]] && on_path_[side][vertex] == 0)
                 options[side] = i;
         }
-        // Where it cannot be followed, it ends.
+        // The guide ends where the graph or a constraint does not allow its next vertex.
         if (options[side] == kNoOption) guide_position_[side] = guide_[side].size();
     }
     return options;

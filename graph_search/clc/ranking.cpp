@@ -12,12 +12,12 @@
 namespace conelane {
 namespace {
 
-/// Candidates that go through the network at once, ...
+/// Candidates that the network evaluates at once, ...
 constexpr std::size_t kBatch = 16;
-/// ... and units that they go through at once: their sums stay in registers.
+/// ... and hidden units that it evaluates at once: their sums fit into registers.
 constexpr std::size_t kUnits = 4;
 
-/// First of each pair of sides.
+/// The first feature of each pair of sides.
 constexpr std::array<LaneFeature, 6> kPairs{kConesLeft,
                                             kSegmentLengthVarianceLeft,
                                             kTurnVarianceLeft,
@@ -25,7 +25,7 @@ constexpr std::array<LaneFeature, 6> kPairs{kConesLeft,
                                             kAbsoluteMeanTurnLeft,
                                             kMeanSquaredTurnChangeLeft};
 
-/// Numbers that the compiler keeps in registers, whatever their width is.
+/// A batch of numbers in registers, for any register width.
 using Floats [[gnu::vector_size(32)]] = float;
 constexpr std::size_t kFloats = sizeof(Floats) / sizeof(float);
 struct Batch {
@@ -35,7 +35,7 @@ struct Batch {
     [[nodiscard]] float operator[](std::size_t i) const { return part[i / kFloats][i % kFloats]; }
 };
 
-/// Adds to `sums` what `kUnits` units make of a batch. `weights`: of all inputs, kUnits at a time.
+/// Adds the contributions of `kUnits` units for a batch. `weights`: kUnits at a time for all inputs.
 CONELANE_SIMD void add_units(const Batch* inputs, std::size_t input_count, const float* weights,
                              const float* bias, const float* output, Batch& sums) {
     std::array<Batch, kUnits> units;
@@ -60,7 +60,7 @@ class RankNet final : public LaneRanking {
     explicit RankNet(const RankNetWeights& weights)
         : mean_(weights.mean.begin(), weights.mean.end()), output_bias_(weights.output_bias) {
         for (const double deviation : weights.deviation) inverse_deviation_.push_back(1.0 / deviation);
-        // Units that are not there weigh nothing.
+        // Units beyond the last one have zero weights.
         const auto units = static_cast<std::size_t>(weights.hidden.rows());
         const auto at = [&](const auto& values, std::size_t unit, auto... column) {
             return unit < units ? values(static_cast<Eigen::Index>(unit), column...) : 0.0F;
@@ -103,7 +103,7 @@ class RankNet final : public LaneRanking {
   private:
     std::vector<double> mean_;
     std::vector<double> inverse_deviation_;
-    std::vector<float> hidden_;  ///< of kUnits units at a time: by input, by unit
+    std::vector<float> hidden_;  ///< groups of kUnits units; in a group by input, then by unit
     std::vector<float> hidden_bias_;
     std::vector<float> output_;
     float output_bias_;

@@ -39,7 +39,7 @@ void StartPairs::find(const Scene& scene, const StartVertexRules& rules, const L
         }
     }
     std::ranges::sort(ranked_, {}, [](const RankedStartPair& pair) {
-        // Unordered in the two vertices, so that a mirrored scene ranks alike.
+        // Symmetric in the two vertices, so that a mirrored scene gets the same order.
         const auto [low, high] = std::minmax(pair.pair.left, pair.pair.right);
         return std::tuple(pair.cost_m, low, high);
     });

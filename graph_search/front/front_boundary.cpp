@@ -9,15 +9,15 @@
 namespace conelane {
 namespace {
 
-/// A segment of this length or more counts in full.
+/// A segment of at least this length counts in full.
 constexpr double kFullSegment_m = 2.0;
-// What costs a whole segment.
+// Each of these costs as much as a whole segment earns.
 constexpr double kTurnScale_rad = 1.2;
 constexpr double kTurnChangeScale_rad = 0.9;
 constexpr double kLogRatioScale = 0.8;
 constexpr double kStartAhead_m = 6.0;
 constexpr double kOffUsual_m = 2.0;
-/// Bend by which a chain is taken back to the car, at most: a corner behind its first cones says little.
+/// Largest curvature with which a chain is continued back to the car: its first cones tell little of corners.
 constexpr double kSharpestBack_1pm = 0.1;
 
 double squared(double value) {
@@ -100,7 +100,7 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
             const double change_rad = chain.count > 2 ? std::abs(turn_rad - chain.turn_rad) : 0.0;
             if (turn_size_rad > rules_.largest_turn_rad || change_rad > rules_.largest_turn_change_rad)
                 continue;
-            // A segment that bridges may be as long as it is.
+            // A segment that bridges a gap may have any length.
             if (length_m <= kShortSegment_m) {
                 if (ratio > rules_.largest_length_ratio && chain.segment_m <= kShortSegment_m) continue;
                 longer.score -=
@@ -124,7 +124,7 @@ void BoundarySearch::extend(FrontMap& map, std::size_t number) {
 
 double BoundarySearch::car_to_left_m(const Point& first, const Chain& chain, double turn_rad,
                                      double segment_m) {
-    // The tangent at the first cone is turned back from the first segment by its share of the turn.
+    // The tangent at the first cone is turned back from the first segment, by its share of the turn.
     const double bend_1pm =
         std::clamp(2.0 * turn_rad / (chain.segment_m + segment_m), -kSharpestBack_1pm, kSharpestBack_1pm);
     const double back_rad = 0.5 * bend_1pm * chain.segment_m;
@@ -133,7 +133,7 @@ double BoundarySearch::car_to_left_m(const Point& first, const Chain& chain, dou
                         std::cos(back_rad) * d.y() - std::sin(back_rad) * d.x());
     const Point car = -first;
     const double left_m = cross(tangent, car);
-    // Distance from the circle of that bend; from the tangent where it is 0.
+    // Distance from the circle of that bend; from the tangent if the bend is 0.
     const double square = 1.0 - 2.0 * bend_1pm * left_m + bend_1pm * bend_1pm * car.squaredNorm();
     return (2.0 * left_m - bend_1pm * car.squaredNorm()) / (1.0 + std::sqrt(std::max(0.0, square)));
 }
@@ -155,7 +155,7 @@ void BoundarySearch::keep_best(std::size_t first) {
                       [](const Chain& chain) { return std::tuple(-chain.score, chain.parent, chain.last); });
     for (const Chain& chain : next_) {
         if (chains_.size() - first == rules_.beam_width) break;
-        // The rest of a chain depends on its last three cones: of those that share them the best goes on.
+        // The rest of a chain depends on its last three cones: of chains that share them, the best stays.
         const auto cone_before = [&](std::size_t number) {
             return number == kNone ? kNoCone : chains_[number].last;
         };

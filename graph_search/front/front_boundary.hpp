@@ -9,10 +9,10 @@
 
 namespace conelane {
 
-/// Rules for a single boundary. Chosen by hand: the networks of the front judge a boundary by the other one,
-/// and have learned from scenes with both.
+/// Rules for a single boundary. They were chosen by hand: the networks of `front` judge a boundary by the
+/// other one, and have learned from scenes with both.
 struct BoundaryRules {
-    // Of the first cone, in the frame of the car.
+    // Limits for the first cone, in the frame of the car.
     double start_behind_m = 0.6;
     double start_ahead_m = 12.0;
     double start_aside_m = 6.0;
@@ -22,13 +22,13 @@ struct BoundaryRules {
     double largest_turn_change_rad = 1.0;
     double largest_length_ratio = 2.5;       ///< of successive segments
     double largest_bridging_turn_rad = 0.5;  ///< onto a segment over kShortSegment_m
-    /// Of the car from the boundary, which is taken to go back to it along an arc.
+    /// Limits for the distance of the car from the boundary, which is continued back to the car along an arc.
     double nearest_m = 0.4;
     double farthest_m = 4.5;
     double usual_distance_m = 1.75;  ///< half a usual lane
     std::size_t fewest_cones = 3;
     std::size_t max_cones = 100;
-    // Of all segments together, and of their mean: three cones must be nearly perfect, more cones need not.
+    // Limits for the sum and the mean of all segment scores: only short boundaries must be nearly perfect.
     double least_score = 1.6;
     double least_mean_score = 0.6;
     std::size_t beam_width = 64;
@@ -66,7 +66,7 @@ class BoundarySearch {
     /// segments, of which the first begins at `first`.
     [[nodiscard]] static double car_to_left_m(const Point& first, const Chain& chain, double turn_rad,
                                               double segment_m);
-    /// Whether a chain has the cone that it would be extended to, or a segment that the new one meets.
+    /// Whether the chain already has the cone, or a segment that the new segment would meet.
     [[nodiscard]] bool meets(const FrontMap& map, std::size_t number, const Segment& added, Vertex to) const;
     void keep_best(std::size_t first);
 

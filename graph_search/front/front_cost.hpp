@@ -24,11 +24,11 @@ class FrontCost {
     [[nodiscard]] std::span<const float> score_moves(FrontMap& map, const FrontState& state, Side side,
                                                      const FrontMoves& moves);
 
-    // What was seen by the last call of score_moves.
+    // The features that the last call of score_moves computed.
     [[nodiscard]] const StateFeatures& state_features_seen() const { return state_; }
     [[nodiscard]] std::span<const float> extend_features_seen() const { return extensions_; }
     [[nodiscard]] const StopFeatures& stop_features_seen() const { return stop_; }
-    /// And by the last one of score_starts: two rows a pair, of the left and of the right boundary.
+    /// The features of the last call of score_starts: two rows for each pair, the left boundary's first.
     [[nodiscard]] std::span<const float> start_features_seen() const { return starts_; }
 
   private:

@@ -48,7 +48,7 @@ struct FrontOptions {
 /// alone; `stopped` by iterations where none was found but the beam left some out; `stopped_by` time or
 /// memory is the best lane met until then. Once memory is warm, `detect` allocates the two boundaries of the
 /// answer and nothing else. With FrontOptions::repeat_bonus the last lane that was found is carried from
-/// scene to scene until `reset`; without it nothing is. Throws InvalidInput where an option is out of its
+/// scene to scene until `reset`; without it nothing is. Throws InvalidInput if an option is out of its
 /// range.
 [[nodiscard]] std::unique_ptr<LaneDetector> make_front_detector(const FrontOptions& options);
 

@@ -17,7 +17,7 @@ namespace conelane {
 /// cones left aside, which lost overlap.
 class FrontEvidence {
   public:
-    /// `bonus`: score for each cone, at least 0. Throws InvalidInput where it is not.
+    /// `bonus`: score for each cone, at least 0. Throws InvalidInput if it is not.
     explicit FrontEvidence(double bonus);
 
     /// Replaces the remembered lane.
@@ -36,7 +36,7 @@ class FrontEvidence {
 
     double bonus_;
     std::vector<std::pair<ConeId, std::uint8_t>> remembered_;  ///< by id
-    std::vector<std::uint8_t> sides_;                          ///< of each cone of the map
+    std::vector<std::uint8_t> sides_;                          ///< by cone of the map: a bit for each side
 };
 
 }  // namespace conelane

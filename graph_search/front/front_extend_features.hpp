@@ -13,7 +13,7 @@
 
 namespace conelane {
 
-/// What the color of a cone says, seen from a side; all 0 where no cone of the scene has one.
+/// What the color of a cone says, seen from a side; all 0 if no cone of the scene has one.
 struct ConeColors {
     float own = 0.0F;      ///< probability of the color of that side
     float against = 0.0F;  ///< of the other side's
@@ -24,10 +24,10 @@ struct ConeColors {
 struct ExtendColors {
     ConeColors cone;       ///< the new one
     float beside = 0.0F;   ///< nearness of the nearest cone of the own color beside the segment
-    float partner = 0.0F;  ///< what the cone at the place across speaks for, times how near it is
+    float partner = 0.0F;  ///< color evidence of the cone at the place across, times how near that cone is
 };
 
-/// What the features of a move that extends are found from. Angles are positive inward.
+/// Inputs of the features of a move that extends. Angles are positive inward.
 struct ExtendSeen {
     const StateMeasures& measures;
     const EdgeNeighbourhood& about;
@@ -39,15 +39,15 @@ struct ExtendSeen {
     double length_m;
     double turn_rad;
     double change_rad;      ///< of the turn, from the last one
-    double turn_other_rad;  ///< less the other boundary's
+    double turn_other_rad;  ///< minus the turn of the other boundary
     double skew_rad;        ///< to the other side's last segment
     double width_m;
     double mean_width_m;
     double view_m;
     double partner_m2;  ///< squared distance from the place across to the nearest cone there
-    float log_own;      ///< logarithm of the length over the own last one's
-    float log_other;    ///< over the other's
-    float inside;       ///< cones in the triangle just swept
+    float log_own;      ///< logarithm of the length divided by the own last segment's
+    float log_other;    ///< divided by the other boundary's last segment's
+    float inside;       ///< cones in the triangle that the move adds
     ExtendColors colors;
 };
 

@@ -4,7 +4,7 @@
 
 namespace conelane {
 
-// Divisors that bring values to about 1, and limits at which values are cut: larger ones say no more.
+// Divisors that bring values to about 1, and limits at which values are clamped.
 inline constexpr double kLengthScale_m = 4.0;
 inline constexpr double kViewScale_m = 10.0;
 inline constexpr double kFarBeyond = 2.0;

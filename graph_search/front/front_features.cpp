@@ -18,7 +18,7 @@ constexpr double kFarOff_m = 6.0;
 constexpr double kStrip_m = 1.5;
 constexpr double kRounding_m = 1e-3;  // lengths of edges are float
 
-/// What the colors of a scene say of a state; all 0 where there are none.
+/// Color evidence of a state; all 0 if the scene has no colors.
 struct StateColors {
     float share = 0.0F;
     float consistency = 0.0F;
@@ -27,13 +27,13 @@ struct StateColors {
     float other_end = 0.0F;
 };
 
-/// What the features of a state are found from.
+/// Inputs of the features of a state.
 struct StateSeen {
     const FrontEnd& own;
     const FrontEnd& other;
     const StateMeasures& measures;
-    double in;        ///< +1 where a turn to the left is inward, else -1
-    double skew_rad;  ///< inward, from the own last segment to the other's
+    double in;        ///< +1 if a turn to the left is inward, else -1
+    double skew_rad;  ///< inward, from the own last segment to the other boundary's
     double ends_apart_m;
     double lag_m;
     double distance_m;  ///< of the end from the car
@@ -97,13 +97,13 @@ constexpr std::array<FrontFeatureOf<StateSeen>, kStateFeatures> kStateSchema{{
      [](const StateSeen& s) { return s.colors.other_end; }},
 }};
 
-/// What the features of a stop are found from.
+/// Inputs of the features of a stop.
 struct StopSeen {
     const Point& at;
     double distance_m;  ///< of `at` from the car
     double view_m;
-    const Point& next;      ///< where the next cone would stand on the arc
-    const Point& straight;  ///< and where straight on
+    const Point& next;      ///< the next cone's place if the boundary continues on the arc
+    const Point& straight;  ///< and if it continues straight on
     const Point& other_next;
     double next_off_m;
     float next_cones;
@@ -149,14 +149,14 @@ constexpr std::array<FrontFeatureOf<StopSeen>, kStopFeatures> kStopSchema{{
      [](const StopSeen& s) { return s.color_goes_on; }},
 }};
 
-/// What the features of a start are found from. Both boundaries look at a pair, so each looks at the color of
-/// its own cone alone.
+/// Inputs of the features of a start. Both boundaries judge the pair, each with the color of its own
+/// cone.
 struct StartSeen {
     const StartCone& own;
     const StartCone& other;
     const Point& a;    ///< the own cone
     const Point& b;    ///< the other one
-    double own_out_m;  ///< how far it is to its side of the heading
+    double own_out_m;  ///< its distance from the heading's line, positive towards its side
     double other_out_m;
     double width_m;
     double lead_m;
@@ -221,12 +221,12 @@ constexpr std::array<FrontFeatureOf<StartSeen>, kStartFeatures> kStartSchema{{
      [](const StartSeen& s) { return s.colors.consistency; }},
 }};
 
-/// +1 where a turn to the left is inward, -1 where it is outward.
+/// +1 if a turn to the left is inward, -1 if it is outward.
 double inward(Side side) {
     return side == kRight ? 1.0 : -1.0;
 }
 
-/// From a direction to another one.
+/// Signed angle from one direction to another.
 double turn(float from_rad, float to_rad) {
     return wrapped_angle(static_cast<double>(to_rad) - static_cast<double>(from_rad));
 }
@@ -238,7 +238,7 @@ ConeColors colors_of(const FrontMap& map, Vertex cone, Side side) {
             color.unknown() * map.color_share(), map.color_consistency()};
 }
 
-/// Of the segments of both sides, some usual ones where there are few.
+/// Mean over the segments of both sides, together with some usual lengths if there are few.
 double mean_segment_m(const FrontState& state) {
     double sum_m = 3.5;
     double count = 1.0;
@@ -254,7 +254,7 @@ double mean_segment_m(const FrontState& state) {
     return sum_m / count;
 }
 
-/// What a cross product of a direction has to exceed so that a cone clearly lies beside a line.
+/// A cross product with a unit direction above this means that a cone is clearly beside a line.
 constexpr double kClearly = 1e-9;
 
 /// Cones of `from`'s neighbours strictly inside the triangle of `from`, b and the other end c, up to
@@ -284,7 +284,7 @@ float inside_triangle(FrontMap& map, Vertex from, const Point& b, const Point& c
     return count;
 }
 
-/// Where the cone after `end` would stand if it went on by the same segment, turned by turn_rad.
+/// Place of the cone after `end` if the boundary repeats its last segment, turned by turn_rad.
 Point next_place(const FrontMap& map, const FrontEnd& end, double turn_rad, double length_m) {
     const double c = std::cos(turn_rad);
     const double s = std::sin(turn_rad);
@@ -292,20 +292,20 @@ Point next_place(const FrontMap& map, const FrontEnd& end, double turn_rad, doub
     return map.position(end.cones[0]) + length_m * Point(c * d.x() - s * d.y(), s * d.x() + c * d.y());
 }
 
-/// The neighbours of an end about a place.
+/// The neighbours of an end that are around a place.
 struct Nearest {
     double off_m;
     float count;  ///< of those that are near
-    Vertex cone;  ///< kNoCone where none is nearer than kFarOff_m
+    Vertex cone;  ///< the nearest one; kNoCone if none is nearer than kFarOff_m
 };
 
-/// Those of a place, without the cones of the front.
+/// The cones around a place, without the cones of the front.
 Nearest nearest_to(FrontMap& map, const FrontEnd& end, const FrontEnd& other, const Point& place) {
     double nearest_m2 = kFarOff_m * kFarOff_m;
     float near = 0.0F;
     Vertex nearest = kNoCone;
-    // Neighbours come by their distance from the end: beyond farthest_m none is near the place or nearest to
-    // it.
+    // Neighbours are sorted by their distance from the end: beyond farthest_m none is around the place or
+    // nearest to it.
     const double reach_m = (place - map.position(end.cones[0])).norm() + kRounding_m;
     double farthest_m = reach_m + kFarOff_m;
     for (const FrontEdge& edge : map.edges(end.cones[0])) {
@@ -410,7 +410,7 @@ ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side
     // The place across: to the right of a left boundary.
     const Point across = at + in * mean_width_m * Point(-edge.direction.y(), edge.direction.x());
     double partner_m2 = (facing - across).squaredNorm();
-    // Neighbours come by their distance from the cone: beyond this one none is nearer to the place across.
+    // Neighbours are sorted by their distance from the cone: beyond this none is nearer to the place across.
     const auto farthest_m = [&] {
         return static_cast<float>(mean_width_m +
                                   std::min(kPartnerReach_m, std::sqrt(partner_m2) + kRounding_m));

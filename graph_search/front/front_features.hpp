@@ -12,7 +12,7 @@
 namespace conelane {
 
 // The networks see: `extend` the state and the move, `stop` the state and the stop, `start` the pair.
-// Features of colors stand last, and are all 0 where no cone of the scene has one.
+// Features of colors stand last, and are all 0 if no cone of the scene has one.
 inline constexpr std::size_t kStateColorFeatures = 5;
 inline constexpr std::size_t kExtendColorFeatures = 6;
 inline constexpr std::size_t kStopColorFeatures = 2;
@@ -34,14 +34,14 @@ using ExtendFeatures = std::array<float, kExtendFeatures>;
 using StopFeatures = std::array<float, kStopFeatures>;
 using StartFeatures = std::array<float, kStartFeatures>;
 
-/// What the moves of one side have in common, looked up once for all of them.
+/// What all moves of one side have in common; computed once for them.
 struct StateMeasures {
     double width_m;         ///< from the side's end to the other boundary
     double mean_width_m;    ///< of the lane so far
     double mean_segment_m;  ///< of both boundaries, some usual ones where there are few
     float log_mean_segment;
-    /// The ways from the side's end to the left and to the right of the line to the other end, those along it
-    /// in both: places in FrontMap::edges, ascending.
+    /// The ways from the side's end to the left and to the right of the line to the other end; ways along the
+    /// line are in both. Indices in FrontMap::edges, ascending.
     std::array<std::array<std::uint8_t, FrontMap::kMaxEdges>, 2> ways;
     std::array<std::size_t, 2> way_counts;
 };
@@ -52,11 +52,11 @@ struct StateMeasures {
 /// Precondition: the move extends.
 [[nodiscard]] ExtendFeatures extend_features(FrontMap& map, const FrontState& state, Side side,
                                              const FrontMove& move, const StateMeasures& measures);
-/// `extensions`: those of all moves that extend, one behind the other.
+/// `extensions`: the features of all moves that extend, one move after the other.
 [[nodiscard]] StopFeatures stop_features(FrontMap& map, const FrontState& state, Side side,
                                          std::span<const float> extensions);
 
-/// What a start sees of one of its cones alone, looked up once for all pairs.
+/// The features of a start that depend on one of its cones alone; computed once for all pairs.
 struct StartCone {
     Vertex cone;
     float behind;        ///< cones in the strip behind it, up to 3

@@ -23,7 +23,7 @@ float score_input(double score) {
     return std::clamp(static_cast<float>(score) / kScore, -kMax, kMax);
 }
 
-/// What the features of a cone of a lane are found from.
+/// Inputs of the features of a cone of a lane.
 struct ConeSeen {
     bool is_first;     ///< it is of the first pair
     double own_score;  ///< of the move that added it
@@ -51,7 +51,7 @@ constexpr std::array<FrontFeatureOf<ConeSeen>, kConeFeatures> kConeSchema{{
      [](const ConeSeen& s) { return static_cast<float>(s.probability); }},
 }};
 
-/// Without what the search adds for FrontEvidence.
+/// Without the bonuses that the search adds for FrontEvidence.
 double plain(const FrontSearch::Node& node) {
     return node.score - node.bonus;
 }
@@ -60,7 +60,7 @@ double probability_of(double log_odds) {
     return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
-/// What the cones of a lane have in all, and at worst.
+/// Sum and extreme of the features over the cones of a lane.
 struct Tally {
     float least_lead = kMax;
     float least_share = 1.0F;
@@ -114,16 +114,16 @@ struct Tally {
     }
 };
 
-/// What the features of a whole lane are found from.
+/// Inputs of the features of a whole lane.
 struct WholeLaneSeen {
     const Tally& all;
-    double behind;  ///< its score, behind the best one
+    double behind;  ///< how far its score is below the best one
     double probability;
     double mean_score;  ///< of its moves
     double worst_stop;
     float start_score;
     double both_m;      ///< lengths of both boundaries
-    double expected_m;  ///< of all contenders by their probabilities
+    double expected_m;  ///< mean over all contenders, weighted by their probabilities
     float moves;
     double view_m;
     float log_cones_off;
@@ -202,7 +202,7 @@ constexpr std::array<FrontFeatureOf<WholeLaneSeen>, kWholeLaneFeatures> kWholeLa
      [](const WholeLaneSeen& s) { return s.color_consistency; }},
 }};
 
-/// The lowest score of a stop. Of both the last one is no state of its own.
+/// The lowest score of a stop. The last of the two stops is not a state of its own.
 double worst_stop(const FrontSearch& search, const FrontJudge::Contender& lane) {
     double worst = lane.ended ? lane.score - search.node(lane.node).score : 0.0;
     for (std::size_t number = lane.node; search.node(number).parent != FrontSearch::kNone;) {
@@ -299,7 +299,7 @@ void FrontJudge::find_steps(const FrontSearch& search, std::span<const Contender
 }
 
 void FrontJudge::find_shared(FrontSearch& search) {
-    // Lanes that came to a segment by different ways share it too.
+    // Lanes that came to a segment in different ways share it too.
     shared_.clear();
     for (std::uint32_t step = 0; step < steps_.size(); ++step) {
         const FrontSearch::Node& node = search.node(steps_[step].node);

@@ -24,7 +24,7 @@ class FrontJudge {
     struct Contender {
         std::size_t node;   ///< of the search: the last state before its last stop
         double score;       ///< of the search
-        bool ended = true;  ///< false for a lane that still grew when time was up
+        bool ended = true;  ///< false for a lane that was still growing when the time ended
     };
     /// A cone that a lane adds, or its first pair.
     struct Step {
@@ -40,24 +40,24 @@ class FrontJudge {
     /// The bonuses of FrontEvidence count when the contenders are ordered, and nowhere else: the networks do
     /// not see them.
     ///
-    /// Precondition: one contender at least and at most kContenders, the one of the highest score first, each
-    /// with two cones a side.
+    /// Precondition: at least one contender and at most kContenders, the one with the highest score first,
+    /// each with at least two cones a side.
     void look(FrontSearch& search, std::span<const Contender> contenders);
 
-    /// Places of the contenders, the best first; of equal ones the one that stood first.
+    /// Indices of the contenders, the best first; of equal ones the earlier one.
     [[nodiscard]] std::span<const std::size_t> order() const { return order_; }
-    /// That the contender is usable.
+    /// Probability that the contender is usable.
     [[nodiscard]] double confidence(std::size_t contender) const;
-    /// The contender as far as one of its cones.
+    /// The contender up to one of its cones.
     struct Reach {
-        double trust;  ///< probability that it is usable, and all its cones so far right
+        double trust;  ///< probability that it is usable and all its cones so far are right
         /// How far a lane is trusted that is trusted up to this cone: half a metre less than the boundary
         /// that is shorter so far, for the next cone may be off beside the right one. At the last cone the
         /// whole length, the mean of both boundaries.
         double trusted_m;
     };
-    /// Cone by cone, the first pair first; trust never rises. `cones`: of each boundary, those that count.
-    /// Valid until the next call.
+    /// Cone by cone, the first pair first; trust never rises. `cones`: how many of each boundary count. Valid
+    /// until the next call.
     [[nodiscard]] std::span<const Reach> reaches(const FrontSearch& search, std::size_t contender,
                                                  const std::array<std::size_t, 2>& cones);
     /// How far the contender is trusted: up to the last cone whose trust is least_trust of the scene's set
@@ -71,7 +71,7 @@ class FrontJudge {
     }
     [[nodiscard]] double rank(std::size_t contender) const { return rank_[contender]; }
     [[nodiscard]] std::span<const Step> steps() const { return steps_; }
-    /// Places among `steps` of a contender's, the first pair first.
+    /// Indices in `steps` of a contender's steps, the first pair first.
     [[nodiscard]] const std::vector<std::uint32_t>& path(std::size_t contender) const {
         return paths_[contender];
     }
@@ -100,11 +100,11 @@ class FrontJudge {
 
     Networks plain_;
     std::optional<Networks> colored_;
-    bool sees_colors_ = false;  ///< and there is a set for them
+    bool sees_colors_ = false;  ///< whether the scene has colors and there are weights for them
     std::vector<Step> steps_;
     std::vector<std::uint32_t> step_of_node_;
     std::vector<std::uint32_t> on_contenders_;  ///< of each step: a bit for each lane that shares its segment
-    std::vector<float> min_share_;              ///< of each step: of it and all before it
+    std::vector<float> min_share_;              ///< by step: the least share up to and with it
     std::vector<Shared> shared_;
     std::array<std::vector<std::uint32_t>, kContenders> paths_;
     std::vector<double> scores_;  ///< of the contenders, without bonus
@@ -113,7 +113,7 @@ class FrontJudge {
     std::array<WholeLaneFeatures, kContenders> features_{};
     std::vector<Reach> reaches_;
     std::vector<std::size_t> order_;
-    double expected_m_ = 0.0;  ///< length of both boundaries together, weighed by probability
+    double expected_m_ = 0.0;  ///< length of both boundaries together, weighted by probability
 };
 
 }  // namespace conelane

@@ -8,15 +8,15 @@
 namespace conelane {
 namespace {
 
-/// Cones farther than this beside a way are not seen beside it.
+/// A cone farther than this from a way does not count as beside it.
 constexpr double kBeside_m = 2.0;
 constexpr double kBlocking_m = 0.2;
 constexpr double kMiddleFrom = 0.15;
 constexpr double kMiddleTo = 0.85;
-/// Beside a way means between these shares of it: what stands at its ends is another matter.
+/// Shares of a way between which a cone counts as beside it: cones at the ends are left out.
 constexpr double kBesideFrom = 0.1;
 constexpr double kBesideTo = 0.9;
-/// What `continuation` is where nothing goes on.
+/// The value of `continuation` if no segment continues the way.
 constexpr float kNoContinuation = 2.0F;
 
 }  // namespace
@@ -91,7 +91,7 @@ void FrontMap::take_colors(const Scene& scene) {
     if (pairs > 0.0F) color_consistency_ = sum / pairs;
 }
 
-/// The nearest other cone that speaks for a side; of equally near ones the first.
+/// The nearest other cone that has a color; of equally near ones the first.
 Vertex FrontMap::nearest_colored(Vertex cone) const {
     const Point& at = positions_[cone];
     double nearest_m2 = kShortSegment_m * kShortSegment_m;
@@ -152,7 +152,7 @@ void FrontMap::find_edges(Vertex from) {
         }
     };
     found_.clear();
-    // Shorter ones have no direction or, as float, no length: the two cones stand at one place.
+    // Shorter ways have no direction, or a float length of 0: the two cones are at the same place.
     constexpr double kOnePlace_m = 1e-9;
     find(kOnePlace_m, kMaxSegment_m);
     std::size_t most = kMaxEdges;
@@ -171,11 +171,11 @@ void FrontMap::find_edges(Vertex from) {
         found_.erase(end, found_.end());
     }
     std::sort(found_.begin(), found_.end(), shorter);
-    // Not across the end of a block.
+    // A list of ways must not cross the end of a block.
     if (used_ % kEdgesPerBlock + found_.size() > kEdgesPerBlock)
         used_ += kEdgesPerBlock - used_ % kEdgesPerBlock;
     while (used_ + found_.size() > blocks_.size() * kEdgesPerBlock) {
-        // In this order: where there is no memory for a block, the room beside it does no harm later.
+        // The order matters: if the memory for a block is missing, the larger vector does no harm later.
         neighbourhoods_.resize((blocks_.size() + 1) * kEdgesPerBlock);
         blocks_.emplace_back(kEdgesPerBlock);
     }
@@ -199,7 +199,7 @@ const EdgeNeighbourhood& FrontMap::neighbourhood(Vertex from, std::size_t edge) 
         EdgeNeighbourhood about;
         look_about(from, edge, about);
         about.known = true;
-        neighbourhoods_[place] = about;  // looking at what goes on may have made more room for them
+        neighbourhoods_[place] = about;  // computing the continuation may have reallocated the vector
     }
     return neighbourhoods_[place];
 }

@@ -16,13 +16,13 @@ namespace conelane {
 /// No cone.
 inline constexpr Vertex kNoCone = ~Vertex{0};
 
-/// Longest segment of a boundary [m]: where cones are many, and where they are few; and the longest one that
-/// needs no reason (the rules ask for a cone every 5 m; a longer one bridges cones that were not seen).
+/// Longest segment of a boundary [m]: in a dense scene, and if a cone has few neighbours; and the longest one
+/// that bridges nothing (by the rules, cones are at most 5 m apart).
 inline constexpr double kMaxSegment_m = 11.5;
 inline constexpr double kMaxLengthAmongFew_m = 15.5;
 inline constexpr double kShortSegment_m = 5.8;
 
-/// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 where both are 0. An approximation
+/// Angle from a to b, by their cross and dot product, in [-pi, pi] rad; 0 if both are 0. An approximation
 /// to 2e-5 rad without the C library, hence the same on any machine.
 [[nodiscard]] double front_angle(double cross, double dot);
 
@@ -33,7 +33,7 @@ inline constexpr double kShortSegment_m = 5.8;
     return angle_rad;
 }
 
-/// Whether two segments are surely farther apart than `gap_m`.
+/// Whether two segments are farther apart than `gap_m`. False does not mean that they are nearer.
 [[nodiscard]] inline bool far_apart(const Segment& a, const Segment& b, double gap_m) {
     return std::min(a.from.x(), a.to.x()) > std::max(b.from.x(), b.to.x()) + gap_m ||
            std::min(b.from.x(), b.to.x()) > std::max(a.from.x(), a.to.x()) + gap_m ||
@@ -41,7 +41,7 @@ inline constexpr double kShortSegment_m = 5.8;
            std::min(b.from.y(), b.to.y()) > std::max(a.from.y(), a.to.y()) + gap_m;
 }
 
-/// Whether two segments come closer than `gap_m`; those that cross do.
+/// Whether two segments come closer than `gap_m` or cross.
 [[nodiscard]] inline bool come_within(const Segment& a, const Segment& b, double gap_m) {
     if (far_apart(a, b, gap_m)) return false;
     const auto is_near = [gap_m](const Point& end, const Segment& segment) {
@@ -64,7 +64,7 @@ struct FrontEdge {
     Point direction;    ///< unit vector
 };
 
-/// What lies about the way from a cone to another one. Left and right as seen along it.
+/// What is around the way from a cone to another one. Left and right as seen along it.
 struct EdgeNeighbourhood {
     bool known = false;
     bool blocked = false;  ///< a cone within 0.2 m of the middle 70 %
@@ -74,19 +74,19 @@ struct EdgeNeighbourhood {
     float within_disc = 0.0F;   ///< cones in the disc that has the way as diameter
     float continuation = 0.0F;  ///< how badly the best next segment goes on: bend + change of log length
     float crowding = 0.0F;      ///< how near the nearest cone at its end is, as nearest_beside
-    /// As nearest_beside, on either side, of the cones of a color, each times the probability that it has
-    /// that color: of the left boundary's, of the right one's.
+    /// As nearest_beside, on either side, but only for cones of one color, weighted by the probability of
+    /// that color: first of the left boundary's color, then of the right one's.
     std::array<float, 2> nearest_of_color{};
 };
 
-/// What the color of a cone says; all 0 where that is unknown.
+/// What the color of a cone says; all 0 if that is unknown.
 struct ConeSide {
     std::array<float, 2> of_side{};  ///< probability that it stands on the left (blue), on the right (yellow)
     float orange = 0.0F;             ///< that it is a small or a big orange one
 
-    /// From -1, of the other side, to 1, of that one.
+    /// Color evidence, from -1 (color of the other side) to 1 (color of that side).
     [[nodiscard]] float speaks_for(Side side) const { return of_side[side] - of_side[opposite(side)]; }
-    /// The probability that nothing is known.
+    /// The probability that the color is unknown.
     [[nodiscard]] float unknown() const {
         return std::max(0.0F, 1.0F - of_side[kLeft] - of_side[kRight] - orange);
     }
@@ -109,20 +109,20 @@ class FrontMap {
     [[nodiscard]] std::size_t scene_index(Vertex cone) const { return order_[cone]; }
     /// Cones with x in [low, high] are those from the first to the second.
     [[nodiscard]] std::pair<Vertex, Vertex> ahead_between(double low_m, double high_m) const;
-    /// Distance from the car of the farthest cone that has another one within kMaxSegment_m: about as far
-    /// as the car sees. A cone that is alone, far from all others, says nothing of that. Of the farthest one
-    /// where all are alone.
+    /// Distance from the car of the farthest cone that has another one within kMaxSegment_m: about
+    /// as far as the car sees. A cone far from all others does not count, unless every cone is
+    /// alone.
     [[nodiscard]] double view_radius_m() const { return view_radius_m_; }
 
-    /// Whether any cone may have a color. Where none has, all that is said of colors is 0.
+    /// Whether any cone may have a color. If none has, all color features are 0.
     [[nodiscard]] bool has_colors() const { return has_colors_; }
-    /// Only where has_colors.
+    /// Precondition: has_colors.
     [[nodiscard]] const ConeSide& color(Vertex cone) const { return colors_[cone]; }
     /// Mean probability that a cone has the color of a side.
     [[nodiscard]] float color_share() const { return color_share_; }
-    /// Whether cones next to each other have the same color: of each colored cone and the nearest other one
-    /// within kShortSegment_m, the mean of the product of what they speak for, from -1 to 1. About 0 where
-    /// colors are drawn.
+    /// Whether neighbouring cones have the same color: over the colored cones, the mean of the product of the
+    /// color evidence of the cone and of the nearest other one within kShortSegment_m, from -1 to 1. About 0
+    /// for random colors.
     [[nodiscard]] float color_consistency() const { return color_consistency_; }
 
     /// The ways from a cone of at most kMaxSegment_m, the shortest first; where they are fewer than
@@ -134,18 +134,18 @@ class FrontMap {
         if (place.count == 0) return {};
         return {edge_at(place.first), place.count};
     }
-    /// Logarithm of the number of ways of at most kShortSegment_m and the cone itself, less 1.5 to be about
-    /// 0.
+    /// Logarithm of the number of ways of at most kShortSegment_m, with the cone itself, minus 1.5: about 0
+    /// on average.
     [[nodiscard]] float density(Vertex cone) {
         if (places_[cone].count == kNotAsked) find_edges(cone);
         return places_[cone].density;
     }
-    /// Whether a cone has more ways than `edges` gives, of all cones asked for.
+    /// Whether any cone asked for so far has more ways than `edges` gives.
     [[nodiscard]] bool left_out_edges() const { return left_out_edges_; }
     /// `edge`: place in edges(from).
     [[nodiscard]] const EdgeNeighbourhood& neighbourhood(Vertex from, std::size_t edge);
 
-    /// Bytes that grow with what was asked for.
+    /// Memory that grows with the ways that were asked for [bytes].
     [[nodiscard]] std::size_t memory_bytes() const;
 
   private:
@@ -170,7 +170,7 @@ class FrontMap {
     std::vector<Point> positions_;
     std::vector<std::uint32_t> order_;
     std::vector<Place> places_;
-    // In blocks, so that spans stay valid while others are asked for.
+    // In blocks, so that spans stay valid while more ways are computed.
     std::vector<std::vector<FrontEdge>> blocks_;
     std::vector<EdgeNeighbourhood> neighbourhoods_;
     std::vector<FrontEdge> found_;
@@ -180,7 +180,7 @@ class FrontMap {
     bool has_colors_ = false;
     float color_share_ = 0.0F;
     float color_consistency_ = 0.0F;
-    std::vector<ConeSide> colors_;  ///< stale where there are none
+    std::vector<ConeSide> colors_;  ///< not updated if no cone has a color
 };
 
 }  // namespace conelane

@@ -18,7 +18,7 @@ bool leaves_room(const FrontMap& map, const FrontEnd& other, const Segment& segm
     return other.count < 3 || !near({before, map.position(other.cones[2])});
 }
 
-/// Whether a side that goes on alone stays near where the other one stopped.
+/// Whether a side that continues alone stays near the end of the side that has stopped.
 bool stays_near(const FrontMap& map, const FrontEnd& other, const Point& cone, const FrontRules& rules) {
     if (!other.stopped) return true;
     double distance_m = (cone - map.position(other.cones[0])).norm();
@@ -39,7 +39,7 @@ void FrontMoves::list(FrontMap& map, const FrontState& state, Side side, const F
     long_segments_.clear();
     left_out = false;
     stops = own.count > 1;
-    // Compared by cosine, so that no angle is needed.
+    // The cosine is compared, so that no angle is computed.
     const double least =
         own.count > 1 ? turn_.of(rules.largest_turn_rad) : first_turn_.of(rules.largest_first_turn_rad);
     const double least_long = long_turn_.of(rules.largest_long_turn_rad);

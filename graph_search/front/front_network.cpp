@@ -9,15 +9,15 @@
 namespace conelane {
 namespace {
 
-/// Numbers that the compiler keeps in registers, whatever their width is; as they lie in an array of float.
+/// A batch of numbers in registers, for any register width; stored in an array of float.
 using Floats [[gnu::vector_size(32)]] = float;
 using UnalignedFloats [[gnu::vector_size(32), gnu::aligned(4), gnu::may_alias]] = float;
 constexpr std::size_t kFloats = sizeof(Floats) / sizeof(float);
 constexpr std::size_t kParts = kFrontUnits / kFloats;
 static_assert(kFrontUnits % kFloats == 0);
 
-/// The weights of an input. Named by its type: GCC gives what is declared `auto` the alignment of Floats,
-/// which no array of float has, and reads it as aligned.
+/// The weights of an input. Not `auto`: GCC would then assume the alignment of Floats, which an array of
+/// float does not have.
 const UnalignedFloats* row_of(const float* weights, std::size_t input) {
     return reinterpret_cast<const UnalignedFloats*>(weights + input * kFrontUnits);
 }
@@ -34,7 +34,7 @@ CONELANE_SIMD void add_inputs(const float* weights, const float* inputs, std::si
     for (std::size_t p = 0; p < kParts; ++p) reinterpret_cast<UnalignedFloats*>(sums)[p] = part[p];
 }
 
-/// What the hidden units give to the scores of two moves. Both share each weight that is read.
+/// Adds the hidden units' contribution to the scores of two moves, so that each weight is read once.
 CONELANE_SIMD void add_hidden(const float* weights, const float* first, const float* second,
                               std::size_t count, const float* sums, const float* output, float* results) {
     Floats a[kParts];

@@ -17,7 +17,7 @@ std::uint64_t bit_of(Vertex cone) {
     return std::uint64_t{1} << (cone % 64);
 }
 
-/// The scores over the best other one.
+/// The difference of each score and the best other score.
 class Margins {
   public:
     explicit Margins(std::span<const float> scores) {
@@ -29,7 +29,7 @@ class Margins {
             }
         }
     }
-    /// kNoOther where there is none.
+    /// kNoOther if there is none.
     [[nodiscard]] float of(float score) const {
         constexpr float kNoOther = 100.0F;
         return std::min(kNoOther, score - (score == best_ ? second_ : best_));
@@ -105,7 +105,7 @@ void FrontSearch::keep_best() {
     const std::vector<Candidate>& candidates = levels_[next_level_];
     const bool is_far = static_cast<double>(next_level_) * options_.level_m >= 2.0 * options_.far_m;
     const std::size_t width = is_far ? (options_.beam_width - 1) / 3 + 1 : options_.beam_width;
-    // A heap: few of them are looked at.
+    // A heap, because only few of them are taken.
     const auto is_worse = [](const Rank& a, const Rank& b) {
         return std::tuple(-a.score, a.candidate) > std::tuple(-b.score, b.candidate);
     };

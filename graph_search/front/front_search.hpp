@@ -17,8 +17,8 @@ namespace conelane {
 struct FrontSearchOptions {
     FrontRules rules;
     std::size_t beam_width = 15;  ///< states kept at each level of progress
-    double drop = 4.0;            ///< those so much behind the best of their level are not kept
-    double finished_drop = 4.0;   ///< nor those so much behind the best lane that has ended
+    double drop = 4.0;            ///< states farther below the best of their level are dropped
+    double finished_drop = 4.0;   ///< and so are states farther below the best lane that has ended
     double level_m = 2.5;         ///< progress, of both boundaries together, from level to level
     double far_m = 100.0;         ///< along the lane, from where a third of the beam goes on: a dense view
                                   ///< holds lanes of 300 m, which nobody drives before the next scene
@@ -48,9 +48,9 @@ class FrontSearch {
         Side side;           ///< that moved
         std::size_t start;   ///< place in FrontStarts::pairs
         float margin;        ///< see Candidate
-        double bonus;        ///< what of the score is FrontEvidence
+        double bonus;        ///< the part of the score that comes from FrontEvidence
         std::array<std::uint64_t, 4>
-            bits;  ///< of the lane's cones; each stands for all cones of the same remainder
+            bits;  ///< a bit for each cone of the lane; cones with the same remainder share a bit
     };
 
     /// A state that may be kept.
@@ -63,12 +63,12 @@ class FrontSearch {
         float margin = 0.0F;  ///< score of the move over that of the best other one, or start
     };
 
-    /// Keeps the references as long as it runs, and memory from call to call. With evidence, scores have its
-    /// bonuses.
+    /// Keeps the references until the next run, and memory from call to call. With evidence, scores include
+    /// its bonuses.
     void begin(const Scene& scene, FrontCost& cost, const FrontSearchOptions& options,
                FrontEvidence* evidence = nullptr);
-    /// Keeps the best of the next level that has a state, and lets them move. Returns whether there was such
-    /// a level. Where the budget is spent it returns false.
+    /// Extends the best states of the next level that has any. Returns whether there was such a level; false
+    /// if the budget is spent.
     bool advance(SearchBudget& budget);
     /// All levels.
     void run(SearchBudget& budget);
@@ -81,27 +81,27 @@ class FrontSearch {
     [[nodiscard]] std::size_t nodes() const { return nodes_.size(); }
     /// The states kept on the level before, best first.
     [[nodiscard]] std::span<const std::size_t> level() const { return level_; }
-    /// Lanes whose both sides have stopped, in the order in which they were found.
+    /// Lanes with both sides stopped, in the order in which they were found.
     struct Finished {
         std::size_t parent;
         Side side;  ///< that stopped last
         double score;
     };
     [[nodiscard]] std::span<const Finished> finished() const { return finished_; }
-    /// Puts the best `count` of them first, best first.
+    /// Sorts the best `count` of them to the front, best first.
     void sort_finished(std::size_t count);
-    /// Whether a state, a move or a start was not followed that might have led to another lane.
+    /// Whether a state, a move or a start was left out that might have led to another lane.
     [[nodiscard]] bool left_out() const { return left_out_; }
     [[nodiscard]] std::int64_t expanded() const { return expanded_; }
 
-    /// The cones of a state, as FrontMap has them.
+    /// The cones of a state, as indices of FrontMap.
     void cones(std::size_t number, std::array<std::vector<Vertex>, 2>& cones) const;
-    /// Of the last level that held a lane, the best one; kNone where there was none.
+    /// The best lane of the last level that held a lane; kNone if there was none.
     [[nodiscard]] std::size_t open_lane() const { return open_lane_; }
 
     // For training, which follows the true lane beside the beam.
     [[nodiscard]] const FrontStarts& starts() const { return starts_; }
-    /// The level that advance worked on.
+    /// The level of the last call of advance.
     [[nodiscard]] std::size_t level_number() const { return next_level_ - 1; }
     /// The level that a start belongs to.
     [[nodiscard]] std::size_t first_level(const FrontState& state) const { return level_of(state); }
@@ -109,11 +109,11 @@ class FrontSearch {
     [[nodiscard]] std::size_t level_after(std::size_t level, const FrontState& state) const {
         return std::max(level + 1, level_of(state));
     }
-    /// The number of a new state, which is on no level; kNone where the whole lane forbids the move.
+    /// The number of a new state, which is on no level; kNone if a rule of the whole lane forbids it.
     std::size_t add(const Candidate& candidate);
 
   private:
-    /// A candidate's place on the level that is being thinned out.
+    /// Place of a candidate on the level whose number of states is being reduced.
     struct Rank {
         double score;
         std::size_t candidate;
@@ -121,7 +121,7 @@ class FrontSearch {
 
     [[nodiscard]] std::size_t level_of(const FrontState& state) const;
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex cone) const;
-    /// Whether the whole lane leaves room for a segment to that cone.
+    /// Whether the whole lane allows a segment to that cone.
     [[nodiscard]] bool is_free(std::size_t number, Side side, Vertex to) const;
     [[nodiscard]] double bonus(Side side, Vertex cone) const {
         return evidence_ != nullptr ? evidence_->bonus(side, cone) : 0.0;
@@ -142,7 +142,7 @@ class FrontSearch {
     std::vector<Rank> ranks_;
     std::vector<std::size_t> level_;
     std::vector<Finished> finished_;
-    double best_finished_ = 0.0;  ///< score; minus infinity where none has
+    double best_finished_ = 0.0;  ///< score; minus infinity if no lane has ended
     std::size_t next_level_ = 0;
     std::size_t open_lane_ = kNone;
     std::int64_t expanded_ = 0;

@@ -5,7 +5,7 @@
 namespace conelane {
 namespace {
 
-/// A usual lane, which counts as one width measured.
+/// Width of a usual lane; it counts as one measured width.
 constexpr float kDefaultWidth_m = 3.6F;
 
 }  // namespace
@@ -30,7 +30,7 @@ FrontState start_state(const FrontMap& map, Vertex left, Vertex right) {
     for (const Side side : {kLeft, kRight}) {
         state.ends[side].cones[0] = cones[side];
         state.ends[side].count = 1;
-        // How far ahead it begins counts as progress: else lanes that begin later would seem to be behind.
+        // The place of the first cone counts as progress: otherwise lanes that begin later seem behind.
         state.ends[side].length_m = std::max(0.0, map.position(cones[side]).x());
         if (map.has_colors()) state.color_sum += map.color(cones[side]).speaks_for(side);
     }

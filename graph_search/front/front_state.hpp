@@ -26,14 +26,14 @@ struct FrontState {
     std::array<FrontEnd, 2> ends;
     float width_sum_m = 0.0F;  ///< of the widths that `widths` moves found
     std::size_t widths = 0;
-    float color_sum = 0.0F;  ///< of its cones: what each speaks for its side, see ConeSide
+    float color_sum = 0.0F;  ///< sum of the color evidence of its cones for their sides, see ConeSide
 
-    /// Mean width so far, drawn towards that of a usual lane as long as there are few.
+    /// Mean width so far, drawn towards that of a usual lane while there are few widths.
     [[nodiscard]] float mean_width_m() const;
-    /// Whether the colors of its cones fit their sides: 1 where all do, -1 where all are of the other side.
-    /// As long as there are few cones it is drawn to 0.
+    /// Whether the colors of its cones fit their sides: 1 if all do, -1 if all have the color of the other
+    /// side. While there are few cones, it is drawn to 0.
     [[nodiscard]] float color_agreement() const;
-    /// Whether two states have the same future but for the cones used before.
+    /// Whether two states have the same continuations, apart from the cones that are already used.
     [[nodiscard]] bool same_front(const FrontState& other) const;
     [[nodiscard]] bool finished() const { return ends[kLeft].stopped && ends[kRight].stopped; }
     /// Whether it has two cones a side.
@@ -58,12 +58,12 @@ struct FrontMove {
 /// The state after that move of that side.
 [[nodiscard]] FrontState moved(FrontMap& map, const FrontState& state, Side side, const FrontMove& move);
 
-/// Distance of a cone from the other boundary, which is taken to go on straight.
+/// Distance of a cone from the other boundary, which is continued straight on.
 [[nodiscard]] inline double facing_distance_m(const FrontMap& map, const FrontEnd& other, const Point& cone) {
     const Point from_end = cone - map.position(other.cones[0]);
     if (other.count < 2) return from_end.norm();
     const double along_m = from_end.dot(other.direction);
-    // The last segment and beyond; what lies behind it is measured from where it begins.
+    // The last segment and its continuation; a cone behind it is measured from its beginning.
     const double before_m = std::min(0.0, along_m + static_cast<double>(other.segment_m));
     return Point(cross(other.direction, from_end), before_m).norm();
 }

@@ -28,11 +28,11 @@ constexpr int kWithoutColors = 1;
 constexpr int kOneSet = 2;
 constexpr int kTwoSets = 3;
 
-/// What the keys of the second set begin with.
+/// Prefix of the keys of the second set.
 constexpr std::string_view kOfColors = "colored_";
 constexpr std::string_view kLeastTrust = "least_trust";
 
-/// Of a list, how many a file of that version has.
+/// Number of a list's features in a file of that version.
 std::size_t names_in(const FrontFeatureList& list, int version) {
     return list.features.size() - (version == kWithoutColors ? list.colors : 0);
 }
@@ -92,8 +92,8 @@ std::vector<float> read_numbers(JsonReader& json, const std::string& key) {
     return numbers;
 }
 
-/// A list of numbers of a file: so many for each input of these lists of features, or without such lists so
-/// many in all.
+/// A list of numbers in a file. With `inputs`, keys of lists of features: `each` numbers for each feature.
+/// Without: as many numbers as `numbers` has.
 struct NumberList {
     std::string key;
     std::span<float> numbers;
@@ -120,8 +120,8 @@ void add_lists(const std::string& prefix, FrontWeightSet& weights, std::vector<N
     add("right", weights.right, {"cone", "state", "extend"});
 }
 
-/// Puts the numbers of a file of that version where they belong, and leaves those of other inputs as they
-/// are.
+/// Stores the numbers of a file of that version. The weights of inputs that the version does not have stay
+/// unchanged.
 void place(const std::vector<float>& numbers, const NumberList& list, int version) {
     const auto features = front_feature_lists();
     const auto list_of = [&](std::string_view key) -> const FrontFeatureList& {

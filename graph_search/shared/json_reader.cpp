@@ -12,16 +12,16 @@
 namespace conelane {
 namespace {
 
-/// Of nested values; the recursion is as deep.
+/// Deepest nesting of values, which is also the depth of the recursion.
 constexpr int kMaxDepth = 64;
 
-/// The double nearest to a number of JSON; infinite where it is out of range.
+/// The double nearest to a number of JSON; infinite if it is out of range.
 double double_of(std::string_view number) {
     double value = 0.0;
 #if defined(__cpp_lib_to_chars)
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
     if (error == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
-#else  // libc++ before version 20 reads no doubles so
+#else  // libc++ before version 20 has no from_chars for double
     std::istringstream stream{std::string(number)};
     stream.imbue(std::locale::classic());
     if (!(stream >> value)) return std::numeric_limits<double>::infinity();

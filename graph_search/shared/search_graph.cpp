@@ -9,7 +9,7 @@
 namespace conelane {
 namespace {
 
-/// Of a directed edge, what NextVertexDecider keeps for it included.
+/// For each directed edge, including what NextVertexDecider keeps for it.
 constexpr std::size_t kBytesPerEdge = 32;
 
 }  // namespace
@@ -55,7 +55,7 @@ bool SearchGraph::build(std::span<const Point> points, double d_max_m, const Edg
             compared += static_cast<std::size_t>(cell - begin);
         }
         std::sort(neighbours_.begin() + first, neighbours_.end());
-        // Beyond 2^53 cells a column and the next are the same number.
+        // Beyond 2^53 cells, a column and the next one have the same number.
         neighbours_.erase(std::unique(neighbours_.begin() + first, neighbours_.end()), neighbours_.end());
         first_edge_.push_back(static_cast<DirectedEdge>(neighbours_.size()));
         const std::size_t added = neighbours_.size() - static_cast<std::size_t>(first);

@@ -7,7 +7,7 @@
 
 namespace conelane {
 
-/// The content of a file of weights, at most 64 MB. Throws InvalidInput("weights") where it cannot be read.
+/// The content of a file of weights, at most 64 MB. Throws InvalidInput("weights") if it cannot be read.
 [[nodiscard]] std::string weights_bytes(const std::filesystem::path& file);
 
 /// Calls `parse` with the content of the file. An InvalidInput of reading or parsing names the file too.

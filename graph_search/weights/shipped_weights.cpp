@@ -38,7 +38,7 @@ Eigen::VectorXd vector(std::span<const double> numbers) {
     return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 
-/// Row by row; empty where the numbers do not fill whole rows, which make_rank_net refuses.
+/// Row by row; empty if the numbers do not fill whole rows, which make_rank_net then refuses.
 Eigen::MatrixXf matrix(std::span<const double> numbers, std::size_t columns) {
     if (columns == 0 || numbers.size() % columns != 0) return {};
     Eigen::MatrixXf result(static_cast<Eigen::Index>(numbers.size() / columns),
@@ -50,7 +50,7 @@ Eigen::MatrixXf matrix(std::span<const double> numbers, std::size_t columns) {
     return result;
 }
 
-/// make_rank_net says what else is wrong with it.
+/// make_rank_net reports all other errors.
 RankNetWeights rank_net_weights(std::string_view file) {
     RankNetWeights result;
     double version = 0.0;
@@ -143,7 +143,7 @@ StepScores step_scores(std::string_view file) {
 
 }  // namespace
 
-// Each file is read once, by the first who asks.
+// Each file is read once, at the first request.
 
 RankNetWeights paper_rank_net_weights() {
     return rank_net_weights(kRankNetPaperFile);

@@ -7,7 +7,7 @@
 
 namespace conelane::constraints {
 
-/// Edges as vertices, joined if no lane graph holds both; adjacency as rows of bits, 64 a word.
+/// A graph with edges as vertices. Two are joined if no lane graph holds both. Adjacency: rows of bits.
 class ConflictGraph {
   public:
     explicit ConflictGraph(std::size_t edges) : words_((edges + 63) / 64), bits_(edges * words_, 0) {}

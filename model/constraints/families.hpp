@@ -8,7 +8,7 @@
 /// formulation. Families with many or long rows check RowWriter::stop between them.
 namespace conelane::constraints {
 
-/// The e column of paths that end at this cone of the edge by the edge.
+/// The e column of paths that end with this edge at this cone.
 [[nodiscard]] int end_column(const FamilyContext& context, std::size_t edge, std::size_t cone);
 
 /// Adds coefficient * m_i to the open row: 1 if the cone is an endpoint, else 0. m_i = 2 g_i - A_i (10), or
@@ -37,8 +37,8 @@ void turn_flow(const FamilyContext& context);      ///< (1)(2)(22)(23)(28), tigh
 void edge_limits(const FamilyContext& context);  ///< (27)
 void turn_limits(const FamilyContext& context);  ///< (28)
 
-/// Rows of a family that is too large to write out: those that an integral point violates. Pure functions of
-/// the problem and the chosen edges (by problem edge).
+/// Rows of a family that is too large to write in full: only those that an integral point violates. Pure
+/// functions of the problem and the chosen edges (by problem edge).
 
 // no_cycles.cpp
 /// (5): a row for every cycle that the chosen edges form. Precondition: no cone has more than two of them.

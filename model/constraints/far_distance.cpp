@@ -7,12 +7,12 @@
 namespace conelane::constraints {
 namespace {
 
-/// Above every valid d_max; numbers beyond it would only disturb solvers [m].
+/// Larger than every valid d_max. Larger coefficients would only disturb solvers [m].
 constexpr double kMaxDistance_m = 1e6;
-/// Share of d_max, or of 1 m, by which a distance has to exceed it to be felt: solvers meet rows within 1e-7.
+/// A distance beyond d_max is set this share of d_max (or of 1 m) beyond it: solvers keep rows to 1e-7 only.
 constexpr double kFelt = 1e-5;
 
-/// By pairs of cones, both ways: whether they are too far apart for two far endpoints.
+/// By pair of cones, in both orders: whether they are too far apart to be the two far endpoints.
 std::vector<bool> apart(const LaneGraphProblem& problem) {
     const std::size_t n = problem.cone_count;
     std::vector<bool> are_apart(n * n, false);
@@ -42,9 +42,9 @@ void far_distance(const FamilyContext& context) {
         for (std::size_t j = 0; j < n; ++j) {
             if (i == j) continue;
             if (rows.stop()) return;
-            // Any distance above d_max says the same.
+            // Every distance above d_max has the same effect.
             double distance = std::min(problem.distance_m[i][j], kMaxDistance_m);
-            // Of two far cones one that nearly ties must say to a solver what it says here.
+            // For two far cones, a tie with d_max must have the same result in a solver as in the problem.
             if (are_apart[i * n + j])
                 distance = std::max(distance, felt);
             else if (!problem.near[i] && !problem.near[j])
@@ -66,11 +66,11 @@ bool have_cone_in_common(const ProblemEdge& a, const ProblemEdge& b) {
 
 }  // namespace
 
-// Exactly two endpoints are far, by (3) and (11), so where a path ends at a far cone i by the edge {k, i},
-// the other one ends at a far cone j within d_max of it, by an edge that can be chosen beside {k, i}:
-//   e_ki <= sum of e_lj over those.
-// With pairing near_far the two paths are different ones, so their last edges have no cone in common.
-// Stronger in the relaxation than m_i + m_j <= 1 for each pair more than d_max apart.
+// Exactly two endpoints are far, by (3) and (11). If a path ends at a far cone i with the edge {k, i}, then
+// the other path ends at a far cone j within d_max of i, with an edge {l, j} that is compatible with {k, i}:
+//   e_ki <= sum of e_lj over these edges.
+// With pairing near_far the two paths are disjoint, so their last edges share no cone.
+// The relaxation is stronger than with m_i + m_j <= 1 for each pair more than d_max apart.
 void far_partners(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t n = problem.cone_count;

@@ -4,7 +4,7 @@
 
 namespace conelane::constraints {
 
-// The row of a cone set S that carries a cycle: sum of a inside S <= |S| - 1.
+// The row of a cone set S that holds a cycle: sum of a inside S <= |S| - 1.
 std::vector<ProgramRow> separate_cycles(const LaneGraphProblem& problem, const ColumnMap& columns,
                                         const std::vector<bool>& chosen) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();

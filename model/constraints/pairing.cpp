@@ -5,7 +5,7 @@
 
 namespace conelane::constraints {
 
-// A path P whose ends e and f are both near must go on at one of them or lose an edge:
+// A path P with near ends e and f must continue at one of them or lose an edge:
 //   a(P) - a(delta(e) \ P) - a(delta(f) \ P) <= |P| - 1.
 std::vector<ProgramRow> separate_near_near(const LaneGraphProblem& problem, const ColumnMap& columns,
                                            const std::vector<bool>& chosen) {

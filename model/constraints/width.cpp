@@ -13,8 +13,8 @@ void width_pairs(const FamilyContext& context) {
     }
 }
 
-// Every width conflict ends up in one of greedily grown cliques of the graph of width conflicts and forbidden
-// turns (28); each clique is one row. Forbidden turns alone need no row here, `turn_flow` excludes them.
+// Every width conflict is in one of the greedily grown cliques of a graph, and each clique is one row. The
+// graph has the width conflicts and the forbidden turns (28), which alone need no row: see `turn_flow`.
 void width_cliques(const FamilyContext& context) {
     const auto& [problem, columns, rows] = context;
     const std::size_t edges = problem.edges.size();

@@ -42,7 +42,7 @@ export interface Answer extends Lane {
   /** Of methods that enumerate. */
   iterations?: number;
   complete?: boolean;
-  /** Cones within 0.12 m of another one, each with the id that stands for both. */
+  /** Cones within 0.12 m of another one, each with the id that represents both. */
   merged: [number, number][];
   /** From the scene in the module's memory to the lane. */
   latency_ms: number;
@@ -59,7 +59,7 @@ export interface CentreLinePoint {
 }
 
 export interface CentreLine {
-  /** Empty where the lane has no extent. */
+  /** Empty if the lane has no extent. */
   points: CentreLinePoint[];
   closed: boolean;
   length_m: number;
@@ -78,7 +78,7 @@ export interface Solution extends Lane {
   objective?: number;
   bound?: number;
   nodes: number;
-  /** Edges that constraint (27) leaves to choose from. */
+  /** Number of edges that constraint (27) allows. */
   candidate_edges: number;
   total_ms: number;
 }
@@ -87,7 +87,7 @@ export interface Check {
   /** A sentence for each violated constraint; none: the edges are a lane graph. */
   violations: string[];
   objective?: number;
-  /** A violation stays, whatever edges are added. */
+  /** Added edges cannot repair a violation. */
   is_final: boolean;
 }
 
@@ -125,7 +125,7 @@ export interface DetectOptions {
   method?: string;
   /** 50 where absent; `Infinity` for none. */
   time_limit_ms?: number;
-  /** Answer for so many cones, the nearest ahead. */
+  /** Number of cones to answer for: the nearest ahead. */
   nearest?: number;
   /** Of the rld- methods. */
   parameters?: Parameters;
@@ -143,7 +143,7 @@ export interface Plan {
   safe_m: number;
   age_s: number;
   lap: number;
-  /** Come to rest inside what is left of `lane`. */
+  /** Come to rest within the rest of `lane`. */
   stop: boolean;
   phase: string;
   answer: Omit<Answer, "method" | "merged" | "latency_ms">;
@@ -167,7 +167,7 @@ export interface Course {
   line: [number, number, number][];
 }
 
-/** Its calls throw a `ConelaneError` where what they are given is not valid. */
+/** Its calls throw a `ConelaneError` for invalid input. */
 export interface Conelane {
   readonly version: string;
   readonly methods: { name: string; description: string }[];
@@ -176,25 +176,25 @@ export interface Conelane {
   }[];
   /** Names that `course` takes. */
   readonly courses: string[];
-  /** How many times an error ended the module; it starts anew with the next call. */
+  /** How many times an error ended the module; it starts again with the next call. */
   readonly restarts: number;
 
-  /** The lane of a scene. Methods whose name ends by -warm carry the lane of the last scene on, until `reset`. */
+  /** The lane of a scene. Methods whose name ends by -warm keep the lane of the last scene until `reset`. */
   detect(scene: Scene, options?: DetectOptions): Answer;
   /** The line to drive along, from the car on. */
   centreLine(scene: Scene, lane: Lane & { trusted_m?: number }, options?: CentreLineOptions): CentreLine;
   /** The exact solver: the lane graph of least cost, with a proof. */
   solve(scene: Scene, options?: SolveOptions): Solution;
-  /** What an independent checker says of a set of edges. */
+  /** The verdict of the independent checker on a set of edges. */
   check(scene: Scene, edges: readonly [number, number][], options?: { parameters?: Parameters }): Check;
-  /** What edges, and their turns with each other, cost. */
+  /** The costs of edges and of their turns with each other. */
   price(scene: Scene, edges: readonly [number, number][], options?: { parameters?: Parameters }): Prices;
   course(name: string, seed?: number, every_m?: number): Course;
   planner(options?: { mission?: Mission; laps?: number; method?: string }): Planner;
   reset(): void;
 }
 
-/** What the library refuses, or a module that stopped. */
+/** Invalid input, or a module that stopped. */
 export class ConelaneError extends Error {}
 
 /** `source`: bytes, a compiled module or an address; `conelane.wasm` beside conelane.mjs where it is absent. */

@@ -4,7 +4,7 @@
 const COLORS = ["unknown", "blue", "yellow", "orange"]; // in the order of ConeColor
 const MISSIONS = ["trackdrive", "autocross", "acceleration", "skidpad"];
 
-/** What the library refuses, with its message; or a module that stopped, which starts anew with the next call. */
+/** An error of the library, with its message; or a module that stopped, which starts again with the next call. */
 export class ConelaneError extends Error {
   constructor(message) {
     super(message);

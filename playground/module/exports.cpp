@@ -1,6 +1,6 @@
-// What a host calls; conelane.mjs beside this file is the one that others use. Input is numbers and texts
-// that the host writes to `conelane_room`, the answer is the JSON text `conelane_text`. What is not valid is
-// thrown, see runtime.cpp.
+// The functions that a host calls; most programs use conelane.mjs beside this file instead. Input is numbers
+// and texts that the host writes to `conelane_room`; the answer is the JSON text `conelane_text`. Invalid
+// input is thrown, see runtime.cpp.
 #include "conelane/check.hpp"
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
@@ -146,7 +146,7 @@ void write_prices(const Scene& scene, const RldParameters& parameters, const Lan
     for (const Edge& edge : graph.edges) {
         const auto known = std::ranges::find_if(
             problem.edges, [&](const ProblemEdge& one) { return one.i == edge.i && one.j == edge.j; });
-        // What (27) forbids is not listed; its spacing cost is that of the two cones alone.
+        // An edge that (27) forbids is not listed; its spacing cost is computed from the two cones alone.
         const Scene pair{"", scene.pose, {scene.cones[edge.i], scene.cones[edge.j]}};
         const LaneGraphProblem alone = make_problem(pair, parameters, EdgeExtent::all_pairs);
         const bool is_listed = known != problem.edges.end();
@@ -184,7 +184,7 @@ void begin() {
 using namespace conelane;
 using namespace conelane::playground;
 
-/// Room for so many doubles, until the next call.
+/// Room for this many doubles, until the next call.
 CONELANE_EXPORT(conelane_room) double* conelane_room(std::size_t count) {
     room.assign(count, 0.0);
     return room.data();
@@ -198,7 +198,7 @@ CONELANE_EXPORT(conelane_text_size) std::size_t conelane_text_size() {
     return out.text().size();
 }
 
-/// Version, names and ranges: what a host can ask for.
+/// Version, names and ranges: the values that a host may use.
 CONELANE_EXPORT(conelane_describe) void conelane_describe() {
     begin();
     out.member("version", version()).key("methods").begin('[');
@@ -254,7 +254,7 @@ CONELANE_EXPORT(conelane_reset) void conelane_reset() {
     for (auto& [name, detector] : kept_detectors) detector->reset();
 }
 
-/// `ids`: the `left` ones of the left boundary, then those of the right one.
+/// `ids`: the `left` ids of the left boundary, then those of the right one.
 CONELANE_EXPORT(conelane_centre_line)
 void conelane_centre_line(const double* scene_numbers, std::size_t scene_count, const double* ids,
                           std::size_t id_count, std::size_t left, int closed, double step_m,
@@ -298,7 +298,7 @@ void conelane_solve(const double* scene_numbers, std::size_t scene_count, const 
     out.end('}');
 }
 
-/// The independent checker's word on a set of edges, given as pairs of ids.
+/// The verdict of the independent checker on a set of edges, given as pairs of ids.
 CONELANE_EXPORT(conelane_check)
 void conelane_check(const double* scene_numbers, std::size_t scene_count, const double* parameters,
                     std::size_t parameter_count, const double* ids, std::size_t id_count) {
@@ -311,7 +311,7 @@ void conelane_check(const double* scene_numbers, std::size_t scene_count, const 
     out.member("is_final", report.is_final).end('}');
 }
 
-/// What edges, and their turns with each other, cost.
+/// The costs of edges and of their turns with each other.
 CONELANE_EXPORT(conelane_price)
 void conelane_price(const double* scene_numbers, std::size_t scene_count, const double* parameters,
                     std::size_t parameter_count, const double* ids, std::size_t id_count) {
@@ -322,8 +322,8 @@ void conelane_price(const double* scene_numbers, std::size_t scene_count, const 
     out.end('}');
 }
 
-/// A planner of a run, in place of the one before. `mission` as in Mission; `laps` below 1: as the mission
-/// has it.
+/// Starts the planner of a run, instead of the last one. `mission` as in Mission; `laps` below 1: the default
+/// of the mission.
 CONELANE_EXPORT(conelane_start_planner)
 void conelane_start_planner(int mission, int laps, const char* name, std::size_t name_size) {
     PlannerOptions options{.mission = static_cast<Mission>(mission),

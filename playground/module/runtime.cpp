@@ -1,5 +1,5 @@
-// What the library throws, in a module without exceptions: the message goes to the host, which throws it as
-// an error of its own. Nothing is unwound, so the instance is used no more; conelane.mjs starts another one.
+// Exceptions of the library in a module without exceptions: the host gets the message and throws it as its
+// own error. Nothing is unwound, so the instance must not be used again; conelane.mjs starts another one.
 #include "conelane/invalid_input.hpp"
 
 #include <array>
@@ -15,11 +15,11 @@ namespace {
 extern "C" __attribute__((import_module("conelane"), import_name("thrown"))) void conelane_thrown(
     const char* message);
 
-/// Where exceptions are made; one is enough, since the first one ends the instance.
+/// Memory for exceptions; one is enough, since the first one ends the instance.
 constexpr std::size_t kRoom = 1024;
 alignas(std::max_align_t) std::array<std::byte, kRoom> room;
 
-/// The message of what has exactly one of these types; nothing of any other.
+/// The message of an exception of exactly one of these types; nothing for any other.
 template <class... Types>
 const char* message_of(void* thrown, const std::type_info& type) {
     const char* message = nullptr;

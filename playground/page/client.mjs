@@ -1,4 +1,4 @@
-// A worker with the module, which starts anew where an error, or a search without end, stopped it.
+// A worker with the module, which starts again after an error or a search without end stopped it.
 
 /** A call that has no answer after so long ends the worker. */
 const PATIENCE_MS = 30_000;
@@ -10,7 +10,7 @@ export class Client {
   #next = 1;
   #ready = null;
 
-  /** `make`: a new worker. `bytes`: of the module. `onRestart` is told why a worker had to be started anew. */
+  /** `make`: a new worker. `bytes`: of the module. `onRestart` gets the reason why a worker had to be started again. */
   constructor(make, bytes, onRestart) {
     this.#make = make;
     this.bytes = bytes;

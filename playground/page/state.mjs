@@ -29,7 +29,7 @@ export function showError(message) {
 $("error").lastElementChild.addEventListener("click", () => { $("error").hidden = true; });
 export const onRestart = (reason) => {
   document.body.dataset.restarts = String(Number(document.body.dataset.restarts ?? 0) + 1);
-  showError(`The module reported: ${reason}. It was started anew.`);
+  showError(`The module reported: ${reason}. It was started again.`);
 };
 
 export async function attempt(action) {

@@ -62,7 +62,7 @@ CertificateRecord to_record(const Scene& scene, const BoundCertificate& certific
     return record;
 }
 
-/// Nothing where the record names a cone that is not in the scene; `missing` is then its id.
+/// Nothing if the record names a cone that is not in the scene; `missing` is then its id.
 std::optional<BoundCertificate> from_record(const Scene& scene, const CertificateRecord& record,
                                             ConeId& missing) {
     const auto index_of = index_by_id(scene);
@@ -87,7 +87,7 @@ std::optional<BoundCertificate> from_record(const Scene& scene, const Certificat
     return certificate;
 }
 
-/// What `certify` makes of each scene of the file, with the name of what it is about.
+/// Certificates for each scene of the file, with the name of what they prove.
 template <typename Certify>
 auto certificates(const CertificateOptions& options, const RldParameters& parameters,
                   const Certify& certify) {
@@ -123,9 +123,9 @@ std::vector<CertificateRecord> root_certificates(const CertificateOptions& optio
     });
 }
 
-/// Calls `verify(record, scene)` for each record with the cones that it is about: those that the options say,
-/// or else the record itself. Throws before the first call where a record is about something else than the
-/// options say.
+/// Calls `verify(record, scene)` for each record with the cones that it is about: those of the options, or
+/// else those of the record. Throws before the first call if a record is about other cones than the options
+/// say.
 template <typename Record, typename Verify>
 void for_each_record(const CertificateOptions& options, const RldParameters& parameters,
                      const std::vector<Record>& records, const Verify& verify) {
@@ -211,7 +211,7 @@ bool claims_nothing(double bound) {
     return !(bound > -SearchCertificate::kMaxBound);
 }
 
-/// Says of which scenes nothing was proven. Throws CLI::RuntimeError of exit code 1 where that is all.
+/// Prints the scenes of which nothing was proven. Throws CLI::RuntimeError with exit code 1 if these are all.
 template <typename Record>
 void report_unproven(const std::vector<Record>& records) {
     std::size_t unproven = 0;

@@ -39,13 +39,13 @@ struct CheckOptions {
     bool exact = false;
 };
 
-/// A lane graph that the checker accepts, and where it is from.
+/// A lane graph that the checker accepts, and its source.
 struct KnownLaneGraph {
     std::string origin;
     double objective;
 };
 
-/// A scene as a solver was given it, and what is known of it.
+/// A scene as a solver got it, and what is known about it.
 struct ConeSet {
     Scene scene;
     std::optional<KnownLaneGraph> best;
@@ -55,7 +55,7 @@ struct ConeSet {
     }
 };
 
-/// What rational arithmetic says of all records together.
+/// Results of rational arithmetic for all records together.
 struct ExactTotals {
     std::size_t programs = 0;
     std::size_t too_large = 0;
@@ -107,12 +107,12 @@ class Check {
         }
     }
 
-    /// Prints what is wrong; how many records and missing answers failed.
+    /// Prints the problems; returns how many records and missing answers failed.
     std::size_t run() {
         std::vector<std::vector<std::string>> violations;
         violations.reserve(records_.size());
         for (const SolutionRecord& record : records_) violations.push_back(check_lane_graph(record));
-        // Claims of proof come second: any lane graph of the file may refute them.
+        // Claims of proof are checked last, because any lane graph of the file may refute them.
         Progress progress("check", records_.size());
         std::size_t silent = 0;
         std::size_t passed = 0;
@@ -138,7 +138,7 @@ class Check {
     }
 
   private:
-    /// The cones that the record is about, by the option or as it says itself.
+    /// The cones that the record is about, according to the option or to the record.
     ConeSet& cone_set(const SolutionRecord& record) {
         const std::optional<std::size_t> nearest = options_.nearest ? options_.nearest : record.nearest;
         const auto [place, is_new] = cone_sets_.try_emplace({record.scene, nearest});
@@ -156,7 +156,7 @@ class Check {
         return set;
     }
 
-    /// What is wrong with the lane graph that the record states and with what it says of it.
+    /// What is wrong with the record's lane graph and with its statements about it.
     std::vector<std::string> check_lane_graph(const SolutionRecord& record) {
         if (!has_lane_graph(record)) return {};
         ConeSet& set = cone_set(record);
@@ -171,7 +171,7 @@ class Check {
             check(set.scene, parameters_, std::get<LaneGraph>(graph),
                   {record.status == "optimal", *record.objective, record.bound})
                 .violations;
-        // What is no lane graph may have no point in the program.
+        // A graph that is not a lane graph may have no point in the program.
         if (options_.exact && lane.violations.empty()) {
             if (auto fault = check_exactly(record, set.scene, std::get<LaneGraph>(graph)))
                 violations.push_back(std::move(*fault));
@@ -179,7 +179,7 @@ class Check {
         return violations;
     }
 
-    /// What is wrong in rational arithmetic with a lane graph that the checker accepts.
+    /// What rational arithmetic finds wrong with a lane graph that the checker accepts.
     std::optional<std::string> check_exactly(const SolutionRecord& record, const Scene& scene,
                                              const LaneGraph& graph) {
         std::optional<ExactProgramReport> exact;
@@ -201,7 +201,7 @@ class Check {
         exact_.objective_rounding = std::max(exact_.objective_rounding, exact->objective_rounding);
         exact_.row_rounding = std::max(exact_.row_rounding, exact->row_rounding);
         exact_.violation = std::max(exact_.violation, exact->violation);
-        // Limits are met within 1e-9.
+        // The checker's tolerance of limits.
         if (exact->violation > 1e-9)
             return fmt::format("in rational arithmetic {} is violated by {:.3g}", exact->violated,
                                exact->violation);
@@ -295,14 +295,14 @@ void add_check_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "check",
         "recomputes solutions independently of the solvers; exit code 1 on a failure.\n"
-        "Proven for each lane graph: every constraint, the objective, and that the bound is not above it. An "
-        "`infeasible` passes where a search of the checker's own or multipliers confirm it from the scene "
-        "alone, "
-        "or else another exact solver does; one that nothing confirms fails. Not proven: that a bound holds. "
-        "`optimal` passes where the bound meets the objective and no lane graph of the file or of the ground "
-        "truth is better; see `certify` for proofs of bounds. A scene without an answer fails; stopped and "
-        "error "
-        "claim nothing and are counted apart.");
+        "Checked for each lane graph: every constraint, the objective, and that the bound is not above it. "
+        "`infeasible` passes if it is confirmed: by the checker's own search or by multipliers from the "
+        "scene "
+        "alone, or else by another exact solver. Bounds are not proven: `optimal` passes if the bound meets "
+        "the "
+        "objective and no lane graph of the file or of the ground truth is better; see `certify` for proofs "
+        "of bounds. A scene without an answer fails. `stopped` and `error` claim nothing and are counted "
+        "separately.");
     auto options = std::make_shared<CheckOptions>();
     command.add_option("--scenes", options->scenes, "*.scenes.jsonl")->required();
     command.add_option("--solutions", options->solutions, "*.solutions.jsonl")->required();

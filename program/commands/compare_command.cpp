@@ -21,7 +21,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// What `compare` and `sweep` share.
+/// What `compare` and `sweep` have in common.
 struct CompareOptions {
     ComparisonOptions comparison;
     std::vector<std::string> detectors;
@@ -122,7 +122,7 @@ void add_compare_command(CLI::App& program) {
         if (*full && command.count("--range") == 0) chosen.ranges_m = {30.0, 50.0};
         if (*full && command.count("--time-limit") == 0)
             options->comparison.run.limits.time_limit_ms = kRealTimeBudget_ms;
-        // Disturbances that are asked for one by one are a condition of their own.
+        // Disturbances that are given one by one form a condition of their own.
         const bool is_disturbed = command.count("--noise") + command.count("--pose-noise") +
                                       command.count("--miss") + command.count("--persist") >
                                   0;
@@ -163,7 +163,7 @@ void add_merge_command(CLI::App& program) {
     auto directory = std::make_shared<std::string>();
     auto overwrite = std::make_shared<bool>(false);
     command.add_option("shards", *shards, "directories of all shards, in any order")->required();
-    command.add_option("--out", *directory, "directory of the whole")->required();
+    command.add_option("--out", *directory, "directory of the joined comparison")->required();
     add_overwrite_flag(command, *overwrite);
     command.callback([shards, directory, overwrite] {
         require_own_page(*directory);

@@ -7,8 +7,8 @@
 
 namespace conelane::experiments {
 
-/// The families that a user lists as NAME=SPEC, in the order in which their names come first; a name that is
-/// there already gets another SPEC. Throws CLI::ValidationError naming the text that is no such thing.
+/// The families that a user lists as NAME=SPEC, in the order in which their names first occur; another SPEC
+/// with the same name is added to that family. Throws CLI::ValidationError naming a text of another form.
 [[nodiscard]] std::vector<CourseFamily> parse_families(const std::vector<std::string>& texts);
 
 }  // namespace conelane::experiments

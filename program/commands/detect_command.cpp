@@ -40,7 +40,7 @@ struct DetectOptions {
     RunOptions run;
 };
 
-/// Where answers go line by line: a file that appears when all is done, or standard output, each at once.
+/// Output of answers line by line: a file that appears when it is complete, or standard output at once.
 class LaneSink {
   public:
     explicit LaneSink(const std::string& out) {
@@ -64,7 +64,7 @@ class LaneSink {
     AnswerErrors errors_;
 };
 
-/// A detector and the name that its answers bear.
+/// A detector and the name in its answers.
 struct Answering {
     std::string name;
     DetectorMaker make;
@@ -80,7 +80,7 @@ Answering detector_of(DetectOptions& options) {
         if (!detector.is_rld()) options.parameters.require_not_given("'" + options.detector + "' has");
         if (!detector.takes_weights()) refuse_weights("'" + options.detector + "'");
         if (!options.weights.empty()) {
-            // Read once, and before the work: what is wrong with them is said at once.
+            // Read once and before the work, so that errors in them are reported at once.
             options.run.detector.weights = parsed_file(options.weights, [](std::string text) {
                 (void)parse_front_weights(text);
                 return WeightsBytes{std::move(text)};
@@ -90,14 +90,14 @@ Answering detector_of(DetectOptions& options) {
     }
     if (outside->is_lanes_file())
         throw InvalidInput("--method",
-                           "'" + options.detector + "' holds lanes already, none can be detected");
+                           "'" + options.detector + "' is a finished lanes file: there is nothing to detect");
     refuse_weights("the program '" + outside->name + "'");
     if (outside->is_solver()) return {outside->name, maker_of_solver(*outside, options.run)};
     options.parameters.require_not_given("the program '" + outside->name + "' has");
     return {outside->name, maker_of_program(outside->name, outside->source, options.run)};
 }
 
-/// One scene after the other; nothing is answered untimed before, since no scene is known before.
+/// One scene after another. Nothing is answered untimed first, because no scene is known in advance.
 void detect_streamed(const Answering& detector, const DetectOptions& options) {
     if (options.run.threads > 1) throw InvalidInput("--threads", "a stream is answered by one thread");
     const std::unique_ptr<TimedDetector> timed = detector.make("");

@@ -31,7 +31,7 @@ struct DriveOptions {
     std::optional<std::string> id;
     std::optional<std::string> detector;
     DrivableOptions drivable;
-    FollowOptions follow;  ///< what it shares with the others is set from those
+    FollowOptions follow;  ///< the values that the other modes share are copied into it
 };
 
 std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
@@ -51,13 +51,12 @@ std::vector<LaneRecord> chosen_lanes(const DriveOptions& options) {
     if (options.format == "json" || records.size() == 1) return records;
     const LaneRecord& second = records[1];
     if (second.scene != records[0].scene) {
-        throw InputError(
-            options.lanes, second.line, "scene",
-            "is a second one, of which --format " + options.format + " needs --id to choose one");
+        throw InputError(options.lanes, second.line, "scene",
+                         "is a second scene, but --format " + options.format + " writes one lane: see --id");
     }
     throw InputError(options.lanes, second.line, "method",
-                     "is a second answer to scene '" + second.scene + "', of which --format " +
-                         options.format + " holds one: see --method");
+                     "is a second answer to scene '" + second.scene + "', but --format " + options.format +
+                         " writes one lane: see --method");
 }
 
 DrivableRecord drive(const LaneRecord& record, const Scene& scene, const DriveOptions& options) {
@@ -125,7 +124,7 @@ void drive_all(const DriveOptions& options) {
 
 }  // namespace
 
-/// The options that only --follow has.
+/// The options that only --follow uses.
 void add_follow_options(CLI::App& command, FollowOptions& options) {
     CLI::Option* const follow = command.add_option(
         "--follow", options.frames,

@@ -8,8 +8,8 @@
 namespace conelane::experiments {
 namespace {
 
-/// Only the id is looked at, which stands first in each scene that is asked: parsing would cost more than the
-/// way there and back, and so would std::cin.
+/// Only the id is read, which is first in each question: parsing JSON, or std::cin, would take longer than
+/// the round trip itself.
 void echo() {
     constexpr std::string_view kBegin = R"({"id":")";
     char* buffer = nullptr;

@@ -21,13 +21,13 @@
 
 #include <fmt/format.h>
 
-// Both commands speak of the program of one scene. Rows that a solve adds on demand, (5) and the pairing, are
-// too many to be written one by one: without --all-rows an optimum of the file is a bound for the scene, and
-// its optimum where it is a lane graph.
+// Both commands are about the program of one scene. Rows that a solve adds on demand, (5) and the pairing,
+// are too many to write in full. So without --all-rows, an optimum of the file is only a bound for the scene;
+// it is the scene's optimum if its point is a lane graph.
 namespace conelane::experiments {
 namespace {
 
-/// Which scene's program.
+/// The scene of the program.
 struct ProgramSource {
     std::string scenes;
     std::string id;
@@ -39,7 +39,7 @@ struct ProgramSource {
 
 void add_program_options(CLI::App& command, ProgramSource& source) {
     command.add_option("--scenes", source.scenes, "*.scenes.jsonl")->required();
-    command.add_option("--id", source.id, "of the scene")->required();
+    command.add_option("--id", source.id, "id of the scene")->required();
     command.add_option("--formulation", source.formulation)
         ->check(CLI::IsMember({"tight", "paper"}))
         ->capture_default_str();
@@ -60,7 +60,7 @@ Scene load_scene(const ProgramSource& source) {
     return source.nearest ? nearest_ahead(found->scene, *source.nearest) : found->scene;
 }
 
-/// The program of a scene, with all that it refers to.
+/// The program of a scene, with everything that it refers to.
 class SceneProgram {
   public:
     explicit SceneProgram(const ProgramSource& source)
@@ -78,7 +78,7 @@ class SceneProgram {
     const RldParameters parameters;
     const LaneGraphProblem problem;
     const LaneGraphModel model;
-    const BinaryProgram program;  ///< the model's, with all rows where asked for
+    const BinaryProgram program;  ///< the model's program, with all rows if requested
 
   private:
     [[nodiscard]] BinaryProgram whole(bool all_rows) const {
@@ -100,7 +100,7 @@ void export_program(const ExportOptions& options) {
     const SceneProgram scene_program(options.source);
     const BinaryProgram& program = scene_program.program;
     AtomicFile file(options.out);
-    // The name is one word in these formats.
+    // A name must be one word in these formats.
     const std::string name = "conelane_" + options.source.formulation;
     if (ending == ".mps") {
         write_mps(file.stream(), program, name);
@@ -128,8 +128,8 @@ SolutionFile read_solution(const std::string& path, const BinaryProgram& program
     }
 }
 
-/// What the file says of the scene. A point that is no lane graph is an error; where it is the program's
-/// optimum its objective still is a bound.
+/// What the file proves about the scene. A point that is not a lane graph is an error; if it is the program's
+/// optimum, its objective is still a bound.
 SolutionRecord to_record(const SolutionFile& solution, const SceneProgram& program,
                          const ImportOptions& options) {
     using Status = SolutionFile::Status;

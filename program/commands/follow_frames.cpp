@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kStandardStream = "-";
 
-/// The names that the command line has for options of the planner.
+/// The names of the planner's options on the command line.
 std::string option_of(const std::string& key) {
     if (key == "mission" || key == "laps" || key == "weights") return "--" + key;
     if (key == "detector") return "--method";
@@ -59,11 +59,11 @@ std::unique_ptr<Planner> planner_of(const FollowOptions& options) {
     }
 }
 
-/// Plans, line by line: a file that appears when all is done, or standard output, each at once.
+/// Output of plans line by line: a file that appears when it is complete, or standard output at once.
 class PlanSink {
   public:
     explicit PlanSink(const FollowOptions& options) : detector_(options.detector) {
-        if (options.format != "json") return;  // the course alone is written
+        if (options.format != "json") return;  // only the course is written
         if (options.out == kStandardStream) {
             stream_ = &std::cout;
         } else {

@@ -24,7 +24,7 @@ fs::path page_in(const fs::path& directory) {
 }  // namespace
 
 void require_own_page(const fs::path& directory) {
-    // As report/page.py writes it, near the beginning.
+    // The mark that report/page.py writes near the beginning.
     constexpr std::string_view kTitle = "<title>conelane: ";
     constexpr std::size_t kBeginning = 2000;
     const fs::path page = page_in(directory);
@@ -46,17 +46,17 @@ void write_page(const fs::path& directory) {
     try {
         write_report(directory, page);
     } catch (const NoPython& missing) {
-        fmt::print("all of it in {}; no page: {}\n", directory.string(), missing.what());
+        fmt::print("results: {}, without a page: {}\n", directory.string(), missing.what());
         return;
     } catch (const PackageRefused&) {
-        fmt::print("all of it in {}, but no page\n", directory.string());
+        fmt::print("results: {}, without a page\n", directory.string());
         constexpr int kFailed = 2;
-        throw CLI::RuntimeError(kFailed);  // it has said why
+        throw CLI::RuntimeError(kFailed);  // it has printed the reason
     } catch (const std::exception&) {
-        fmt::print("all of it in {}, but no page\n", directory.string());
+        fmt::print("results: {}, without a page\n", directory.string());
         throw;
     }
-    fmt::print("all of it in {}, as a page in {}\n", directory.string(), page.string());
+    fmt::print("results: {}, page: {}\n", directory.string(), page.string());
 }
 
 }  // namespace conelane::experiments

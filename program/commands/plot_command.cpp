@@ -40,7 +40,7 @@ AnnotatedScene scene_named(const PlotOptions& options) {
     throw InputError(options.scenes, 0, "--id", "'" + options.id + "' is not a scene of it");
 }
 
-/// The boundaries of the scene's track, where a companion of the scenes file holds them.
+/// The boundaries of the scene's track, if a companion of the scenes file has them.
 TrackBoundariesByName track_of(const PlotOptions& options, const std::string& track) {
     const std::filesystem::path companion = track_boundaries_path(options.scenes);
     if (track.empty() || !std::filesystem::exists(companion)) return {};
@@ -87,7 +87,7 @@ void plot(const PlotOptions& options) {
     try {
         write_picture(picture, options.out, options.python);
     } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has said why
+        throw CLI::RuntimeError(2);  // it has printed the reason
     }
     fmt::print("{}: scene {}, {} lanes\n", options.out, options.id, picture.lanes.size());
 }
@@ -104,7 +104,7 @@ void add_plot_command(CLI::App& program) {
         ->required();
     command.add_option("--lanes", options->lanes,
                        "*.lanes.jsonl, the lanes to draw; without it only the scene");
-    command.add_option("--id", options->id, "the scene")->required();
+    command.add_option("--id", options->id, "id of the scene")->required();
     add_output_option(command, "--out", options->out, "X.svg or X.png")
         ->required()
         ->check(CLI::Validator(

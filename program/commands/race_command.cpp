@@ -41,7 +41,7 @@ constexpr double kDegree_rad = std::numbers::pi / 180.0;
 struct Options {
     std::vector<std::string> tracks;
     std::vector<std::string> families;  ///< NAME=SPEC
-    std::string folds;                  ///< folder of the weights of each family; empty: none
+    std::string folds;                  ///< folder with the weights of each family; empty: none
     std::string weights;                ///< file for all courses; empty: the shipped ones
     std::vector<std::string> detectors{"front"};
     bool planner = false;
@@ -63,7 +63,7 @@ struct Options {
     std::string out;
 };
 
-/// CLI::Range takes nan.
+/// CLI::Range accepts NaN.
 CLI::Validator number_in(double low, double high) {
     return CLI::Range(low, high) & !CLI::IsMember({"nan", "-nan"}, CLI::ignore_case);
 }
@@ -80,14 +80,14 @@ bool has_known_course(std::optional<Mission> mission) {
     return mission == Mission::acceleration || mission == Mission::skidpad;
 }
 
-/// A course and the weights that methods drive it by; absent: the shipped ones.
+/// A course, and the weights with which methods drive it; absent: the shipped ones.
 struct WeightedCourse {
     RaceCourse course;
     std::shared_ptr<const WeightsBytes> weights = {};
 };
 
 std::shared_ptr<const WeightsBytes> read_weights(const std::filesystem::path& file) {
-    // Read once, and before the work: what is wrong with them is said at once.
+    // Read once and before the work, so that errors in them are reported at once.
     return std::make_shared<const WeightsBytes>(parsed_file(file, [](std::string text) {
         (void)parse_front_weights(text);
         return WeightsBytes{std::move(text)};
@@ -98,7 +98,7 @@ void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
                   std::optional<Mission> mission, const std::shared_ptr<const WeightsBytes>& weights) {
     for (const Track& track : load_tracks(spec)) {
         if (!track.closed || !track.driven.empty()) {
-            fmt::print(stderr, "conelane: {} is no closed course with boundaries: left out\n", track.name);
+            fmt::print(stderr, "conelane: {} is left out: not a closed course with boundaries\n", track.name);
             continue;
         }
         courses.push_back({circuit(track), weights});
@@ -106,7 +106,7 @@ void add_circuits(std::vector<WeightedCourse>& courses, const std::string& spec,
     }
 }
 
-/// With --vary one for each seed, in their order.
+/// With --vary, one course for each seed, in the order of the seeds.
 std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mission> mission) {
     std::vector<WeightedCourse> courses;
     std::shared_ptr<const WeightsBytes> weights;
@@ -142,7 +142,7 @@ std::vector<WeightedCourse> courses_of(const Options& options, std::optional<Mis
     return courses;
 }
 
-/// A heat and what it needs to be driven.
+/// A race and its input.
 struct Entry {
     const WeightedCourse* course;
     const RaceDetector* detector;
@@ -166,7 +166,7 @@ void run_all(const Options& options, const std::vector<Entry>& entries, std::vec
                 heat.result = race(course, race_options,
                                    make_driver(*entries[i].detector, course, race_options,
                                                weights ? std::optional(*weights) : std::nullopt));
-                // What was not lost is not kept; the first race is, so that there is one to look at.
+                // Keeps only the races that failed, and the first one, so that there is one to look at.
                 if (options.replay == "unfinished" && heat.result.finished() && i > 0) {
                     heat.result.replay.clear();
                 }
@@ -215,8 +215,8 @@ nlohmann::ordered_json parameters_of(const Options& options, const std::vector<R
             {"drift_deg", options.drift_deg}};
 }
 
-/// The files of a result, opened before the work: that they can be written is known before it, and none is
-/// in place before all are whole.
+/// The files of a result. They are opened before the work, so that an error is found early, and get their
+/// names when all are complete.
 class Outputs {
   public:
     explicit Outputs(const std::filesystem::path& folder)
@@ -345,13 +345,14 @@ void add_race_command(CLI::App& program) {
                      "acceleration and skidpad: each seed draws another course within the rules");
     command.add_option("--condition", options->condition, "paper, car or harsh")->capture_default_str();
     command.add_option("--fp", options->rates, "share of false positives")->delimiter(',');
-    command.add_option("--range", options->race.sight.range_m, "of sight [m]")->capture_default_str();
+    command.add_option("--range", options->race.sight.range_m, "radius of the visible half disc [m]")
+        ->capture_default_str();
     command.add_option("--laps", options->laps, "laps of a race; default 1, in a trackdrive 10")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--speed", options->race.speed_mps, "[m/s]")
+    command.add_option("--speed", options->race.speed_mps, "speed of the car [m/s]")
         ->check(number_in(0.5, 40.0))
         ->capture_default_str();
-    command.add_option("--seed", options->seeds, "a race for each")->delimiter(',');
+    command.add_option("--seed", options->seeds, "seeds; each gives a race")->delimiter(',');
     command.add_option("--latency-ms", options->latency_ms, "simulated time from a frame to its path")
         ->check(number_in(0.0, 1000.0))
         ->capture_default_str();
@@ -386,7 +387,7 @@ void add_race_command(CLI::App& program) {
                     "races in replay.jsonl: unfinished (and the first one), all or none")
         ->check(CLI::IsMember({"unfinished", "all", "none"}))
         ->capture_default_str();
-    add_threads_option(command, options->threads, "same results with any number");
+    add_threads_option(command, options->threads, "number of threads; the results do not depend on it");
     command.add_option("--out", options->out, "folder for race.json, table.txt, replay.jsonl and times.txt")
         ->required();
     command.callback([options] { run_races(*options); });

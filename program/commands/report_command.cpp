@@ -26,7 +26,7 @@ void make_report(const ReportOptions& options) {
         write_report(options.results, options.page, options.pictures, options.python,
                      fmt::format("{}", fmt::join(options.viewer, ",")));
     } catch (const PackageRefused&) {
-        throw CLI::RuntimeError(2);  // it has said why
+        throw CLI::RuntimeError(2);  // it has printed the reason
     }
     fmt::print("the page is {}\n", options.page);
 }

@@ -54,7 +54,7 @@ void add_scenes_command(CLI::App& program) {
         ->required();
     add_scene_options(command, options->scenes);
     add_nearest_option(command, options->scenes.nearest, "keep only the N nearest cones ahead");
-    add_threads_option(command, options->scenes.threads, "same scenes with any number");
+    add_threads_option(command, options->scenes.threads, "number of threads; the scenes do not depend on it");
     add_output_option(command, "--out", options->out, "NAME.scenes.jsonl; NAME.tracks.json goes beside it")
         ->required();
     command.callback([options] { make_scenes(*options); });

@@ -39,7 +39,7 @@ struct ScoreOptions {
     bool wide = false;
 };
 
-/// A file and what it holds; of a detector from outside where it was named as one.
+/// A lanes file with its records, and the detector from outside if it was named as one.
 struct LanesFile {
     std::string file;
     std::optional<OutsideDetector> detector;

@@ -39,7 +39,7 @@ struct Options {
     bool all_rows = false;
 };
 
-/// A solver, and what records call it.
+/// A solver, and its name in records.
 struct ChosenSolver {
     std::unique_ptr<RldSolver> solver;
     std::string name;
@@ -62,7 +62,7 @@ ChosenSolver choose(const Options& options) {
     return {entry->make(formulation), options.solver, options.formulation};
 }
 
-/// How many scenes have which status, in the order in which these are met.
+/// The number of scenes by status, in the order in which the statuses first occur.
 std::string status_counts(const std::vector<SolutionRecord>& records) {
     std::vector<std::pair<std::string, std::size_t>> counts;
     for (const SolutionRecord& record : records) {

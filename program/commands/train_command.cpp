@@ -55,7 +55,7 @@ void print(const char* of, const StepScoreFigures& figures) {
         100.0 * figures.kept_share);
 }
 
-/// Gives the file's text to `use`, whose InvalidInput comes out as an error in that file.
+/// Passes the file's text to `use`; an InvalidInput of it becomes an error in that file.
 template <typename Use>
 void read_file(const std::string& path, const char* option, const Use& use) {
     std::ifstream stream(path, std::ios::binary);
@@ -132,21 +132,21 @@ void add_number_option(CLI::App& command, const std::string& name, double& numbe
     command.add_option(name, number, description)->capture_default_str();
 }
 
-/// What is trained on, and what only measured on.
+/// The tracks to train on, and those only to measure on.
 CLI::Option& add_track_options(CLI::App& command, TrainingRunOptions& run) {
     command.add_option("--tracks", run.tracks,
                        "generated:NAME[@SEED], fsd:DIR[:1,2], pacsim:FILE, eufs:FILE or ftlog:FILE");
     command.add_option("--hold-out", run.hold_out, "tracks to measure on only, not to learn from");
     CLI::Option& variants = add_count_option(
         command, "--variants", run.variants,
-        "of each track to train on too: stretched, every second one driven the other way", 0);
+        "number of variants of each track to train on too: stretched, every second one reversed", 0);
     add_scene_options(command, run.scenes);
     add_number_option(command, "--hold-out-every", run.hold_out_every_m,
                       "travel between poses on the tracks held out [m]");
     return variants;
 }
 
-/// Which of the two networks or the step scores; `variants`: the option that step scores have no use for.
+/// One of the two networks, or the step scores; `variants`: the option that step scores do not use.
 void add_kind_options(CLI::App& command, Options& options, CLI::Option& variants) {
     CLI::Option& extended =
         *command.add_flag("--extended", options.extended,
@@ -217,7 +217,7 @@ void add_train_command(CLI::App& program) {
     add_train_rld_command(command);
     command.callback([options, &command] {
         if (!command.get_subcommands().empty()) return;
-        // Required of this command, but not of the ones below it, where CLI11 would ask for them too.
+        // Checked here: CLI11 would require an option of this command also for its sub-commands.
         for (const char* name : {"--tracks", "--out"}) {
             if (command.count(name) == 0) throw CLI::RequiredError(name);
         }

@@ -95,7 +95,7 @@ void add_train_front_command(CLI::App& train_command) {
                        "chosen on new draws of --tracks");
     add_number_option(command, "--hold-out-every", run.hold_out_every_m,
                       "travel between poses on the tracks held out [m]");
-    command.add_option("--condition", run.conditions, "of the scenes held out: paper, car, harsh")
+    command.add_option("--condition", run.conditions, "conditions of the held-out scenes: paper, car, harsh")
         ->delimiter(',')
         ->capture_default_str();
     command.add_option("--fp", run.rates, "share of false positives among all points of the scenes held out")

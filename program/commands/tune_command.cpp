@@ -45,7 +45,7 @@ struct TuneOptions {
     std::filesystem::path log;
 };
 
-/// All that the figures of parameters depend on, `start` for what tuning does not move.
+/// Everything that the figures of parameters depend on; `start` for what tuning does not change.
 ordered_json conditions(const TuneOptions& options, const RldParameters& start) {
     ordered_json json{{"commit", provenance().commit},
                       {"tracks", options.tracks},
@@ -95,7 +95,7 @@ ordered_json to_json(const std::vector<LapFigure>& laps) {
     return json;
 }
 
-/// Of each rate: scenes by why they are inaccurate, and how many inaccurate ones have wrong cones where.
+/// For each rate: number of scenes by cause of inaccuracy, and where inaccurate scenes have wrong cones.
 struct FailureCounts {
     ordered_json causes = ordered_json::object();
     ordered_json places = ordered_json::object();
@@ -190,7 +190,7 @@ void run(TuneOptions& options) {
     const std::size_t fits = options.tuner.folds > 1 ? options.tuner.folds + 1 : 1;
     Tuned tuned;
     {
-        // The start, and for each fit the start again and the winner on what was held out.
+        // The figures of the start, and for each fit those of start and winner on the held-out tracks.
         Progress progress(
             "tune", 1 + fits * (solves_in(options.rounds) + options.rounds + options.tuner.evaluations + 2));
         const auto evaluate = [&](const RldParameters& parameters) {
@@ -206,13 +206,13 @@ void run(TuneOptions& options) {
     }
     ordered_json record = record_of(options, start, tuned);
     const FailureCounts failures = count_failures(evaluation.scenes(), tuned.parameters, options.evaluation);
-    record["losses"] = failures.causes;  // the name in all records so far
+    record["losses"] = failures.causes;  // the key in all records so far
     record["wrong_cones"] = failures.places;
     AtomicFile file(record_path(options.out));
     file.stream() << record.dump(2) << '\n';
     file.finish();
     {
-        // Both or neither: what is left is to give the record its name.
+        // Both or neither: only the renaming of the record is left.
         const auto held = hold_interruption();
         write_rld_parameters(options.out, tuned.parameters);
         file.commit();

@@ -112,7 +112,7 @@ void set_colors(std::vector<Cone>& cones, py::handle object) {
     for (std::size_t i = 0; i < cones.size(); ++i) cones[i].color = color_of(codes.data()[i], key(i));
 }
 
-/// Known keys, for the error of an unknown one.
+/// Known keys, for the message about an unknown one.
 std::string parameter_keys() {
     std::string keys;
     for (const auto fields : {rld_parameter_fields(), rld_extra_fields()}) {
@@ -318,7 +318,7 @@ std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<cons
                                      std::string_view key) {
     std::vector<std::int64_t> indices;
     indices.reserve(ids.size());
-    std::unordered_map<ConeId, std::int64_t> index_of;  // for look-up only; made where ids are no indices
+    std::unordered_map<ConeId, std::int64_t> index_of;  // for look-up only; used if ids are not indices
     for (const ConeId id : ids) {
         if (id >= 0 && id < static_cast<ConeId>(cones.size()) &&
             cones[static_cast<std::size_t>(id)].id == id) {

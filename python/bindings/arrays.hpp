@@ -15,8 +15,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-/// From and to NumPy. An invalid array is an InvalidInput that names the argument; Python gets it as
-/// ValueError.
+/// Conversions from and to NumPy. An invalid array is an InvalidInput that names the argument; Python gets it
+/// as ValueError.
 namespace conelane::python {
 
 namespace py = pybind11;
@@ -37,7 +37,7 @@ using Indices = py::array_t<std::int64_t>;
 /// Ids of the cones that an array of indices names.
 [[nodiscard]] std::vector<ConeId> ids_at(py::handle indices, std::span<const Cone> cones, const char* key);
 [[nodiscard]] std::size_t positive_count(py::handle object, const char* key);
-/// None, the name of a parameter set, or a dict of what differs from the defaults.
+/// None, the name of a parameter set, or a dict of the values that differ from the defaults.
 [[nodiscard]] std::optional<RldParameters> rld_parameters(py::handle object);
 [[nodiscard]] Pairing pairing_of(std::string_view name);
 

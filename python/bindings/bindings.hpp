@@ -9,8 +9,8 @@
 
 #include <pybind11/pybind11.h>
 
-/// The module conelane._core. Each function adds its part; docstrings begin with the Python signature, since
-/// pybind11's own would have C++ types.
+/// The module conelane._core. Each function adds its part. Docstrings begin with the Python signature,
+/// because pybind11's own signature would have C++ types.
 namespace conelane::python {
 
 namespace py = pybind11;

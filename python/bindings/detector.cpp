@@ -37,7 +37,7 @@ std::variant<std::filesystem::path, WeightsBytes> weights_of(py::handle object) 
     return std::filesystem::path(text.cast<std::string>());
 }
 
-/// The options of a detector; `recipe` is nullptr where there is no such detector, which make_detector says.
+/// The options of a detector. `recipe` is nullptr for an unknown detector, which make_detector reports.
 DetectorOptions options_of(const DetectorRecipe* recipe, const py::kwargs& given) {
     DetectorOptions options;
     for (const auto& [key_object, value] : given) {
@@ -93,7 +93,7 @@ class DetectorObject {
         lane.record.scene = lane.scene->id;
         lane.record.detector = name_;
         lane.record.nearest = nearest_;
-        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
         {
             const std::scoped_lock lock(mutex_);
             const auto start = std::chrono::steady_clock::now();
@@ -102,7 +102,7 @@ class DetectorObject {
             lane.record.latency_ms = took.count();
         }
         if (lane.record.answer.status == LaneStatus::error)
-            validate(*lane.scene);  // throws what is wrong with it
+            validate(*lane.scene);  // throws if the scene is invalid
         return lane;
     }
 
@@ -135,10 +135,10 @@ Parameters
 name : str
     One of `methods()`.
 nearest : int, optional
-    It looks at so many cones, the nearest ahead of the car.
+    Number of cones that it uses: the nearest ones ahead of the car.
 parameters : str or dict, optional
-    Of the detectors `rld-...`: the name of a parameter set, or what differs from the defaults; see
-    `rld_parameters`.
+    Of the detectors `rld-...`: the name of a parameter set, or a dict of the values that differ from the
+    defaults; see `rld_parameters`.
 pairing : str, optional
     Of the detectors `rld-...`: "near_far" or "paper".
 weights : str, os.PathLike or bytes, optional
@@ -192,7 +192,7 @@ pose : (3,) array_like of float
     The car: x, y [m] and yaw [rad], counter-clockwise, 0 along +x. In a frame of the car with x ahead and y
     to the left it is (0, 0, 0).
 ids : (N,) array_like of int, optional
-    What cones are called, each once. Detectors that remember their last lane (`...-warm`) know a cone by its
+    Distinct ids of the cones. Detectors that remember their last lane (`...-warm`) recognise a cone by its
     id. By default the index.
 colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
     "unknown", "blue", "yellow", "orange", or their codes 0 to 3 (`Color`). Or probabilities of unknown, blue,
@@ -210,7 +210,7 @@ Lane
 Raises
 ------
 ValueError
-    For wrong shapes and dtypes, numbers that are not finite, and an id that is there twice.
+    For wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice.
 
 Examples
 --------
@@ -227,11 +227,11 @@ ValueError: cones[0].y: must be a finite number
             },
             py::arg("scene"), py::arg("time_limit_ms") = 50.0, R"(detect_scene(scene, time_limit_ms=50.0)
 
-The same for a `Scene`, whose id the lane bears.
+The same for a `Scene`. The lane has the scene's id.
 )")
         .def("reset", &DetectorObject::reset, R"(reset()
 
-Forgets what was carried from earlier calls: for a new lap or another place.
+Forgets earlier calls: for a new lap or another place.
 )")
         .def_property_readonly("name", &DetectorObject::name, "str: as `methods` has it")
         .def_property_readonly("meaning", &DetectorObject::description, "str: one line")
@@ -248,7 +248,7 @@ Forgets what was carried from earlier calls: for a new lap or another place.
         },
         R"(methods()
 
-The detectors of the library: name and meaning, the one to drive by first.
+The detectors of the library, by name, with their descriptions. The first one is for driving.
 
 Returns
 -------

@@ -35,7 +35,7 @@ Indices boundary_indices(const LaneObject& lane, bool left) {
     return array(indices_of(left ? ids.left : ids.right, lane.scene->cones, left ? "left" : "right"));
 }
 
-/// The answer as one of cones: those of a lane that is made of positions are made for it.
+/// The answer with cones: for a lane of positions, cones are made.
 std::pair<LaneAnswer, Scene> as_cones(const LaneObject& lane) {
     LaneAnswer answer = lane.record.answer;
     Scene scene{lane.scene->id, lane.scene->pose, {}};
@@ -97,14 +97,14 @@ std::optional<double> objective(const LaneObject& lane) {
 void add_answer(py::class_<LaneObject>& lane) {
     lane.def_property_readonly(
             "status", [](const LaneObject& l) { return to_string(l.record.answer.status); },
-            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit came before
-one that can be driven was found; "error": see `message`.)")
+            R"(str: "found"; "none": there is no lane, by proof or complete search; "stopped": a limit ended the search before
+a lane that can be driven was found; "error": see `message`.)")
         .def_property_readonly(
             "found", [](const LaneObject& l) { return l.record.answer.status == LaneStatus::found; },
             "bool: whether the status is \"found\"")
         .def_property_readonly(
             "message", [](const LaneObject& l) { return l.record.answer.message; },
-            "str: of an error; of a lane that is stopped since it cannot be driven")
+            "str: of an error, or of a lane that is stopped because it cannot be driven")
         .def_property_readonly(
             "stopped_by",
             [](const LaneObject& l) -> std::optional<std::string_view> {
@@ -118,8 +118,8 @@ one that can be driven was found; "error": see `message`.)")
         .def_property_readonly(
             "trusted_m", [](const LaneObject& l) { return l.record.answer.trusted_m; },
             R"(float or None: distance up to which the lane can be trusted [m]. A lane found by `Detector` always has one:
-with a `confidence` it follows from probabilities, without one it is a rule of 10 m at most. None where no
-lane was found, and where a file says nothing: trust none of that lane then.)")
+with a `confidence` it follows from probabilities, without one from a rule, 10 m at most. None if no lane was
+found, or if a file does not have it: do not trust that lane.)")
         .def_property_readonly(
             "merged",
             [](const LaneObject& l) {
@@ -127,8 +127,8 @@ lane was found, and where a file says nothing: trust none of that lane then.)")
                 for (const auto& [cone, into] : l.record.answer.merged) merged[py::int_(cone)] = into;
                 return merged;
             },
-            R"(dict of int to int: ids of the cones that the detector did not look at, since each stands within 0.12 m of
-another one (front, front-warm: 0.35 m), and the id that stands for both; empty for a lane from a file)")
+            R"(dict of int to int: ids of the cones that the detector left out, because each is within 0.12 m of another
+cone (front, front-warm: 0.35 m), and the id that represents both; empty for a lane from a file)")
         .def_property_readonly("objective", objective, "float or None: of a detector that states one")
         .def_property_readonly(
             "bound",
@@ -141,17 +141,17 @@ another one (front, front-warm: 0.35 m), and the id that stands for both; empty 
             "latency_ms", [](const LaneObject& l) { return l.record.latency_ms; },
             "float: wall clock of the search [ms]")
         .def_property_readonly(
-            "method", [](const LaneObject& l) { return l.record.detector; }, "str: who answered")
+            "method", [](const LaneObject& l) { return l.record.detector; }, "str: name of the detector")
         .def_property_readonly(
             "scene_id", [](const LaneObject& l) { return l.record.scene; },
-            "str: of the scene that it answers; empty for arrays");
+            "str: id of the scene that it answers; empty for arrays");
 }
 
 void add_geometry(py::class_<LaneObject>& lane) {
     lane.def_property_readonly(
             "left", [](const LaneObject& l) { return boundary_indices(l, true); },
             R"((L,) ndarray of int64: the cones of the left boundary from the car outward, as indices into `cones`; empty
-where no lane or the right boundary alone was found.)")
+if no lane, or only the right boundary, was found.)")
         .def_property_readonly(
             "right", [](const LaneObject& l) { return boundary_indices(l, false); },
             "(R,) ndarray of int64: the same for the right boundary")
@@ -169,7 +169,7 @@ where no lane or the right boundary alone was found.)")
             "(N, 2) ndarray of float64: all cones that the detector was given [m]")
         .def_property_readonly(
             "ids", [](const LaneObject& l) { return python::ids(l.scene->cones); },
-            "(N,) ndarray of int64: what those cones are called")
+            "(N,) ndarray of int64: ids of those cones")
         .def_property_readonly(
             "colors", [](const LaneObject& l) { return python::colors(l.scene->cones); },
             "(N,) ndarray of uint8: codes, see `Color`")
@@ -178,9 +178,15 @@ where no lane or the right boundary alone was found.)")
             "(3,) ndarray of float64: x, y [m] and yaw [rad] of the car")
         .def(
             "centre_line",
-            [](const LaneObject& l, double step_m, double smoothing_m, double default_width_m) {
-                return centre_line(
-                    l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = default_width_m});
+            [](const LaneObject& l, double step_m, double smoothing_m, double usual_width_m) {
+                try {
+                    return centre_line(
+                        l, {.step_m = step_m, .smoothing_m = smoothing_m, .default_width_m = usual_width_m});
+                } catch (const InvalidInput& error) {
+                    if (error.key() != "default_width_m") throw;
+                    throw InvalidInput("usual_width_m",
+                                       std::string(error.what()).substr(error.key().size() + 2));
+                }
             },
             py::arg("step_m") = DrivableOptions{}.step_m, py::kw_only(),
             py::arg("smoothing_m") = DrivableOptions{}.smoothing_m,
@@ -196,13 +202,13 @@ step_m : float
 smoothing_m : float
     Length scale of the smoothing [m], in [0.25, 5].
 usual_width_m : float
-    Width of a lane of which one boundary alone was found [m], in [1, 6.5].
+    Width of a lane of which only one boundary was found [m], in [1, 6.5].
 
 Returns
 -------
 (M, 7) ndarray of float64
     Columns: s, the arc length from the car's foot point [m]; x, y [m]; heading [rad], in (-pi, pi]; curvature
-    [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 where there is
+    [1/m], positive in a left bend; distance to the left and to the right boundary [m]. M is 0 if there is
     no lane.
 
 Examples
@@ -246,7 +252,7 @@ matplotlib.axes.Axes
 }  // namespace
 
 void add_lanes(py::module_& module) {
-    py::class_<LaneObject> lane(module, "Lane", R"(What a detector answered. Every attribute is a copy.)");
+    py::class_<LaneObject> lane(module, "Lane", R"(The answer of a detector. Every attribute is a copy.)");
     add_geometry(lane);
     add_answer(lane);
 
@@ -258,7 +264,7 @@ Parameters
 ----------
 file : str or os.PathLike
 scenes : sequence of Scene
-    What the lanes answer, found by id.
+    The scenes of the lanes, found by id.
 
 Returns
 -------
@@ -271,7 +277,7 @@ ValueError
 )");
     module.def("write_lanes", write_lanes, py::arg("file"), py::arg("lanes"), R"(write_lanes(file, lanes)
 
-Writes a `*.lanes.jsonl` file; an old one stays as it was where that fails.
+Writes a `*.lanes.jsonl` file. If that fails, an old file stays unchanged.
 
 Parameters
 ----------

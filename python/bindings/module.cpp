@@ -11,7 +11,7 @@ namespace py = pybind11;
 
 namespace {
 
-/// As ValueError. A message may quote a file that is no UTF-8, of which Python would keep no word.
+/// As ValueError. A message may quote a file that is not UTF-8; Python could not decode it.
 void set_value_error(const char* message) {
     const py::object text = py::reinterpret_steal<py::object>(
         PyUnicode_DecodeUTF8(message, std::strlen(message), "backslashreplace"));

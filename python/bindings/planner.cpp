@@ -43,7 +43,7 @@ class PlannerObject {
     [[nodiscard]] PlanObject update(const Frame& frame, std::optional<double> time_limit_ms) {
         const double limit_ms = time_limit_ms.value_or(std::numeric_limits<double>::infinity());
         PlanObject result;
-        const py::gil_scoped_release unlocked;  // before the mutex: who holds that may need the other to end
+        const py::gil_scoped_release unlocked;  // before the mutex: its owner may need this lock to finish
         const std::scoped_lock lock(mutex_);
         const auto start = std::chrono::steady_clock::now();
         result.plan = planner_->update(frame, {.time_limit_ms = limit_ms});
@@ -84,7 +84,7 @@ double time_of(py::handle object) {
 }
 
 void add_answer(py::module_& module) {
-    py::class_<LaneAnswer>(module, "Answer", R"(What the detector of a planner answered in a frame.)")
+    py::class_<LaneAnswer>(module, "Answer", R"(The detector's answer to a frame.)")
         .def_property_readonly(
             "status", [](const LaneAnswer& a) { return to_string(a.status); }, "str: as of `Lane.status`")
         .def_property_readonly(
@@ -107,8 +107,8 @@ void add_answer(py::module_& module) {
             "float or None: distance up to which the lane can be trusted [m]")
         .def_property_readonly(
             "left_ids", [](const LaneAnswer& a) { return array(a.lane.left); },
-            R"((L,) ndarray of int64: cones of the left boundary from the car outward, by the ids of the frames; a cone
-that the car gave no id has a negative one of the planner's)")
+            R"((L,) ndarray of int64: cones of the left boundary from the car outward, by the ids of the frames; a
+cone without an id has a negative id of the planner's own)")
         .def_property_readonly(
             "right_ids", [](const LaneAnswer& a) { return array(a.lane.right); },
             "(R,) ndarray of int64: the same for the right boundary")
@@ -119,28 +119,28 @@ that the car gave no id has a negative one of the planner's)")
 }
 
 void add_plan(py::module_& module) {
-    py::class_<PlanObject>(module, "Plan", R"(What to drive. Every attribute is a copy.)")
+    py::class_<PlanObject>(module, "Plan", R"(The path to drive. Every attribute is a copy.)")
         .def_property_readonly(
             "state", [](const PlanObject& p) { return to_string(p.plan.state); },
             R"(str: "searching": no lane has been found yet; "following": the lane is of this frame; "bridging": no lane in
-this frame, what is left of an earlier one; "lost": nothing of an earlier lane is left, there is no path: brake;
-"finished": the last line is crossed, the lane is what is left to come to rest on.)")
+this frame, so the rest of an earlier one; "lost": no earlier lane is left, so there is no path: brake;
+"finished": the last line is crossed, and the lane is the stretch on which to come to rest.)")
         .def_property_readonly(
             "centre_line", [](const PlanObject& p) { return array(p.plan.lane); },
-            R"((N, 7) ndarray of float64: from the car on, columns as of `Lane.centre_line`. N is 0 where state is
-"searching" or "lost", and where the car is at rest at the end.)")
+            R"((N, 7) ndarray of float64: from the car on, columns as of `Lane.centre_line`. N is 0 if the state is
+"searching" or "lost", and when the car is at rest at the end.)")
         .def_property_readonly(
             "safe_m", [](const PlanObject& p) { return p.plan.safe_m; },
-            "float: how far along `centre_line` it is trusted, or what is left of that [m]")
+            "float: trusted length along `centre_line`, or the rest of it [m]")
         .def_property_readonly(
             "age_s", [](const PlanObject& p) { return p.plan.age_s; },
-            "float: age of the frame that the lane stems from [s]; 0 where following")
+            "float: age of the frame that the lane is from [s]; 0 if following")
         .def_property_readonly(
             "lap", [](const PlanObject& p) { return p.plan.lap; },
-            "int: start lines crossed since the start; of skidpad: circles that are complete")
+            "int: number of start lines crossed since the start; in skidpad, of completed circles")
         .def_property_readonly(
             "stop", [](const PlanObject& p) { return p.plan.stop; },
-            "bool: come to rest inside what is left of `centre_line`")
+            "bool: come to rest within the rest of `centre_line`")
         .def_property_readonly(
             "phase", [](const PlanObject& p) { return p.plan.phase; },
             R"(str: of skidpad "approach", "right 1", "right 2", "left 1", "left 2" or "exit"; else empty)")
@@ -175,9 +175,9 @@ detector : str
 laps : int, optional
     Of trackdrive, by default 10, and of autocross, by default 1. The other missions have none.
 max_age_s : float
-    A lane older than this is no path [s].
+    Largest age of a lane that is still driven [s].
 nearest, parameters, pairing, weights : optional
-    Of the detector, see `Detector`.
+    Options of the detector, see `Detector`.
 
 Raises
 ------
@@ -231,15 +231,15 @@ Parameters
 cones : (N, 2) array_like of float
     Positions x, y [m] of what the car sees now, or of its map, in the frame of `pose`. N may be 0.
 pose : (3,) array_like of float
-    The car in a map that stays: x, y [m] and yaw [rad].
+    The car in a fixed map: x, y [m] and yaw [rad].
 time_s : float
-    Of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
-    nothing: it has the last plan again, and where it is older, as "bridging".
+    Time of the frame, by any clock that never goes back [s]. A frame that is not later than the last one changes
+    nothing: its plan is the last plan, with the state "bridging" if the frame is older.
 ids : (N,) array_like of int, optional
-    What the map calls the cones, each once; `NO_ID` for a cone that it does not know. Without ids a cone is known
-    again by its place.
+    Distinct ids of the cones in the map; `NO_ID` for a cone without one. Without an id, a cone is recognised by
+    its place.
 colors : (N,) array_like of str or int, or (N, 5) array_like of float, optional
-    As of `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are the start line.
+    As in `Detector.detect`; of probabilities the planner keeps the most probable label. Orange cones on both sides of the lane are the start line.
 time_limit_ms : float or None
     Of the detector, wall clock [ms]; None for no limit.
 confidences : (N,) array_like of float, optional
@@ -252,8 +252,8 @@ Plan
 Raises
 ------
 ValueError
-    For wrong shapes and dtypes, numbers that are not finite, and an id that is there twice; the planner is then as
-    it was before.
+    For wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice; the planner then stays
+    unchanged.
 )")
         .def(
             "course",
@@ -269,8 +269,8 @@ The whole course, once a lap is known.
 Returns
 -------
 (N, 7) ndarray of float64 or None
-    Columns as of `Lane.centre_line`; the last row stands a step before the first one. None before, and in
-    acceleration and skidpad.
+    Columns as of `Lane.centre_line`; the last row is one step before the first one. None before that, and
+    in acceleration and skidpad.
 )")
         .def("reset", &PlannerObject::reset, R"(reset()
 

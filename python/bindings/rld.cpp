@@ -19,7 +19,7 @@
 namespace conelane::python {
 namespace {
 
-/// A solved scene and its lane, empty where there is none.
+/// A solved scene and its lane, which is empty if there is none.
 struct SolutionObject {
     RldReport report;
     double total_ms = 0.0;
@@ -94,8 +94,8 @@ void add_solution(py::module_& module) {
     py::class_<SolutionObject>(module, "RldSolution", "What `solve_rld` found. Every attribute is a copy.")
         .def_property_readonly(
             "status", [](const SolutionObject& s) { return to_string(s.report.status); },
-            R"(str: "optimal", "feasible" (a limit came before the proof), "infeasible" (by proof), "stopped" (a limit
-came before any lane graph) or "error")")
+            R"(str: "optimal", "feasible" (a limit ended the proof), "infeasible" (by proof), "stopped" (a limit
+ended the search before any lane graph) or "error")")
         .def_property_readonly(
             "stopped_by",
             [](const SolutionObject& s) -> std::optional<std::string_view> {
@@ -149,7 +149,7 @@ Parameters
 cones, pose, ids, colors, confidences
     As `Detector.detect` takes them.
 parameters : str or dict, optional
-    Name of a parameter set, or what differs from the defaults; see `rld_parameters`.
+    Name of a parameter set, or a dict of the values that differ from the defaults; see `rld_parameters`.
 pairing : str, optional
     "near_far" or "paper", instead of the parameters'.
 solver : str

@@ -81,20 +81,20 @@ void add_scene(py::module_& module) {
         module, "Scene",
         R"(Scene(cones, pose, ids=None, colors=None, confidences=None, *, id='', ground_truth=None, closed=False, track='')
 
-What one call of a detector gets, and what its answer is held against. Every attribute is a copy.
+The input of one call of a detector, and the truth for scoring. Every attribute is a copy.
 
 Parameters
 ----------
 cones, pose, ids, colors, confidences
     As `Detector.detect` takes them.
 id : str
-    What the scene is called.
+    Id of the scene.
 ground_truth : tuple of two (K,) array_like of int, optional
     The true left and right boundary from the car outward, as indices into `cones`.
 closed : bool
     Whether that is a whole circuit.
 track : str
-    Name of the course that it is of.
+    Name of its course.
 
 Examples
 --------
@@ -125,7 +125,8 @@ Examples
         .def_property_readonly(
             "color_probabilities",
             [](const AnnotatedScene& s) { return python::color_probabilities(s.scene.cones); },
-            "(N, 5) ndarray of float64: of unknown, blue, yellow, orange, big orange; of a label 1 and 0")
+            "(N, 5) ndarray of float64: probabilities of unknown, blue, yellow, orange, big orange; 1 and 0 "
+            "for a label")
         .def_property_readonly(
             "confidences", [](const AnnotatedScene& s) { return python::confidences(s.scene.cones); },
             "(N,) ndarray of float64")
@@ -153,7 +154,7 @@ Examples
         "read_scenes", [](const std::filesystem::path& file) { return shared(read_scenes(file)); },
         py::arg("file"), R"(read_scenes(file)
 
-Scenes of a `*.scenes.jsonl` file. One without an id gets its line number.
+Scenes of a `*.scenes.jsonl` file. A scene without an id gets its line number.
 
 Parameters
 ----------
@@ -170,7 +171,7 @@ ValueError
 )");
     module.def("write_scenes", write_scenes, py::arg("file"), py::arg("scenes"), R"(write_scenes(file, scenes)
 
-Writes a `*.scenes.jsonl` file; an old one stays as it was where that fails.
+Writes a `*.scenes.jsonl` file. If that fails, an old file stays unchanged.
 
 Parameters
 ----------
@@ -213,7 +214,7 @@ closed : bool
             "closed", [](const TrackBoundaries& b) { return b.closed; }, "bool")
         .def_property_readonly(
             "driven", [](const TrackBoundaries& b) { return array(b.driven); },
-            "(K, 2) ndarray of float64: the path that was driven [m], where a run has no boundaries");
+            "(K, 2) ndarray of float64: the driven path [m] of a run without boundaries");
 
     module.def("read_boundaries", read_track_boundaries, py::arg("file"),
                R"(read_boundaries(file)
@@ -237,7 +238,7 @@ ValueError
     module.def("write_boundaries", write_track_boundaries, py::arg("file"), py::arg("boundaries"),
                R"(write_boundaries(file, boundaries)
 
-Writes a `*.tracks.json` file; an old one stays as it was where that fails.
+Writes a `*.tracks.json` file. If that fails, an old file stays unchanged.
 
 Parameters
 ----------
@@ -278,7 +279,7 @@ void add_track(py::module_& module) {
             "closed", [](const Track& t) { return t.closed; }, "bool: a circuit")
         .def_property_readonly(
             "warnings", [](const Track& t) { return t.warnings; },
-            "list of str: what a user should know of the recording")
+            "list of str: facts about the recording that a user should know")
         .def_property_readonly(
             "boundaries",
             [](const Track& t) {
@@ -294,13 +295,13 @@ void add_track(py::module_& module) {
     module.def("load_tracks", load_tracks, py::arg("spec"), py::call_guard<py::gil_scoped_release>(),
                R"(load_tracks(spec)
 
-Tracks from files of several formats, or drawn ones.
+Tracks from files of several formats, or generated ones.
 
 Parameters
 ----------
 spec : str
     "generated:NAME" (straight, circle, ...), "fsd:DIR" or "fsd:DIR:1,2", "pacsim:FILE", "eufs:FILE",
-    "ftlog:FILE", a run of ft-fsd; a folder in place of the file for all of it.
+    "ftlog:FILE", a run of ft-fsd. A folder instead of the file stands for all its files.
 
 Returns
 -------
@@ -329,7 +330,7 @@ Parameters
 ----------
 track : Track
 false_positive_rate : float
-    Share of false cones among all of a scene, in [0, 0.99].
+    Share of false cones among all points of a scene, in [0, 0.99].
 range_m : float
     Radius of the half disc ahead that is visible [m].
 every_m : float

@@ -66,7 +66,7 @@ std::optional<double> heading_error_rad(const SceneScore& score) {
 void add_scoring(py::module_& module) {
     py::class_<SceneScore>(module, "Score", "What one lane is worth, by the measures of both papers.")
         .def_property_readonly("usable", &SceneScore::usable,
-                               "bool or None: can be driven by; None where no boundaries were given")
+                               "bool or None: whether a car can drive by the lane; None without boundaries")
         .def_property_readonly(
             "category", [](const SceneScore& s) { return to_string(s.category); },
             R"(str: "none", "ground_truth", "diverging_below_20", "diverging_from_20", "too_short" or "near_ground_truth")")
@@ -74,7 +74,7 @@ void add_scoring(py::module_& module) {
                                "bool: any category but none and diverging_below_20")
         .def_property_readonly(
             "accurate", accurate,
-            "bool or None: passes the four checks of the RLD paper; None where they do not apply")
+            "bool or None: passes the four checks of the RLD paper; None if they do not apply")
         .def_property_readonly(
             "error", [](const SceneScore& s) { return s.error; }, "bool: the method failed")
         .def_property_readonly(
@@ -86,24 +86,25 @@ void add_scoring(py::module_& module) {
             "ground_truth_length_m", [](const SceneScore& s) { return s.ground_truth_length_m; }, "float [m]")
         .def_property_readonly(
             "divergence_distance_m", [](const SceneScore& s) { return s.divergence_distance_m; },
-            "float or None: where the lane leaves the course [m]; None where it does not")
+            "float or None: distance at which the lane leaves the course [m]; None if it does not")
+        .def_property_readonly("lateral_error_m", lateral_error_m,
+                               "(K,) ndarray of float32 or None: lateral error of the centre line every 0.5 "
+                               "m [m]; for usable lanes")
         .def_property_readonly(
-            "lateral_error_m", lateral_error_m,
-            "(K,) ndarray of float32 or None: of the centre line, every 0.5 m [m]; of usable lanes")
-        .def_property_readonly("heading_error_rad", heading_error_rad,
-                               "float or None: of the centre line 10 m ahead [rad]; of usable lanes")
+            "heading_error_rad", heading_error_rad,
+            "float or None: heading error of the centre line 10 m ahead [rad]; for usable lanes")
         .def("__repr__",
              [](const SceneScore& s) { return fmt::format("<conelane.Score {}>", to_string(s.category)); });
 
     module.def("score", score, py::arg("scene"), py::arg("lane"), py::arg("boundaries") = py::none(),
                R"(score(scene, lane, boundaries=None)
 
-Holds a lane against the true one. The measures are defined in docs/measures.md.
+Compares a lane with the true one. The measures are defined in docs/measures.md.
 
 Parameters
 ----------
 scene : Scene
-    With a ground truth, or of a run whose boundaries hold the path that was driven.
+    With a ground truth, or of a run whose boundaries have the driven path.
 lane : Lane
     Of this scene: cones are compared by their ids.
 boundaries : Boundaries, optional
@@ -116,8 +117,8 @@ Score
 Raises
 ------
 ValueError
-    Where the scene has no ground truth with two cones on each side, and where the lane names a cone that the
-    scene has not.
+    If the scene has no ground truth with two cones on each side, or if the lane names a cone that the
+    scene does not have.
 
 Examples
 --------

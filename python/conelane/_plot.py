@@ -1,4 +1,4 @@
-"""How a lane is drawn."""
+"""Drawing of a lane."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Optional

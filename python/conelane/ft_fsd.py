@@ -1,10 +1,10 @@
-"""The planner of ft-fsd-path-planning (FaSTTUBe), answered by conelane.
+"""A replacement for the planner of ft-fsd-path-planning (FaSTTUBe), based on conelane.
 
 A program that says
 
     from fsd_path_planning import ConeTypes, MissionTypes, PathPlanner
 
-says `from conelane.ft_fsd import ...` instead and stays as it is otherwise. What differs is written at `PathPlanner`.
+needs only `from conelane.ft_fsd import ...` instead. The differences are listed at `PathPlanner`.
 """
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _MISSION_OF = {
     MissionTypes.skidpad: "skidpad",
     MissionTypes.autocross: "autocross",
 }  # all others drive laps
-_WITHOUT_END = 1_000_000_000  # laps of what is no dynamic event
+_WITHOUT_END = 1_000_000_000  # laps of a mission that is not a dynamic event
 _SAME_CONE_M = 0.8  # a cone of two calls, as slow maps move
 _GUESSED_M = 5.0  # of a lane that is a guess
 _SHORT_OF_A_WALL = 2  # points of the centre line, 0.5 m each
@@ -91,7 +91,7 @@ class _ConeMemory:
 
 
 class PathPlanner:
-    """Path from cones, call by call, with the interface of ft-fsd-path-planning: a thin face of `conelane.Planner`.
+    """Path from cones, call by call, with the interface of ft-fsd-path-planning: a thin wrapper around `conelane.Planner`.
 
     Parameters
     ----------
@@ -100,19 +100,19 @@ class PathPlanner:
     experimental_performance_improvements : bool
         Without effect.
     detector : str
-        Out of `conelane.methods()`.
+        One of `conelane.methods()`.
     laps : int, optional
         Of trackdrive, by default 10, and of autocross, by default 1.
     path_length_m : float
-        The path ends there [m], or where the lane does.
+        Length of the path [m]; shorter if the lane ends before.
     points : int
         M, rows of the path.
     time_limit_ms : float
         Of each call [ms].
     max_path_age : int
-        Calls in a row without a lane of their own in which the last path is still returned; 0 for none.
+        Number of successive calls without a lane for which the last path is still returned; 0 for none.
     interval_s : float
-        From call to call, where they are not told their time [s].
+        Time between calls that give no `time_s` [s].
 
     Attributes
     ----------

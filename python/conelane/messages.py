@@ -1,7 +1,7 @@
 """From and to the messages of simulators, by their fields alone: no message package is needed.
 
 A message may be an object with attributes, as a ROS client library gives it, or nested dicts and lists, as a log or
-JSON does. What is made is dicts. The codes of colours are in docs/messages.md.
+JSON does. The functions return dicts. The codes of colours are in docs/messages.md.
 
 >>> from conelane import Detector
 >>> from conelane.messages import from_fs_track, to_fs_track
@@ -279,7 +279,7 @@ def from_pacsim(message: Any) -> Cones:
     Returns
     -------
     Cones
-        With confidences; with ids where each landmark has one.
+        With confidences; with ids if each landmark has one.
 
     Raises
     ------

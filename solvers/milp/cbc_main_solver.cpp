@@ -35,8 +35,8 @@ class CbcMainSession : public MilpSession {
         });
     }
 
-    /// The cutoff is not passed on: where nothing is below it, CBC 2.10.8's preprocessing was seen to return
-    /// a point that violates rows, and without preprocessing the printed rows take twice as long.
+    /// The cutoff is not passed on. If no point is below it, the preprocessing of CBC 2.10.8 may return a
+    /// point that violates rows; without preprocessing the `paper` formulation takes twice as long.
     MilpReport solve(const MilpLimits& limits) override {
         watch_ = {Deadline(limits.time_limit_ms)};
         MilpReport report;
@@ -48,7 +48,7 @@ class CbcMainSession : public MilpSession {
         }
         detail::with_std_errors([&] {
             run(limits, true, report);
-            // On programs without a solution CBC 2.10.8's preprocessing was seen to invent one.
+            // On infeasible programs, the preprocessing of CBC 2.10.8 may return an invalid solution.
             if (verdict_on(report) != detail::PointVerdict::search_anew) return;
             run(limits, false, report);
             if (verdict_on(report) == detail::PointVerdict::search_anew)
@@ -62,8 +62,8 @@ class CbcMainSession : public MilpSession {
     }
 
   private:
-    /// CBC is given no limit of its own: preprocessing that runs out of time calls the program infeasible,
-    /// and says of no part whether it was cut short.
+    /// CBC gets no limit of its own. If its preprocessing runs out of time, it calls the program infeasible
+    /// and does not report that it was interrupted.
     void run(const MilpLimits& limits, bool preprocess, MilpReport& report) {
         CbcModel model(lp_);
         CbcSolverUsefulData data;
@@ -75,7 +75,7 @@ class CbcMainSession : public MilpSession {
         const detail::CbcDeadline handler(&watch_);
         model.passInEventHandler(&handler);
         const std::string gap = fixed(limits.absolute_gap);
-        // The feasibility pump's changes of the objective run into an assertion of Clp 1.17.6, which ends the
+        // The feasibility pump changes the objective, which fails an assertion of Clp 1.17.6 and ends the
         // process.
         std::vector<const char*> arguments{"conelane",  "-log",       "0",    "-slog",
                                            "0",         "-increment", "1e-7", "-allowableGap",
@@ -87,7 +87,7 @@ class CbcMainSession : public MilpSession {
         read(model, report);
     }
 
-    /// Of a report without a point there is nothing to drop.
+    /// A report without a point has no point to drop.
     [[nodiscard]] detail::PointVerdict verdict_on(MilpReport& report) const {
         if (report.point.empty()) return detail::PointVerdict::kept;
         const auto rows = static_cast<std::size_t>(lp_.getNumRows());

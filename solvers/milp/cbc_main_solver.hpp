@@ -9,9 +9,8 @@ namespace conelane {
 /// CBC's full default machinery (CbcMain1: preprocessing, cuts, heuristics, strong branching), faster than
 /// `cbc` on the paper formulation. The feasibility pump is off: it aborts the process on some programs. One
 /// solve at a time in a process, since concurrent solves fail in CBC 2.10.8; the time limit includes waiting
-/// for another solve. The clock is checked in every relaxation and at every node, but not in preprocessing
-/// and cut generation, which may overrun the limit.
-/// within preprocessing and the making of cuts: a limit may be overrun by one of them.
+/// for another solve. The clock is checked in every relaxation and at every node, but not
+/// within preprocessing and cut generation: one of these steps may overrun the limit.
 [[nodiscard]] std::unique_ptr<MilpSolver> make_cbc_main_solver();
 
 }  // namespace conelane

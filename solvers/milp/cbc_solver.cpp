@@ -78,7 +78,7 @@ class CbcSession : public MilpSession {
         model.setNumberBeforeTrust(0);
         model.setAllowableGap(limits.absolute_gap);
         model.setAllowableFractionGap(0.0);
-        // The default increment would cut off solutions that are better by less than 1e-5.
+        // The default increment would discard solutions that are better by less than 1e-5.
         model.setDblParam(CbcModel::CbcCutoffIncrement, 1e-7);
         model.passInPriorities(priorities_.data(), false);
         if (std::isfinite(limits.cutoff)) model.setCutoff(limits.cutoff);
@@ -89,8 +89,8 @@ class CbcSession : public MilpSession {
         report.nodes = model.getNodeCount();
         const bool has_point = model.bestSolution() != nullptr;
         if (has_point) report.point.assign(model.bestSolution(), model.bestSolution() + lp_.getNumCols());
-        // CBC takes a relaxation that was cut short for an infeasible one: its claims and its bound are worth
-        // nothing then.
+        // CBC treats an interrupted relaxation as infeasible. Its status and its bound are then
+        // unreliable.
         report.bound =
             std::max(*report.bound, watch_.struck ? watch_.bound : model.getBestPossibleObjValue());
         if (watch_.struck) {
@@ -110,7 +110,7 @@ class CbcSession : public MilpSession {
     detail::DeadlineWatch watch_;
     OsiClpSolverInterface lp_;
     std::vector<int> integers_;
-    std::vector<int> priorities_;  ///< of the integer columns, smaller ones are branched on first
+    std::vector<int> priorities_;  ///< of the integer columns; smaller values are branched on first
     bool solved_once_ = false;
 };
 

@@ -15,12 +15,12 @@
 namespace conelane {
 namespace {
 
-/// A decision on the way from the root to the current node.
+/// A branching decision on the path from the root to the current node.
 struct Branching {
     int column;
     double lower;  ///< bounds before the decision
     double upper;
-    double value;  ///< what the column is fixed to
+    double value;  ///< the value at which the column is fixed
     bool other_side_open;
     double bound;  ///< objective of the relaxation that was branched on
 };
@@ -53,7 +53,7 @@ class ClpBranchAndBound : public MilpSession {
     void search(const MilpLimits& limits, MilpReport& report) {
         double best = limits.cutoff;
         lp_.setDualObjectiveLimit(COIN_DBL_MAX);
-        bool node_is_open = true;  // the relaxation of the current node is to be solved
+        bool node_is_open = true;  // whether the relaxation of the current node has yet to be solved
         while (true) {
             if (node_is_open) {
                 if (!solve_relaxation()) {
@@ -77,8 +77,8 @@ class ClpBranchAndBound : public MilpSession {
                     continue;
                 }
             }
-            // The node is done: the other side of the last decision that has one, unless its bound rules it
-            // out.
+            // The node is done. Go to the other side of the last decision that has one, unless the bound
+            // rules that side out.
             if (path_.empty()) {
                 finish(best, report);
                 return;
@@ -106,7 +106,7 @@ class ClpBranchAndBound : public MilpSession {
         }
     }
 
-    /// False where Clp came to no conclusion.
+    /// False if Clp reached no conclusion.
     bool solve_relaxation() {
         if (watch_.strikes()) return false;
         lp_.dual();
@@ -117,7 +117,7 @@ class ClpBranchAndBound : public MilpSession {
         return !watch_.struck && (lp_.isProvenOptimal() || lp_.isProvenPrimalInfeasible());
     }
 
-    /// -1 where all are integral.
+    /// The column to branch on; -1 if all are integral.
     [[nodiscard]] int most_fractional() const {
         const int column = most_fractional(first_);
         return column >= 0 ? column : most_fractional(others_);
@@ -142,8 +142,8 @@ class ClpBranchAndBound : public MilpSession {
         if (!report.point.empty()) report.bound = best;
     }
 
-    /// Every open side is below a decision on the path, whose bound holds for it; the current node is below
-    /// the last decision.
+    /// Every open side belongs to a decision on the path, whose bound holds for it. The current node belongs
+    /// to the last decision.
     void stop(MilpReport& report) const {
         if (!watch_.struck) {
             report.status = SolveStatus::error;
@@ -164,7 +164,7 @@ class ClpBranchAndBound : public MilpSession {
     detail::DeadlineWatch watch_;
     OsiClpSolverInterface interface_;
     ClpSimplex& lp_;
-    std::vector<int> first_;  ///< integer columns to branch on first
+    std::vector<int> first_;  ///< integer columns, by branching priority
     std::vector<int> others_;
     std::vector<Branching> path_;
 };

@@ -15,13 +15,13 @@
 namespace conelane {
 namespace {
 
-/// What the callback of branch and bound watches and leaves behind.
+/// Input and result of the callback of branch and bound.
 struct Watch {
     const Deadline& deadline;
     double absolute_gap;
     double cutoff;
     double bound = -std::numeric_limits<double>::infinity();
-    bool struck = false;  ///< the deadline has ended the search
+    bool struck = false;  ///< the deadline ended the search
 };
 
 void look(glp_tree* tree, void* data) {
@@ -39,15 +39,15 @@ void look(glp_tree* tree, void* data) {
     }
 }
 
-/// GLPK goes by tolerances of a relaxation's values and reduced costs. Beside a cost of 1e13 a rounding error
-/// of 1e-13 weighs as much as a lane, and the optimum gets lost. So columns that cost more than this wait at
-/// 0, where no better point can have them, see solve().
+/// GLPK has absolute tolerances of values and reduced costs. Next to a cost of 1e13, a rounding error of
+/// 1e-13 weighs as much as a lane, and the optimum is lost. So columns above this cost wait, fixed at 0,
+/// until no better point can use them: see solve().
 constexpr double kMaxCostAtFirst = 1e3;
 constexpr double kCostStep = 1e3;
-/// As of Clp: beyond it no answer is of use.
+/// The limit of Clp. A point of such a cost is of no use.
 constexpr double kMaxCostTaken = 1e25;
 
-/// GLPK keeps an environment in each thread that has used it, and frees none.
+/// GLPK keeps an environment for each thread that has used it, and never frees it.
 struct ThreadEnvironment {
     ThreadEnvironment() = default;
     ~ThreadEnvironment() { glp_free_env(); }
@@ -60,7 +60,7 @@ class GlpkSession : public MilpSession {
   public:
     explicit GlpkSession(const BinaryProgram& program) : problem_(glp_create_prob()) {
         static const thread_local ThreadEnvironment environment;
-        environment.use();  // so that it is made
+        environment.use();  // creates the environment
         glp_term_out(GLP_OFF);
         glp_set_obj_dir(problem_, GLP_MIN);
         if (!program.columns.empty()) glp_add_cols(problem_, static_cast<int>(program.columns.size()));
@@ -97,9 +97,9 @@ class GlpkSession : public MilpSession {
     GlpkSession(const GlpkSession&) = delete;
     GlpkSession& operator=(const GlpkSession&) = delete;
 
-    /// A point with a column that waits costs at least `min_of_waiting`: one that is cheaper is the best of
-    /// all. Where there is none, those join that may be part of a better one; with no point at all the
-    /// cheapest thousandfold, so that the costs in play stay within a thousand of the objective.
+    /// A point that uses a waiting column costs at least `min_of_waiting`, so a cheaper point is optimal.
+    /// Otherwise the columns that may be in a better point join. Without any point, the cheapest columns
+    /// join, up to a factor of 1000, so that costs stay within a factor of 1000 of the objective.
     MilpReport solve(const MilpLimits& limits) override {
         const Deadline deadline(limits.time_limit_ms);
         MilpReport earlier;
@@ -141,7 +141,7 @@ class GlpkSession : public MilpSession {
         double upper;
     };
 
-    /// A solve that was stopped keeps the point from before columns joined where it has no better one.
+    /// A solve that was stopped without a better point keeps the point from before the columns joined.
     static MilpReport with_earlier(MilpReport report, double value, MilpReport& earlier,
                                    double earlier_value) {
         const bool was_stopped =
@@ -153,7 +153,7 @@ class GlpkSession : public MilpSession {
         return report;
     }
 
-    /// Columns up to this cost, the cheapest in any case, wait no longer.
+    /// Columns up to this cost no longer wait. The cheapest column joins in any case.
     void join(double max_cost) {
         const auto stay = std::ranges::upper_bound(waiting_, std::max(max_cost, waiting_.front().cost), {},
                                                    &WaitingColumn::cost);
@@ -190,19 +190,19 @@ class GlpkSession : public MilpSession {
         glp_set_mat_row(problem_, index, static_cast<int>(columns.size()) - 1, columns.data(), values.data());
     }
 
-    /// GLPK counts whole milliseconds and ends one before its limit.
+    /// GLPK counts whole milliseconds and stops one before its limit.
     static int milliseconds(const Deadline& deadline) {
         return static_cast<int>(std::clamp(std::ceil(deadline.remaining_ms()) + 1.0, 1.0, 2e9));
     }
 
-    /// True where the relaxation has an optimum.
+    /// True if the relaxation has an optimum.
     bool solve_relaxation(const Deadline& deadline, MilpReport& report) {
         glp_smcp options;
         glp_init_smcp(&options);
         options.msg_lev = GLP_MSG_OFF;
         options.meth = GLP_DUALP;
         if (std::isfinite(deadline.remaining_ms())) options.tm_lim = milliseconds(deadline);
-        // A basis that was optimal before rows were added holds their slacks; an invalid basis is rebuilt.
+        // The last basis is used again, with the slacks of added rows; an invalid basis is rebuilt.
         int failure = glp_simplex(problem_, &options);
         if (failure == GLP_EBADB || failure == GLP_ESING || failure == GLP_ECOND) {
             glp_std_basis(problem_);
@@ -211,7 +211,7 @@ class GlpkSession : public MilpSession {
         const int status = glp_get_status(problem_);
         if (failure == 0 && status == GLP_OPT) return true;
         if (failure == 0 && status == GLP_NOFEAS) {
-            report.status = SolveStatus::infeasible;  // a simplex that was cut short is a failure
+            report.status = SolveStatus::infeasible;  // an interrupted simplex counts as a failure
         } else if (failure == GLP_ETMLIM || deadline.passed()) {
             report.status = SolveStatus::stopped;
             report.stopped_by = StopReason::time;
@@ -232,7 +232,7 @@ class GlpkSession : public MilpSession {
         options.cb_info = &watch;
         const int failure = glp_intopt(problem_, &options);
         const int status = glp_mip_status(problem_);
-        // GLPK knows no cutoff: a point that is not below it is none.
+        // GLPK has no cutoff: a point that is not below the cutoff is dropped here.
         const bool has_point =
             (status == GLP_FEAS || status == GLP_OPT) && glp_mip_obj_val(problem_) < limits.cutoff;
         if (has_point) {
@@ -259,8 +259,8 @@ class GlpkSession : public MilpSession {
     }
 
     glp_prob* problem_;
-    std::vector<WaitingColumn> waiting_;  ///< fixed at 0 and without a cost, the cheapest first
-    double min_of_rest_ = 0.0;            ///< all negative costs together
+    std::vector<WaitingColumn> waiting_;  ///< fixed at 0 and without a cost, cheapest first
+    double min_of_rest_ = 0.0;            ///< sum of all negative costs
 };
 
 class GlpkSolver : public MilpSolver {

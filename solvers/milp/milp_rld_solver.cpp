@@ -54,7 +54,7 @@ class MilpRldSolver : public RldSolver {
         report.lane_graph = std::move(graph);
     }
 
-    /// A lane graph in the report is the start: what is looked for is a better one.
+    /// A lane graph in the report is the start: the solver looks for a better one.
     void solve_and_separate(const LaneGraphProblem& problem, MilpSession& session, const SolveLimits& limits,
                             const Deadline& deadline, RldReport& report) const {
         const bool has_start = report.lane_graph.has_value();
@@ -74,7 +74,7 @@ class MilpRldSolver : public RldSolver {
             report.status = round.status;
             report.stopped_by = round.stopped_by;
             report.message = round.message;
-            // Rows only ever tighten the program: every round's bound holds for the problem.
+            // Rows only tighten the program, so every round's bound holds for the problem.
             if (round.bound) report.bound = std::max(report.bound.value_or(*round.bound), *round.bound);
             if (round.status == SolveStatus::infeasible) report.bound.reset();
             if (round.point.empty()) {
@@ -91,11 +91,11 @@ class MilpRldSolver : public RldSolver {
                     report.message = "the solver's point violates the program";
                     return;
                 }
-                // A backend that ignores the cutoff may stop at a point that is worse than the start.
+                // A backend that ignores the cutoff may stop at a point that costs more than the start.
                 if (!has_start || objective(problem, graph) < *report.objective) {
                     take(problem, std::move(graph), report);
                 }
-                // A bound comes from the solver's own sums: it may exceed the objective by rounding only.
+                // The bound is a sum of the solver: it may exceed the objective by rounding only.
                 if (report.bound) report.bound = std::min(*report.bound, *report.objective);
                 return;
             }
@@ -103,14 +103,14 @@ class MilpRldSolver : public RldSolver {
         }
     }
 
-    /// After a round that ended without a point: that nothing below the cutoff is left proves the start.
+    /// For a round that ended without a point: if no point is below the cutoff, the start is optimal.
     static void keep_start(double cutoff, RldReport& report) {
         if (report.status == SolveStatus::infeasible) {
             report.status = SolveStatus::optimal;
             report.bound = cutoff;
         } else if (report.status == SolveStatus::stopped) {
             report.status = SolveStatus::feasible;
-            // With a cutoff, what a solver proved is that no point below its bound is left, up to the cutoff.
+            // With a cutoff, the solver has proved its bound only up to the cutoff.
             if (report.bound) report.bound = std::min(*report.bound, cutoff);
         }
     }

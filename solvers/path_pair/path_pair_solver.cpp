@@ -18,7 +18,7 @@ namespace {
 
 using namespace path_pair;  // NOLINT(google-build-using-namespace): this file is its interface
 
-// Labels are exact to less than this, so smaller gaps cannot be told from none.
+// Labels are exact to less than this, so a smaller gap cannot be distinguished from 0.
 constexpr double kMinGap = 1e-10;
 
 class PathPairSolver : public RldSolver {
@@ -88,14 +88,14 @@ class PathPairSolver : public RldSolver {
 
     void search(const LaneGraphProblem& problem, const SolveLimits& limits, const LaneGraph* start,
                 const Deadline& deadline, RldReport& report) {
-        // No two lane graphs differ by more: beyond it a wider gap means the same.
+        // Two lane graphs differ by less than this. A larger gap has the same effect.
         const double most = cost_limit(problem);
         const double tolerance =
             std::max(std::min(limits.absolute_gap, most - graph_.share_bound()), kMinGap);
         search_.reset_nodes();
         const bool start_is_feasible = start != nullptr && is_feasible(problem, *start);
-        // Nearly every lane costs less than 0; the rare scene without one is searched again with a cutoff
-        // that every lane is below by more than the tolerance.
+        // Nearly every lane costs less than 0. Otherwise the scene is searched again, with a cutoff that
+        // exceeds the cost of every lane by more than the tolerance.
         Outcome outcome{};
         for (const double cutoff : {0.0, most + tolerance}) {
             incumbent_.reset(graph_, cutoff);
@@ -117,7 +117,7 @@ class PathPairSolver : public RldSolver {
         }
     }
 
-    /// Legs from near to far cones, however the paths of the start run. Precondition: it is feasible.
+    /// Offers the start as legs from near to far cones. Precondition: it is feasible.
     void offer(const LaneGraphProblem& problem, const LaneGraph& start) {
         std::array<std::vector<int>, 2> legs;
         const auto boundaries = paths(start, problem.cone_count);
@@ -131,7 +131,7 @@ class PathPairSolver : public RldSolver {
         incumbent_.offer(legs[0], legs[1]);
     }
 
-    /// More than any lane graph costs.
+    /// An upper bound of the cost of any lane graph.
     static double cost_limit(const LaneGraphProblem& problem) {
         double sum = 1.0;
         for (const ProblemEdge& edge : problem.edges) sum += edge.high_cost ? 0.0 : std::max(0.0, edge.cost);
@@ -181,7 +181,7 @@ class PathPairSolver : public RldSolver {
     Outcome search(const LaneGraphProblem& problem, double tolerance, const Deadline& deadline) {
         Outcome outcome{std::numeric_limits<double>::infinity(), true};
         for_each_system(problem, [&](const std::optional<std::size_t>&) {
-            SearchClock clock(deadline, options_.max_work);  // whose total of work is that of one search
+            SearchClock clock(deadline, options_.max_work);  // its limit of work is that of one search
             const Outcome part = search_.run(system_, tolerance, clock);
             outcome.bound = std::min(outcome.bound, part.bound);
             outcome.complete = outcome.complete && part.complete;
@@ -189,18 +189,18 @@ class PathPairSolver : public RldSolver {
         return outcome;
     }
 
-    /// What the root does with its bound known to be the right one.
+    /// The multipliers of the root, given the bound that the search proved.
     SearchCertificate::Part certify_part(const LaneGraphProblem& problem, double bound,
                                          const Deadline& deadline) {
         constexpr double kUnit = 1.0 / (1 << SearchCertificate::kFractionBits);
         SearchCertificate::Part part;
-        // Above what any verifier may take as the most that a lane graph costs, however it splits the costs.
+        // At least any verifier's upper bound of a lane graph's cost, however it splits the costs.
         const double best_end =
             problem.learned_end_cost.empty() ? 0.0 : std::ranges::min(problem.learned_end_cost);
         const double most = cost_limit(problem) + 2.0 * (problem.parameters.w_n - best_end) *
                                                       static_cast<double>(problem.edges.size());
         const double cutoff = std::min(bound, most);
-        // Drops nothing here that exact arithmetic does not drop.
+        // The margin makes sure that nothing is dropped here that exact arithmetic keeps.
         incumbent_.reset(graph_, cutoff + std::max(1e-7, 1e-10 * std::abs(cutoff)));
         SearchClock clock(deadline);
         const std::vector<Multipliers> stages = search_.run_root_in_stages(system_, kUnit, clock);

@@ -8,7 +8,7 @@ namespace conelane {
 
 // Numbers of path-pair's search. They decide how long it takes, never what is proven: every claimed optimum
 // is an optimum with any of them. "Row ..." names the row of the table "What was tried" in exact-search.md
-// that has the measurement. Numbers without a row, but for limits of memory, are those of its row "other
+// that has the measurement. Numbers without a row, except limits of memory, are those of its row "other
 // steps, patience, ...": others took within 3 % either way, or were better by one objective and worse by the
 // other.
 
@@ -20,7 +20,7 @@ struct AscentPatience {
 
 /// The ascent of a node's multipliers.
 struct AscentTuning {
-    /// min_scale: row "fronts tried again at 0.6", together with retry_gap.
+    /// min_scale: row "frontiers tried again at 0.6", together with retry_gap.
     AscentPatience root{8, 0.2};
     AscentPatience node{4, 0.1};
     double min_gain = 0.005;  ///< share of the gap by which a step's bound has to rise to be progress
@@ -38,13 +38,13 @@ struct AscentTuning {
 /// The search on the frontiers.
 struct FrontierTuning {
     // How many frontiers a try may take before the ascent's end.
-    std::int64_t first_frontiers = 1000;  ///< row "1000 fronts at first in place of 2000"
+    std::int64_t first_frontiers = 1000;  ///< row "1000 frontiers at first in place of 2000"
     std::int64_t first_frontiers_of_small_graph = 2000;
     int small_graph_arcs = 200;              ///< arcs below which it is one: the same row
     std::int64_t updates_per_frontier = 30;  ///< label updates of the ascent that allow one more frontier
     int steps_per_try = 4;
     double retry_gap =
-        0.6;  ///< share of the gap that had too many frontiers: row "fronts tried again at 0.6"
+        0.6;  ///< share of the gap that had too many frontiers: row "frontiers tried again at 0.6"
 
     // Limits of memory, see docs/path-pair.md: of a try at the ascent's end.
     std::size_t max_frontiers = 300'000;
@@ -58,7 +58,7 @@ struct FrontierTuning {
     std::size_t narrow_labels = 2;  ///< that it expands at a frontier
 
     // Beams for an incumbent. Widths in labels at an arc.
-    std::size_t first_beam_width = 2;  ///< before the root's first try: row "a beam before the first fronts"
+    std::size_t first_beam_width = 2;  ///< at the root: row "a beam before the first frontiers"
     int first_beam_min_arcs = 70;      ///< of a graph that has it, ...
     int first_beam_end_arcs = 1000;    ///< ... and from here on none: its windows come first
     /// Of the root, or later: row "a beam of 16, 24 or 32, and earlier ones", as is the width.

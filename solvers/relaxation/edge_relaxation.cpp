@@ -28,7 +28,7 @@ EdgeRelaxation::EdgeRelaxation(const LaneGraphProblem& problem)
             degree[static_cast<std::size_t>(end)].emplace_back(static_cast<int>(a), 1.0);
         }
     }
-    // Sum of `factor` (A_i - 2 g_i) over some cones.
+    // Sum of factor * (A_i - 2 g_i) over some cones.
     const auto sum_of_ends = [&](const std::vector<std::size_t>& cones, double factor) {
         std::vector<double> sum(variables(), 0.0);
         for (const std::size_t cone : cones) {

@@ -21,7 +21,7 @@ using Ipopt::Index;
 using Ipopt::Number;
 
 constexpr Number kInfinity = 2e19;  // beyond Ipopt's default of 1e19
-/// The rounding sees values down to 1e-3 only.
+/// The rounding uses values down to 1e-3 only.
 constexpr double kTolerance = 1e-5;
 constexpr int kMaxIterations = 200;
 
@@ -137,7 +137,7 @@ class RelaxationProgram : public Ipopt::TNLP {
 
 std::timed_mutex one_at_a_time;
 
-/// Edge values where Ipopt ended, be it without convergence: the rounding repairs them.
+/// Edge values at Ipopt's last point, also without convergence: the rounding repairs them.
 std::optional<std::vector<double>> minimise(const LaneGraphProblem& problem, const std::vector<double>& start,
                                             const Deadline& deadline) {
     const auto lock = detail::lock_until(one_at_a_time, deadline);

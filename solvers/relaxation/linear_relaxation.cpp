@@ -11,13 +11,13 @@ namespace conelane {
 namespace {
 
 constexpr double kSame = 1e-7;
-constexpr int kBasic = 1;  // in what getBasisStatus tells
+constexpr int kBasic = 1;  // as getBasisStatus returns it
 
 bool is_same(double a, double b) {
     return std::abs(a - b) <= kSame;
 }
 
-/// Whether the value of what is basic is at one of its bounds.
+/// Whether the value of a basic column or row is at one of its bounds.
 std::size_t count_at_bounds(const std::vector<int>& status, const double* value, const double* lower,
                             const double* upper) {
     std::size_t count = 0;

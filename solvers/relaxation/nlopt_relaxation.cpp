@@ -16,13 +16,13 @@
 namespace conelane {
 namespace {
 
-/// What rows may be violated by: the rounding sees values down to 1e-3 only.
+/// Allowed violation of rows: the rounding uses values down to 1e-3 only.
 constexpr double kRowTolerance = 1e-5;
 constexpr double kMinStep = 1e-4;
 constexpr int kMaxEvaluations = 500;
 constexpr int kMaxEvaluationsOfOneBoxProblem = 100;
 
-/// One side of a row as NLopt takes it: factor (terms - limit), at most zero or equal to zero.
+/// One side of a row in NLopt's form: factor (terms - limit), at most zero or equal to zero.
 struct RowSide {
     const EdgeRelaxation::Row* row;
     double factor;
@@ -49,7 +49,7 @@ class RelaxationDescent {
         }
     }
 
-    /// The best point evaluated until NLopt or the deadline ended the search.
+    /// The best point that was evaluated before NLopt or the deadline ended the search.
     std::vector<double> run() {
         const auto n = static_cast<unsigned>(relaxation_.variables());
         nlopt::opt in_box(nlopt::LD_MMA, n);
@@ -71,7 +71,7 @@ class RelaxationDescent {
         try {
             (void)search.optimize(point, reached);
         } catch (const nlopt::roundoff_limited&) {
-            // The best point stands, as it does below.
+            // The best point is kept, as below.
         } catch (const nlopt::forced_stop&) {
         }
         return best_point_;

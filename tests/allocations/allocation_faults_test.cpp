@@ -1,5 +1,5 @@
-// Memory that runs out, at any allocation of a call: std::bad_alloc comes out, nothing is lost, and the next
-// call answers as if nothing had been.
+// An allocation that fails, at any place of a call: the call throws std::bad_alloc, loses nothing, and the
+// next call answers as if nothing had happened.
 
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
@@ -27,10 +27,10 @@ namespace {
 
 using tests::allocations;
 
-/// Of a scene that has a lane, of as many cones as exhaustive takes too.
+/// A scene that has a lane, with few enough cones for exhaustive.
 constexpr std::uint64_t kSeed = 0;
 
-/// The first ones, the last ones, and some between.
+/// The first allocations, the last ones, and some between.
 std::vector<std::int64_t> places(std::int64_t count) {
     constexpr std::int64_t kAtEachEnd = 20;
     constexpr int kBetween = 40;
@@ -46,15 +46,15 @@ std::vector<std::int64_t> places(std::int64_t count) {
     return chosen;
 }
 
-/// How many allocations a call makes.
+/// The number of allocations of a call.
 std::int64_t count_allocations(const std::function<void()>& call) {
     allocations.made = 0;
     call();
     return allocations.made;
 }
 
-/// Runs the call with one allocation that fails. Returns whether std::bad_alloc came out: what can do without
-/// the memory (std::stable_sort) goes on.
+/// Runs the call with one failing allocation. Returns whether std::bad_alloc was thrown; a call that can do
+/// without the memory (std::stable_sort) continues.
 bool runs_out(const std::function<void()>& call, std::int64_t place) {
     allocations.until_failure = place;
     bool failed = false;
@@ -87,7 +87,7 @@ const std::vector<Scene>& lap() {
 
 class DetectorMemory : public testing::TestWithParam<std::string> {
   protected:
-    /// Both scenes of the lap, the second one warm.
+    /// Both scenes of the lap; the second one is answered by the warm detector.
     static std::vector<LaneAnswer> drive(LaneDetector& detector) {
         std::vector<LaneAnswer> answers;
         answers.reserve(lap().size());
@@ -105,7 +105,7 @@ class DetectorMemory : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(DetectorMemory, MayRunOutAnywhereInACall) {
-    const std::vector<LaneAnswer> expected = drive(*make_detector(GetParam()));  // shared weights are loaded
+    const std::vector<LaneAnswer> expected = drive(*make_detector(GetParam()));  // loads the shared weights
     ASSERT_EQ(expected.back().status, LaneStatus::found);
     const std::int64_t count = [&] {
         const auto detector = make_detector(GetParam());

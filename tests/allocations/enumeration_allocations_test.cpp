@@ -17,8 +17,8 @@
 namespace conelane {
 namespace {
 
-/// A lane of 15 cones a side among 30 false positives. It is straight: a course that might be closed is
-/// measured as a whole, which does allocate.
+/// A lane of 15 cones a side among 30 false positives. It is straight, because a course that might be closed
+/// is measured as a whole, which allocates.
 std::vector<Point> points() {
     boost::random::mt19937_64 random(4);
     boost::random::uniform_real_distribution<> ahead(0.0, 50.0);
@@ -97,7 +97,7 @@ TEST(DetectionAllocations, NoneButTheTwoBoundariesOnceTheMemoryIsThere) {
             return allocations - before;
         };
         EXPECT_GT(detect(), 2u) << "allocations are counted";
-        (void)detect();  // a warm start's first
+        (void)detect();  // the first call with a warm start
         EXPECT_EQ(detect(), 2u);
         std::ranges::reverse(scene.cones);
         (void)detect();

@@ -23,7 +23,7 @@ TEST(FrontAllocations, OnlyTheAnswersBoundariesOnceMemoryIsWarm) {
         const auto detector = make_front_detector(options);
         const LaneAnswer first = detector->detect(scene, tests::kNoTimeLimit);
         ASSERT_EQ(first.status, LaneStatus::found);
-        // The second one of the warm detector follows the first, by other states.
+        // The warm detector answers the second scene after the first, with other states.
         EXPECT_EQ(detector->detect(scene, tests::kNoTimeLimit).lane, first.lane);
         const std::size_t before = allocations;
         const LaneAnswer again = detector->detect(scene, tests::kNoTimeLimit);

@@ -1,4 +1,4 @@
-// path-pair keeps its workspace: what a solve allocates does not grow with its nodes.
+// path-pair keeps its workspace: the allocations of a solve do not grow with its nodes.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -18,7 +18,7 @@ std::int64_t allocations = 0;
 
 }  // namespace
 
-// Counts what the program allocates. The other forms of new and delete call these.
+// Counts the allocations of the program. The other forms of new and delete call these.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     ++allocations;
     if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
@@ -47,7 +47,7 @@ Count solve(RldSolver& solver, const LaneGraphProblem& problem) {
 
 TEST(PathPairAllocation, DoesNotGrowWithTheNodes) {
     PathPairOptions options;
-    // To have many nodes.
+    // Switched off, to have many nodes.
     options.search_frontiers = false;
     options.root_steps = 1;
     options.node_steps = 1;

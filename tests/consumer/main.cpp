@@ -1,5 +1,5 @@
-// The lane between six cones and a stray one, its centre line, and the plan of a frame, by the calls that the
-// README shows.
+// The calls that the README shows: the lane between six cones and a stray one, its centre line, and the plan
+// of a frame.
 #include <cmath>
 #include <iostream>
 

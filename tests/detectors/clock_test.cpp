@@ -1,5 +1,5 @@
-// What detectors and solvers have of clocks: they look at one that nobody sets, and often enough that a limit
-// is kept.
+// Clocks of detectors and solvers: they read a clock that nobody sets, and often enough to keep a
+// limit.
 
 #include "conelane/core_solvers.hpp"
 #include "conelane/detectors.hpp"
@@ -59,8 +59,9 @@ TEST(Clocks, NoDetectorReadsTheTimeOfDay) {
     }
 }
 
-/// Backends that look at the time of day find it an hour before or behind at each look, and are none the
-/// worse: their limits are kept by the adapter's own clock. GLPK alone keeps its limit by the time of day.
+/// In these tests, the time of day jumps by an hour at each reading. Backends that read it still answer
+/// correctly, because the adapter's own clock keeps their limits. Only GLPK's limit depends on the time of
+/// day.
 TEST(Clocks, NoSolverIsMisledByTheTimeOfDay) {
     for (const RldSolverEntry& entry : rld_solvers()) {
         if (entry.name == "glpk") continue;
@@ -83,7 +84,7 @@ TEST(Clocks, NoSolverIsMisledByTheTimeOfDay) {
     }
 }
 
-/// Up to about 480 cones within 80 m, half of them false.
+/// Up to about 480 cones within 80 m, half of them false positives.
 std::vector<Scene> crowded_scenes() {
     SceneOptions options;
     options.false_positive_rates = {0.5};
@@ -97,9 +98,9 @@ std::vector<Scene> crowded_scenes() {
     return scenes;
 }
 
-/// Processor time that passes at most between two looks at the clock, from a new detector's first call to its
-/// answer. A try with a gap of `ample_ms` is repeated up to nine times, and the least counts: a processor
-/// that is taken away for a while is not the detector's fault.
+/// The longest processor time between two readings of the clock, from a new detector's first call to its
+/// answer. A try with a gap of `ample_ms` is repeated up to nine times, and the smallest value counts: the
+/// detector is not responsible if the system takes the processor away.
 double max_gap_ms(std::string_view name, const Scene& scene, double ample_ms) {
     double min_ms = std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < 10 && min_ms >= ample_ms; ++attempt) {
@@ -112,11 +113,11 @@ double max_gap_ms(std::string_view name, const Scene& scene, double ample_ms) {
     return min_ms;
 }
 
-/// A limit can be overrun by no more than what is done between two looks at the clock. Large blocks go back
-/// to the system when they are given back, so that no try finds memory that one before it has paid for.
-/// `rld-learned` has edges over gaps as well: its problem of hundreds of cones is so large that it takes up
-/// to 2 ms to give it back at the end.
-TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
+/// A limit can be overrun only by the work between two readings of the clock. Large blocks of
+/// memory are returned to the system, so that no try profits from memory of an earlier one.
+/// `rld-learned` also has edges over gaps: freeing its problem of hundreds of cones takes up to 2
+/// ms at the end.
+TEST(Clocks, DetectorsCheckTheClockEveryMillisecond) {
     ASSERT_EQ(mallopt(M_MMAP_THRESHOLD, 1 << 17), 1);
     const std::vector<Scene> scenes = crowded_scenes();
     std::size_t max_cones = 0;
@@ -132,9 +133,9 @@ TEST(Clocks, DetectorsLookAtTheirsEveryMillisecond) {
     }
 }
 
-/// A ring of 800 cones about one, and edges from that one alone: a third of a million turns at one cone,
-/// which take most of the time. Of 300 looks at the clock 250 are among them.
-TEST(Clocks, TheMakingOfAProblemLooksAtItsAmongTurns) {
+/// A ring of 800 cones around one cone, with edges from that one alone: a third of a million turns at one
+/// cone, which take most of the time. 250 of 300 readings of the clock are among them.
+TEST(Clocks, MakingAProblemChecksTheClockAmongTurns) {
     Scene scene;
     scene.cones.push_back({0, {0.0, 0.0}});
     for (int k = 0; k < 800; ++k) {
@@ -152,9 +153,9 @@ TEST(Clocks, TheMakingOfAProblemLooksAtItsAmongTurns) {
     EXPECT_GT(clock_looks.monotonic, 150);
 }
 
-/// The processor is away for 40 of 60 s, at any look at the clock: more than half of the time, which is all
-/// that the beam search of `clc` may take. What was enumerated to its end after it is no less proven.
-TEST(Clocks, NoneIsProvenThoughHalfOfTheTimeIsGone) {
+/// The processor is away for 40 of 60 s, at any reading of the clock: more than half of the time, which is
+/// the limit of the beam search of `clc`. An enumeration that is complete afterwards still counts as proven.
+TEST(Clocks, AProofHoldsThoughHalfOfTheTimeIsGone) {
     int none = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         const Scene scene = tests::random_scene(seed, 10);
@@ -175,8 +176,8 @@ TEST(Clocks, NoneIsProvenThoughHalfOfTheTimeIsGone) {
     EXPECT_GT(none, 5);
 }
 
-/// The clock is read after each state that the search expands, not once a level.
-TEST(Clocks, FrontReadsItsAfterEachState) {
+/// The clock is read after each expanded state, not once for each level.
+TEST(Clocks, FrontChecksTheClockAfterEachState) {
     const FrontWeights weights = tests::random_front_weights(1);
     FrontCost cost(weights);
     FrontSearch search;

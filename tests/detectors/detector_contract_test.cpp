@@ -1,5 +1,5 @@
-// What a detector promises (see LaneDetector, LaneAnswer and DetectorOptions), for every detector of the
-// library and every detector that is compared with them. A new one is tested here by being listed.
+// The contract of a detector (see LaneDetector, LaneAnswer and DetectorOptions), for every detector of the
+// library and of comparisons. A new detector is tested here as soon as it is listed.
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
@@ -48,7 +48,8 @@ std::vector<std::string> names() {
     return all;
 }
 
-/// Every `cones` of both boundaries about 2 m from the car's axis, those on the right a little farther on.
+/// `cones` cones on each boundary, about 2 m from the car's axis; those on the right are a little farther
+/// ahead.
 Scene straight(int cones_a_side, const Point& car = {0.0, 0.0}) {
     Scene scene;
     scene.pose.position = car;
@@ -59,7 +60,7 @@ Scene straight(int cones_a_side, const Point& car = {0.0, 0.0}) {
     return scene;
 }
 
-/// Cones anywhere in a square, the car at the middle of one side.
+/// Cones anywhere in a square; the car is at the middle of one side.
 Scene strewn(std::size_t cones, double side_m) {
     boost::random::mt19937_64 random(7);
     boost::random::uniform_real_distribution<> along(0.0, side_m);
@@ -71,7 +72,7 @@ Scene strewn(std::size_t cones, double side_m) {
     return scene;
 }
 
-/// Fewer cones are enough for the printed formulation, which takes seconds for twelve.
+/// Fewer cones for the printed formulation, which takes seconds for twelve.
 std::vector<Scene> random_scenes() {
     std::vector<Scene> scenes;
     for (std::uint64_t seed = 0; seed < 24; ++seed) scenes.push_back(tests::random_scene(seed, 7 + seed % 4));
@@ -148,7 +149,7 @@ void expect_same(const LaneAnswer& a, const LaneAnswer& b) {
 
 class DetectorContract : public testing::TestWithParam<std::string> {
   protected:
-    /// Whether it answers with a boundary that is seen alone.
+    /// Whether the detector answers with a boundary that is seen alone.
     static bool answers_one_boundary() { return GetParam().starts_with("front"); }
     static std::unique_ptr<LaneDetector> make(const DetectorOptions& options = {}) {
         return is_in_library(GetParam()) ? make_detector(GetParam(), options)
@@ -165,7 +166,7 @@ class DetectorContract : public testing::TestWithParam<std::string> {
     }
 };
 
-TEST_P(DetectorContract, WhatIsNotValidIsAnErrorThatNamesIt) {
+TEST_P(DetectorContract, InvalidInputIsAnErrorThatNamesIt) {
     struct Fault {
         std::string key;
         void (*make)(Scene&, DetectionLimits&);
@@ -182,7 +183,7 @@ TEST_P(DetectorContract, WhatIsNotValidIsAnErrorThatNamesIt) {
         {"pose.x", [](Scene& s, DetectionLimits&) { s.pose.position.x() = -kInfinity; }},
         {"time_limit", [](Scene&, DetectionLimits& l) { l.time_limit_ms = kNaN; }},
     };
-    // What is wrong with cones that a detector is not shown is told, too.
+    // Errors in cones that the detector does not see are reported too.
     for (const std::optional<std::size_t> nearest :
          {std::optional<std::size_t>(), std::optional<std::size_t>(2)}) {
         const auto detector = make({.nearest = nearest});
@@ -203,7 +204,7 @@ TEST_P(DetectorContract, FindsAStraightLane) {
     const LaneAnswer answer = detect(straight(5));
     ASSERT_EQ(answer.status, LaneStatus::found);
     EXPECT_FALSE(detect(straight(3)).stopped_by) << "so few cones are searched to the end";
-    // At the far end detectors differ: the longest lane takes one more cone across.
+    // At the far end, detectors differ: the longest lane has one more cone across.
     ASSERT_GE(answer.lane.left.size(), 4U);
     ASSERT_GE(answer.lane.right.size(), 4U);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -266,7 +267,7 @@ TEST_P(DetectorContract, LanesAreTheSameFarFromTheOrigin) {
     EXPECT_NE(detect(strewn(10, 1e6)).status, LaneStatus::error);
 }
 
-TEST_P(DetectorContract, HugeLimitsAreNoneAndThoseBelowZeroAreOver) {
+TEST_P(DetectorContract, HugeLimitsNeverExpireAndNegativeOnesHaveExpired) {
     const Scene scene = tests::random_scene(3, 8);
     const LaneAnswer expected = detect(scene);
     for (const double limit_ms : {1e12, 1e18, 1e300, std::numeric_limits<double>::max()}) {
@@ -313,7 +314,7 @@ TEST_P(DetectorContract, AnAnswerDependsOnTheSceneAlone) {
     int found = 0;
     for (const Scene& scene : random_scenes()) {
         SCOPED_TRACE(scene.id);
-        // What ran before: a search that time cut off, an error, a scene of another size.
+        // Earlier calls: a search that reached its time limit, an error, a scene of another size.
         (void)detect(*used, large, {.time_limit_ms = 1.0});
         Scene broken = scene;
         broken.cones.front().position.x() = kNaN;

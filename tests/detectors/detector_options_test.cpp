@@ -1,5 +1,5 @@
-// What make_detector takes beside a name: options that a detector does not use are refused, weights of one's
-// own are read from a file or from its bytes.
+// Options of make_detector besides the name: options that a detector does not use are refused; own weights
+// are read from a file or from its bytes.
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
@@ -20,7 +20,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// What is said of the call; empty where it is taken.
+/// The message of the call; empty if it succeeds.
 std::string refusal(std::string_view detector, const DetectorOptions& options) {
     try {
         (void)make_detector(detector, options);
@@ -60,7 +60,7 @@ TEST(DetectorOptions, ThatADetectorDoesNotUseAreRefused) {
 
 class OwnWeights : public FileTest {
   protected:
-    /// The shipped weights with one text in place of another, which they have to hold.
+    /// The shipped weights with one text replaced, which they must contain.
     [[nodiscard]] std::string with(const std::string& from, const std::string& to) const {
         std::string text = shipped_;
         const std::size_t at = text.find(from);
@@ -96,7 +96,7 @@ TEST_F(OwnWeights, FileAndBytesOfTheShippedOnesAreTheShippedDetector) {
     EXPECT_EQ(confidence({.weights = WeightsBytes{shipped_}}), shipped);
 }
 
-/// The log odds that a lane is usable are the lower by what is taken from their bias.
+/// The log odds that a lane is usable decrease by what is subtracted from their bias.
 TEST_F(OwnWeights, OthersAreUsed) {
     const std::size_t at = shipped_.find("\"usable_output_bias\"");
     const std::size_t begin = shipped_.find('[', at);
@@ -139,7 +139,7 @@ TEST_F(OwnWeights, FaultsNameWhatIsWrong) {
               "weights: " + path("w.json").string() + ": version: is missing");
 }
 
-/// Wherever the file is cut, the cut is seen.
+/// Wherever the file is cut, the reader notices it.
 TEST_F(OwnWeights, TruncatedFilesAreRefused) {
     const std::size_t whole = shipped_.find_last_of('}');
     for (std::size_t size = 0; size <= whole; size += 997)

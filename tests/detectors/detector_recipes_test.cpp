@@ -1,5 +1,5 @@
-// What the table of detectors says of each: the courses that it has learned from, whether it closes lanes,
-// what it does with the colors of cones. Held against what the detectors answer.
+// Properties in the table of detectors: the courses that each has learned from, whether it closes lanes, what
+// it does with colors. They are compared with the detectors' answers.
 
 #include "conelane/detectors.hpp"
 #include "experiments/comparison/known_detectors.hpp"
@@ -27,7 +27,7 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Two rings of 12 cones; the car stands between them.
+/// Two rings of 12 cones; the car is between them.
 Scene circuit_seen_whole() {
     Scene scene;
     for (int i = 0; i < 12; ++i) {
@@ -42,8 +42,8 @@ Scene circuit_seen_whole() {
 
 enum class Painted { not_at_all, as_drawn, the_other_way };
 
-/// Cones drawn at random, of which those of even place are left where they bound the lane. Fewer are enough
-/// for the printed formulation, which takes seconds for twelve.
+/// Random cones; those of even index are on the left if they bound the lane. Fewer cones for the printed
+/// formulation, which takes seconds for twelve.
 Scene painted_scene(std::uint64_t seed, Painted how) {
     Scene scene = tests::random_scene(seed, 9);
     if (how == Painted::not_at_all) return scene;
@@ -54,7 +54,7 @@ Scene painted_scene(std::uint64_t seed, Painted how) {
     return scene;
 }
 
-/// In how many of some scenes the lane differs from that of cones without colors.
+/// The number of scenes in which the lane differs from the lane without colors.
 int lanes_changed_by_color(const KnownDetector& known, const DetectorOptions& options = {}) {
     int changed = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {

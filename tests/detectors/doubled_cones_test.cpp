@@ -1,4 +1,4 @@
-// Cones that a map holds twice: merged before any detector looks at them (see LaneDetector and DoubledCones).
+// Cones that a map holds twice are merged before any detector sees them (see LaneDetector and DoubledCones).
 
 #include "model/doubled_cones.hpp"
 
@@ -26,10 +26,10 @@
 namespace conelane {
 namespace {
 
-constexpr ConeId kDouble = 1000;  ///< id of a cone's double, less that of the cone
+constexpr ConeId kDouble = 1000;  ///< difference between the id of a cone's double and the cone's id
 
-/// Every cone of the scene again, each in another direction and ahead of all others in the list: that much
-/// farther from the car, which is at the origin, or nearer where it is negative.
+/// Adds a double of every cone of the scene, in another direction each time and first in the list.
+/// `distance_m`: how much farther from the car at the origin it is, roughly; negative for nearer.
 Scene doubled(const Scene& scene, double distance_m) {
     Scene twice = scene;
     twice.cones.clear();
@@ -89,7 +89,7 @@ TEST_P(DoubledConesOf, FartherApartTheyAreCones) {
     }
 }
 
-/// The radius is the detector's own, also through what wraps it.
+/// Each detector has its own radius, also inside a wrapper.
 TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
     const Scene once = tests::straight_front_scene(5);
     const std::unique_ptr<LaneDetector> nearest = make_detector(GetParam(), {.nearest = 8});
@@ -105,7 +105,7 @@ TEST_P(DoubledConesOf, TheNearestConesAreCountedOnce) {
 
 class DoublesOfFront : public testing::TestWithParam<std::string> {};
 
-/// At 1, 5, 10, 20 and 30 cm, whether all cones are doubled or every third one, and whichever of the two is
+/// At 1, 5, 10, 20 and 30 cm, with all cones or every third one doubled, and with either of the two
 /// nearer.
 TEST_P(DoublesOfFront, TakeNoTrustAway) {
     const auto detect = [&](const Scene& scene) {
@@ -134,7 +134,7 @@ TEST_P(DoublesOfFront, TakeNoTrustAway) {
             EXPECT_EQ(first_kept.trusted_m, expected.trusted_m);
             EXPECT_EQ(first_kept.confidence, expected.confidence);
             EXPECT_EQ(first_kept.merged.size(), doubles);
-            // The double is nearer: it stands for the cone, off by the distance.
+            // The double is nearer, so it represents the cone, at its own distance.
             const LaneAnswer double_kept = detect(doubled_at(-distance_m));
             ASSERT_EQ(double_kept.merged.size(), doubles);
             for (const MergedCone& merged : double_kept.merged) EXPECT_EQ(merged.into, merged.cone + kDouble);
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoubledConesOf, testing::ValuesIn(all_names()), []
     return words;
 });
 
-TEST(DoubledCones, ASceneWithoutThemIsLookedAtAsItIs) {
+TEST(DoubledCones, ASceneWithoutThemStaysUnchanged) {
     DoubledCones doubles(kDoubledCone_m);
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const Scene scene = tests::straight_front_scene(10);
@@ -186,13 +186,13 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
         DoubledCones doubles(radius_m);
         SCOPED_TRACE(seed);
         boost::random::mt19937_64 random(seed);
-        // From crowds to few doubles; about the origin, and where cells have large numbers.
+        // From many doubles to few; around the origin, and where cells have large numbers.
         boost::random::uniform_real_distribution<double> along(0.0, 0.2 * static_cast<double>(1 + seed));
         const Point origin = seed % 2 == 0 ? Point(-0.5, -0.5) : Point(-1e6, 1e6);
         Scene scene;
         for (ConeId id = 0; id < 60; ++id) {
             const double x = along(random);
-            // 37 and 60 have no common divisor: each id once, in no order.
+            // 37 and 60 have no common divisor, so each id occurs once, unsorted.
             scene.cones.push_back({(id * 37) % 60, origin + Point(x, along(random))});
         }
         const Scene& once = doubles.merge(scene);
@@ -217,7 +217,7 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
             EXPECT_LE(at(cone.into).norm(), at(cone.cone).norm());
             EXPECT_LE((at(cone.cone) - at(cone.into)).norm(), radius_m);
         }
-        // The order of the list does not count, nor do the ids.
+        // Neither the order of the list nor the ids matter.
         std::vector<MergedCone> before = doubles.merged();
         std::ranges::reverse(scene.cones);
         std::vector<ConeId> reversed = ids(doubles.merge(scene));
@@ -234,7 +234,7 @@ TEST(DoubledCones, WhatIsMergedStandsNearAKeptConeAndKeptOnesStandApart) {
     EXPECT_GT(crowds, 5U);
 }
 
-/// False cones stand near true ones by chance: one pair says nothing of the map.
+/// False cones are near true ones by chance: one pair says nothing about the map.
 TEST(DoubledCones, FewFarDoublesAreChance) {
     const auto merged_of = [](std::size_t cones, std::size_t pairs, double distance_m) {
         Scene scene;
@@ -280,7 +280,7 @@ TEST(DoubledCones, ManyAtOnePlaceTakeNoLongerThanManyApart) {
         scene.cones.push_back({id, {x, near(random)}});
     }
     DoubledCones doubles(
-        kDoubledCone_m);  // each against each other would be 2e10 distances, which no test waits for
+        kDoubledCone_m);  // comparing each with each would be 2e10 distances, and the test would not end
     EXPECT_EQ(doubles.merge(scene).cones.size(), 1U);
 }
 

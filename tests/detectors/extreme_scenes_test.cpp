@@ -1,5 +1,5 @@
-// Scenes and parameters at the end of what doubles can hold: every solver answers, and none brings the
-// program down.
+// Scenes and parameters at the limits of double: every solver answers, and no solver ends the
+// program.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kLimit_ms = 10'000.0;
 
-/// Two straight boundaries of three cones, 3.25 m apart along them and 3.5 m across; the optimum is all of
-/// them. Every number is a multiple of 1/4, so that a shift by a large whole number is exact.
+/// Two straight boundaries of three cones, 3.25 m apart along them and 3.5 m across. The optimum contains all
+/// of them. Every number is a multiple of 1/4, so that a shift by a large whole number is exact.
 Scene straight_lane(const Point& at) {
     Scene scene;
     scene.pose.position = at;
@@ -48,7 +48,7 @@ TEST(ExtremeScenes, FarFromTheOriginNothingChanges) {
     }
 }
 
-/// What rows fix at 0 costs at most 1e9, and all numbers of the program stay finite.
+/// A column that rows fix at 0 costs at most 1e9, and all numbers of the program are finite.
 TEST(ExtremeScenes, ProgramsHoldNumbersThatSolversCanTake) {
     for (const double factor : {1.0, 1e3, 1e9, 1e160, 1e300}) {
         Scene scene = tests::random_scene(3, 7);
@@ -76,8 +76,8 @@ TEST(ExtremeScenes, EverySolverAnswersAtEveryScale) {
     }
 }
 
-/// Cones 10^-160 m apart where that spacing is expected: the model's numbers and the checker's agree that no
-/// edge is that short, and on what is longer.
+/// Cones 10^-160 m apart, with that spacing expected: problem and checker agree that an edge cannot be so
+/// short, and which longer edges are allowed.
 TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
     for (const double spacing : {1e-160, 0.9e-100, 1.1e-100, 1e-9}) {
         Scene scene;
@@ -92,8 +92,8 @@ TEST(ExtremeScenes, EdgesAreAtLeast1em100Long) {
     }
 }
 
-/// Found by cross-check: CBC's preprocessing makes up a point of this program, which has none.
-TEST(ExtremeScenes, APointThatCbcMakesUpIsNoAnswer) {
+/// Found by cross-check: for this infeasible program, CBC's preprocessing returns a point.
+TEST(ExtremeScenes, AnInventedPointOfCbcIsNoAnswer) {
     Scene scene;
     scene.pose.yaw_rad = 2.281;
     scene.cones = {{8, {5.8825, 4.6447}}, {1, {-1.9522, 1.3658}}, {0, {-2.0448, 6.9194}},
@@ -134,9 +134,9 @@ TEST(ExtremeScenes, AHugeCostHidesNoBetterLane) {
     }
 }
 
-/// Two boundaries of a kilometre across the car's way, 10 m apart, are the only lane. It costs
-/// 1.2 * (1000 / 1.25)^4 for the one whose midpoint is 1.25 m from the car, and far less for the other.
-TEST(ExtremeScenes, ADearLaneIsFoundWhereThereIsNoOther) {
+/// Two boundaries of a kilometre across the car's way, 10 m apart, are the only lane. The one whose midpoint
+/// is 1.25 m from the car costs 1.2 * (1000 / 1.25)^4, and the other one far less.
+TEST(ExtremeScenes, AnExpensiveLaneIsFoundIfItIsTheOnlyOne) {
     Scene scene;
     for (const Point& place : {Point(0.75, 499), Point(0.75, -501), Point(10.75, 499), Point(10.75, -501)})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), place});
@@ -155,9 +155,9 @@ TEST(ExtremeScenes, ADearLaneIsFoundWhereThereIsNoOther) {
     }
 }
 
-/// Edges of kilometres that the parameters allow, and weights at the end of their range: costs of 1e26. Who
-/// cannot take them says so.
-TEST(ExtremeScenes, CostsThatNoLibraryTakesAreAnErrorNotTheEnd) {
+/// The parameters allow edges of kilometres, and the weights are at the end of their range: costs of 1e26. A
+/// solver that cannot handle them says so.
+TEST(ExtremeScenes, CostsThatNoLibraryAcceptsAreAnError) {
     Scene scene;
     for (const double y : {-40'000.0, 40'000.0}) {
         for (const double x : {0.25, 0.75, 1.25})

@@ -1,4 +1,4 @@
-// What `front` answers where a scene shows one boundary alone.
+// Answers of `front` to scenes that show only one boundary.
 
 #include "graph_search/front/front_boundary.hpp"
 
@@ -35,7 +35,7 @@ LaneAnswer front(const Scene& scene) {
     return make_detector("front")->detect(scene, tests::kNoTimeLimit);
 }
 
-/// The boundary that is answered; nothing where the other side is not empty or there is no answer.
+/// The boundary of the answer; nothing if the other side is not empty or there is no answer.
 struct Boundary {
     Side side;
     std::vector<ConeId> cones;
@@ -46,7 +46,7 @@ std::optional<Boundary> boundary_of(const LaneAnswer& answer) {
     return Boundary{kRight, answer.lane.right};
 }
 
-/// The boundary that the search finds by itself, whatever lane there may be.
+/// The boundary that BoundarySearch finds, whether there is a lane or not.
 std::optional<Boundary> search(const Scene& scene) {
     FrontMap map;
     map.build(scene);
@@ -68,7 +68,7 @@ void expect_boundary(const Scene& scene, Side side) {
     EXPECT_TRUE(std::ranges::is_sorted(boundary->cones)) << "outward from the car";
 }
 
-/// The cones of a boundary 1.75 m beside a bend that a car at the origin drives, from `from_m` on.
+/// The cones of a boundary 1.75 m beside a bend that a car at the origin drives; cones begin at `from_m`.
 std::vector<Point> arc(double radius_m, double turn, Side side, double from_m = 1.5) {
     const double radius = radius_m + ((side == kLeft) == (turn > 0.0) ? -1.75 : 1.75);
     std::vector<Point> cones;
@@ -88,8 +88,8 @@ TEST(FrontBoundary, IsAnsweredOnTheSideOnWhichItPassesTheCar) {
     }
 }
 
-// In a bend to the left, the right boundary is on the left of the heading from some place on. Where it is
-// seen from there on only, the way that it bends tells its side.
+// In a bend to the left, the right boundary crosses to the left of the heading. If only that part is seen,
+// its curvature tells which side it is.
 TEST(FrontBoundary, TheOuterBoundaryOfABendMayBeginAcrossTheHeading) {
     for (const double turn : {1.0, -1.0}) {
         const std::vector<Point> outer = arc(12.0, turn, turn > 0.0 ? kRight : kLeft, 9.0);
@@ -104,7 +104,7 @@ TEST(FrontBoundary, BridgesAMissedConeFromTheThirdOn) {
     expect_boundary(scene_of(cones), kRight);
 }
 
-/// A lane may step farther where cones are few: its other boundary shows where it goes.
+/// A segment of a lane may be longer if cones are few, because the other boundary shows the way.
 TEST(FrontBoundary, EndsBeforeALongGap) {
     const auto found = [](double gap_m) {
         std::vector<Point> cones;
@@ -116,7 +116,7 @@ TEST(FrontBoundary, EndsBeforeALongGap) {
     EXPECT_EQ(found(11.6), (std::vector<ConeId>{0, 1, 2}));
 }
 
-/// The cone at 11.3 m is too near the one before it to go on to, and stands in the way of the bridge.
+/// The cone at 11.3 m is too near the one before it to be the next one, and it blocks the bridge.
 TEST(FrontBoundary, BridgesNothingOverACone) {
     std::vector<Point> cones;
     for (const double x : {1.0, 5.4, 9.8, 17.8, 22.2, 26.6}) cones.emplace_back(x, -1.8);
@@ -125,7 +125,7 @@ TEST(FrontBoundary, BridgesNothingOverACone) {
     EXPECT_EQ(search(scene_of(cones)).value().cones, (std::vector<ConeId>{0, 1, 2}));
 }
 
-/// Along y = 1.8, once round a circle to the left, and down across the beginning between the cones 2 and 3.
+/// Along y = 1.8, once round a circle to the left, and down across the beginning, between cones 2 and 3.
 TEST(FrontBoundary, EndsBeforeItCrossesItself) {
     std::vector<Point> cones;
     for (const double x : {1.0, 4.0, 7.0, 10.0, 13.0}) cones.emplace_back(x, 1.8);
@@ -137,7 +137,7 @@ TEST(FrontBoundary, EndsBeforeItCrossesItself) {
     EXPECT_EQ(boundary.back(), last + 1);
 }
 
-TEST(FrontBoundary, LeavesAsideWhatIsOffIt) {
+TEST(FrontBoundary, LeavesOutConesBesideIt) {
     std::vector<Point> cones;
     for (int i = 0; i < 7; ++i) cones.emplace_back(1.0 + 4.0 * i, 1.8);
     cones.emplace_back(13.5, 12.0);
@@ -148,15 +148,15 @@ TEST(FrontBoundary, LeavesAsideWhatIsOffIt) {
     EXPECT_EQ(boundary->cones, (std::vector<ConeId>{0, 1, 2, 3, 4, 5, 6}));
 }
 
-TEST(FrontBoundary, WhatIsNoSmoothChainBesideTheCarIsNone) {
+TEST(FrontBoundary, OnlySmoothChainsBesideTheCarAreBoundaries) {
     for (const std::vector<Point>& cones : std::vector<std::vector<Point>>{
-             {{1, 1.8}, {5, 1.8}},                       // two
-             {{1, 1.8}, {2, 1.8}, {7.5, 1.8}},           // uneven
-             {{1, 1.8}, {4, 4.0}, {7, 1.8}},             // a corner
-             {{1, 0.0}, {5, 0.0}, {9, 0.0}, {13, 0.0}},  // ahead of the car: on no side
-             {{1, 5.8}, {5, 5.8}, {9, 5.8}, {13, 5.8}},  // beyond any lane
-             {{14, 1.8}, {18, 1.8}, {22, 1.8}},          // far
-             {{1, 1.8}, {8, 1.8}, {15, 1.8}}}) {         // too wide apart
+             {{1, 1.8}, {5, 1.8}},                       // only two
+             {{1, 1.8}, {2, 1.8}, {7.5, 1.8}},           // uneven spacing
+             {{1, 1.8}, {4, 4.0}, {7, 1.8}},             // corner
+             {{1, 0.0}, {5, 0.0}, {9, 0.0}, {13, 0.0}},  // straight ahead of the car: on neither side
+             {{1, 5.8}, {5, 5.8}, {9, 5.8}, {13, 5.8}},  // farther away than any lane is wide
+             {{14, 1.8}, {18, 1.8}, {22, 1.8}},          // far ahead
+             {{1, 1.8}, {8, 1.8}, {15, 1.8}}}) {         // too far apart
         const LaneAnswer answer = front(scene_of(cones));
         EXPECT_EQ(answer.status, LaneStatus::none) << cones[0].transpose() << ", " << cones[1].transpose();
         EXPECT_EQ(answer.lane, Lane{});
@@ -182,7 +182,7 @@ TEST(FrontBoundary, AMirroredSceneHasTheMirroredBoundary) {
     EXPECT_EQ(search(scene).value().cones, cones);
 }
 
-TEST(FrontBoundary, IsSeldomMadeOfNoise) {
+TEST(FrontBoundary, IsRarelyMadeOfNoise) {
     boost::random::mt19937_64 random(5);
     boost::random::uniform_real_distribution<double> ahead_m(0.0, 30.0);
     boost::random::uniform_real_distribution<double> left_m(-30.0, 30.0);
@@ -208,7 +208,7 @@ TEST(FrontBoundary, IsSeldomMadeOfNoise) {
     }
 }
 
-// Thousands of cones on one side: no lane can start, and chains are many.
+// Thousands of cones on one side: no lane can start, and there are many chains.
 TEST(FrontBoundary, KeepsTheDeadlineInACrowd) {
     boost::random::mt19937_64 random(5);
     boost::random::uniform_real_distribution<double> ahead_m(0.0, 40.0);
@@ -229,7 +229,7 @@ TEST(FrontBoundary, KeepsTheDeadlineInACrowd) {
     }
 }
 
-/// Where the true lane is: to the right of its left boundary and to the left of its right one.
+/// Whether the true lane is to the right of its left boundary and to the left of its right one.
 bool is_in_lane(const Point& point, const LaneOutline& truth) {
     const auto left_of = [&](const std::vector<Point>& boundary) {
         const PolylineFoot foot = foot_on_polyline(point, boundary, truth.closed);
@@ -239,7 +239,7 @@ bool is_in_lane(const Point& point, const LaneOutline& truth) {
     return !left_of(truth.left) && left_of(truth.right);
 }
 
-/// Views of courses of which one boundary is hidden.
+/// Views of courses with one boundary hidden.
 struct Views {
     std::size_t all = 0;
     std::size_t answered = 0;  ///< with the other boundary
@@ -280,7 +280,7 @@ Views views_of_one_boundary(const std::vector<Track>& tracks, double every_m) {
     return views;
 }
 
-// Cones of other parts of the course always face the boundary that is seen; a lane of both is seldom likely.
+// Other parts of the course always show cones opposite to the seen boundary; a lane of both is rarely likely.
 TEST(FrontBoundary, IsAnsweredInMostViewsThatShowNoOther) {
     const Views views =
         views_of_one_boundary({generate_track("kidney", 3), generate_track("infield", 3)}, 8.0);

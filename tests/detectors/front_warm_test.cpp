@@ -1,5 +1,5 @@
-// `front-warm`: the last lane of a lap as evidence, which steadies what the car drives by and never holds it
-// to a wrong lane.
+// `front-warm` uses the last lane of a lap as evidence: it makes the answers steadier, and does not keep the
+// car on a wrong lane.
 
 #include "conelane/detectors.hpp"
 #include "conelane/invalid_input.hpp"
@@ -52,7 +52,7 @@ TEST(FrontEvidence, ConesOfTheLastLaneEarnABonusOnTheirSideUntilForgotten) {
     EXPECT_THROW(FrontEvidence(-0.1), InvalidInput);
 }
 
-// Where nothing else counts, the best lane has all cones remembered that it can have.
+// If only the bonus counts, the best lane has as many remembered cones as it can.
 TEST(FrontEvidence, IsAddedToTheScoresOfStartsAndMoves) {
     const Scene scene = straight_front_scene(4);
     FrontCost cost(FrontWeights::zero());
@@ -75,7 +75,7 @@ LaneAnswer detect(LaneDetector& detector, const Scene& scene) {
     return detector.detect(scene, tests::kNoTimeLimit);
 }
 
-/// A lap, and what `front` answers on it.
+/// A lap, and the answers of `front` on it.
 struct Lap {
     SceneSet set;
     std::vector<Lane> cold;
@@ -90,7 +90,7 @@ struct Lap {
     [[nodiscard]] std::size_t size() const { return set.scenes.size(); }
 };
 
-/// `rate`: of false cones, which stay where they are.
+/// `rate`: share of false cones, which persist along the lap.
 Lap lap_of(const std::string& track, double rate) {
     SceneOptions options;
     options.false_positive_rates = {rate};
@@ -99,7 +99,7 @@ Lap lap_of(const std::string& track, double rate) {
     return Lap(track, options);
 }
 
-/// The scene as it seems from elsewhere: the lane that is found by it is another one of the same cones.
+/// The scene seen from another pose: the lane found is another one of the same cones.
 Scene seen_from(const Scene& scene, double left_m, double turned_rad) {
     Scene other = scene;
     const Point heading = scene.pose.heading();
@@ -108,8 +108,8 @@ Scene seen_from(const Scene& scene, double left_m, double turned_rad) {
     return other;
 }
 
-/// A scene of the same ids in which they bound a lane that has nothing to do with the one they bound before:
-/// those nearest ahead stand along a straight, in the order of their ids.
+/// A scene with the same ids, which bound a completely different lane than before: the nearest ones ahead are
+/// along a straight, in the order of their ids.
 Scene decoy_of(const Scene& scene) {
     Scene decoy = nearest_ahead(scene, 20);
     decoy.pose = {};
@@ -120,15 +120,15 @@ Scene decoy_of(const Scene& scene) {
     return decoy;
 }
 
-/// Whether two lanes are the same to drive by: over the first 15 m their centre lines are.
+/// Whether two lanes are the same for a driver: over the first 15 m their centre lines agree.
 bool drives_alike(const Lane& a, const Lane& b, const Scene& scene) {
     return is_steady(centre_line_of(outline_of(a, scene), scene.pose),
                      centre_line_of(outline_of(b, scene), scene.pose));
 }
 
-/// Lets a wrong lane be answered before every seventh scene of a lap and expects that from the third scene
-/// after it on the car drives as by `front`, or as by a `front-warm` that was never wrong. Returns how many
-/// lanes were wrong on both sides indeed.
+/// Makes the detector answer a wrong lane before every seventh scene of a lap. Expects that from the third
+/// scene after it, the car drives as with `front`, or as with a `front-warm` that was never wrong. Returns
+/// how many lanes were wrong on both sides.
 template <typename Decoy>
 std::size_t expect_recovery(const Lap& lap, const Decoy& decoy) {
     constexpr std::size_t kEvery = 7;
@@ -175,7 +175,7 @@ TEST(FrontWarm, RecoversFromAWrongLaneAmongFalseConesWithinThreeScenes) {
         const std::size_t decoys = (lap.size() + 6) / 7;
         EXPECT_EQ(expect_recovery(lap, [](const Scene& scene, std::size_t) { return decoy_of(scene); }),
                   decoys);
-        // A wrong lane of the very scene, as it would be right for a car that stands and looks elsewhere.
+        // A wrong lane in the same scene, as it would be right for a car with another pose.
         const auto elsewhere = [](const Scene& scene, std::size_t number) {
             const double sign = number % 2 == 0 ? 1.0 : -1.0;
             return seen_from(scene, 3.0 * sign, number % 4 < 2 ? 0.6 : -0.6);
@@ -186,7 +186,7 @@ TEST(FrontWarm, RecoversFromAWrongLaneAmongFalseConesWithinThreeScenes) {
 
 TEST(FrontWarm, SwappedSidesAreNoTrap) {
     const Lap lap = lap_of("generated:kidney@5", 0.3);
-    // Seen in a mirror: each boundary's ids stand on the other side.
+    // Mirrored: each boundary's ids are on the other side.
     const auto mirrored = [](Scene scene, std::size_t) {
         const Point heading = scene.pose.heading();
         for (Cone& cone : scene.cones) {
@@ -213,7 +213,7 @@ TEST(FrontWarm, IdsThatVanishLeaveNothingBehind) {
     const auto warm = make_detector("front-warm");
     for (std::size_t i = 0; i < lap.size(); i += 5) {
         (void)detect(*warm, decoy_of(lap.scene(i)));
-        // As after the start of a new map.
+        // As after a new map has begun.
         Scene renamed = lap.scene(i);
         Lane expected = lap.cold[i];
         const auto rename = [](ConeId& id) { id += 10'000'000; };
@@ -228,7 +228,7 @@ TEST(FrontWarm, IdsThatVanishLeaveNothingBehind) {
 TEST(FrontWarm, APoseThatJumpsDoesNoHarm) {
     const Lap lap = lap_of("generated:kidney@5", 0.3);
     const auto warm = make_detector("front-warm");
-    // To and fro between places of the lap, and turned round in between: then the sides are swapped.
+    // Jumps between places of the lap, and turns round between them, so that the sides are swapped.
     for (std::size_t i = 0; i < lap.size(); ++i) {
         const std::size_t at = (37 * i) % lap.size();
         EXPECT_EQ(detect(*warm, lap.scene(at)).lane, lap.cold[at]) << lap.scene(at).id;

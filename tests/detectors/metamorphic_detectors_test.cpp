@@ -1,4 +1,4 @@
-// Another view of the same cones has the same lane, for every detector of the library.
+// Transformed scenes have the same lane, for every detector of the library.
 
 #include "conelane/detectors.hpp"
 #include "detectors/baseline_parameters.hpp"
@@ -54,7 +54,7 @@ bool is_rld(std::string_view name) {
     return name.starts_with("rld");
 }
 
-/// RLD proves its optimum, which takes too long among all cones of the worst of these scenes.
+/// RLD proves its optimum, which takes too long with all cones of the hardest of these scenes.
 Scene scene_for(std::string_view name, const Scene& scene) {
     return is_rld(name) ? nearest_ahead(scene, 26) : scene;
 }
@@ -66,19 +66,19 @@ void expect_near(const std::optional<double>& a, const std::optional<double>& b,
     }
 }
 
-/// How many scenes have a lane, and how many another one where they are changed.
+/// The number of scenes with a lane, and of those whose lane differs after the transformation.
 struct Outcome {
     std::size_t scenes = 0;
     std::size_t found = 0;
     std::size_t different = 0;
 };
 
-/// Warm detectors see the scenes as a lap: both carry the same lanes on.
+/// Warm detectors see the scenes as a lap, so both keep the same lanes.
 Outcome compare(LaneDetector& detector, LaneDetector& other, std::string_view name, const Change& original,
                 const Change& change, bool compares_confidence) {
     // astar-lane takes a hundred times as long as the others.
     const std::size_t every = name == "astar-lane" ? 6 : 1;
-    // There positions are multiples of a micrometre, and the middles of edges are rounded.
+    // For these, positions are multiples of a micrometre, and the midpoints of edges are rounded.
     const double tolerance = change.name == "MovedFar" ? 1e-5 : kObjectiveTolerance;
     Outcome outcome;
     for (std::size_t k = 0; k < scenes().size(); k += every) {
@@ -133,7 +133,7 @@ std::string test_name(std::string name) {
 
 class DetectorScale : public testing::TestWithParam<std::string> {};
 
-/// The RLD detector of that name itself: whether its lanes can be driven is a matter of metres.
+/// The RLD detector alone, without drivable: whether its lanes can be driven depends on metres.
 std::unique_ptr<LaneDetector> bare_rld_detector(std::string_view name, const DetectorOptions& options) {
     const DetectorRecipe& recipe = *std::ranges::find(detector_recipes(), name, &DetectorRecipe::name);
     return make_rld_detector(
@@ -178,8 +178,8 @@ TEST(DelaunayBeamMetamorphic, FindsTheSameLaneAtAnotherScale) {
     EXPECT_EQ(outcome.different, 0U);
 }
 
-/// Learned detectors have lengths in metres among their inputs, and astar-lane a lattice in metres: lanes are
-/// not the same at another scale. A scale that is off by a billionth, as a survey may be, changes none.
+/// Learned detectors have lengths in metres among their inputs, and astar-lane has a lattice in metres: their
+/// lanes may change with the scale. A scale that is off by a billionth, as from a survey, changes no lane.
 TEST_P(DetectorScale, AlmostTheSameIsAsGood) {
     const Change larger{"Larger", [](Scene scene) { return tests::scaled(std::move(scene), 1.0 + 1e-9); }};
     const auto detector = make_detector(GetParam());

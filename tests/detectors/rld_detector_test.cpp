@@ -1,4 +1,4 @@
-// What an RLD detector makes of a scene: its cone set, and the context beyond it.
+// The cone set and the context of an RLD detector.
 
 #include "conelane/rld_detector.hpp"
 
@@ -40,7 +40,7 @@ LaneAnswer detect(const Scene& scene, std::optional<std::size_t> nearest,
         ->detect(scene, tests::kNoTimeLimit);
 }
 
-/// Left of the sixth gap's end a false cone, nearer to the car than the true cones 4 and 104 at x = 9.6.
+/// A false cone left of the end of the sixth gap, nearer to the car than the true cones 4 and 104 at x = 9.6.
 Scene with_false_cone() {
     Scene scene = straight();
     scene.cones.push_back({.id = 200, .position = {8.6, 2.9}});
@@ -101,7 +101,7 @@ TEST(RldDetector, ScenesThatAreNotValidAreRefusedByItAndBySolveScene) {
     scene = straight();
     scene.cones[2].position.y() = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(refusals(scene), Each(HasSubstr("cones[2].y")));
-    // Valid, but the distance is infinite.
+    // Valid, but the distance from the car is infinite.
     scene = straight();
     scene.pose.position.x() = 1.5e308;
     scene.cones[4].position.x() = -1.5e308;

@@ -46,9 +46,9 @@ TEST(WarmStart, GoesAlongTheLastLaneFirst) {
     const SceneSet set = lap(0.3, 40.0);
     ClcOptions options = extended_clc_options();
     options.warm_start = true;
-    options.iteration_limit = 200;  // too few to find much from nothing
+    options.iteration_limit = 200;  // too few to find much without a start
     const std::unique_ptr<LaneDetector> detector = make_clc_detector(options);
-    // The same scene twice: what was found first is met again on the way and not lost.
+    // The same scene twice: the earlier answer is met again and kept.
     const AnnotatedScene& scene = set.scenes[10];
     const auto length_m = [&] {
         return score(scene, detector->detect(scene.scene, tests::kNoTimeLimit), 0.0, std::nullopt, nullptr)

@@ -1,6 +1,6 @@
-// parameter_fields: the parameters of the library with default, range and unit, a line each with tabs between
-// the fields: group, key, default, lowest, highest, unit, description. tests/docs/reference_pages makes
-// docs/parameters.md of it.
+// parameter_fields prints the parameters of the library, a line each, with tabs between the fields: group,
+// key, default, lowest, highest, unit, description. tests/docs/reference_pages makes docs/parameters.md of
+// it.
 #include "conelane/rld_parameter_sets.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "detectors/baseline_parameters.hpp"

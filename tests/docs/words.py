@@ -45,6 +45,20 @@ PHRASES = [
     (r"the other core was at work|both cores at work", "docs/benchmarks/ and the machine"),
     (r"last week|this week|last session|this session|yesterday", "CHANGELOG.md"),
     (r"the program before it|the code of today|today's (?:code|arithmetic|program)", "CHANGELOG.md"),
+    (r"\b(?:built|builds?|written|placed|solved|fitted|linked|stored?|start(?:s|ed)?|search(?:es|ed)?|draw) (?:\w+ ){0,2}anew\b", "... again"),
+    (r"\bheld against\b|\bholds? (?:\w+ ){1,5}against\b", "compared with"),
+    (r"\bbe it (?:a|an|by|that|under|with|through)\b", "also if, or"),
+    (r"looks? at (?:the|its) (?:clock|deadline)", "checks of the clock"),
+    (r"\bclock (?:strikes|struck)\b", "the time ends"),
+    (r"\bto be asked before\b", "call it before"),
+    (r"\b(?:one|two|three|four) at least\b", "at least two"),
+    (r"\bwhat (?:became|becomes) of\b", "the outcome of"),
+    (r"\bthe very (?:cones|lane|same|scene)\b", "exactly the same"),
+    (r"\bwhat is no\b", "an invalid ...; name the thing"),
+    (r"\bcut short\b", "interrupted, truncated"),
+    (r"\bhardly ever\b", "rarely"),
+    (r"\ba lane to drive by\b", "a usable lane"),
+    (r"\bwent wrong, or nothing\b", "the failure in words, or nothing"),
 ]
 # In documents only, but not in the change log.
 DIARY = [

@@ -1,5 +1,5 @@
-// The readers of what detectors and solvers answered: lanes, lanes from outside, the log of an unfinished
-// run, solutions, and the solution files of other people's solvers. What is read can be written and read
+// Readers of answers of detectors and solvers: lanes, lanes from outside, the log of an unfinished run,
+// solutions, and the solution files of other solvers. A text that is read can be written and read
 // again.
 
 #include "conelane/formulation.hpp"

@@ -1,5 +1,5 @@
-// Certificates of both kinds: the readers, and the verifiers on whatever was read. A verifier may accept no
-// bound above the optimum.
+// Certificates of both kinds: the readers, and the verifiers on everything that is read. A verifier must not
+// accept a bound above the optimum.
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -18,8 +18,8 @@
 namespace conelane::fuzz {
 namespace {
 
-/// Two straight boundaries of three cones, of which the seeds in corpus/certificates are proofs. The optimum
-/// is both boundaries whole, at the cost -4.
+/// Two straight boundaries of three cones; the seeds in corpus/certificates are proofs about them. The
+/// optimum is both whole boundaries, at the cost -4.
 Scene straight_lane() {
     Scene scene;
     scene.id = "straight";

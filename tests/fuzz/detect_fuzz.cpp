@@ -1,5 +1,5 @@
-// Every detector on scenes made of the bytes: an answer within the contract of LaneDetector, soon after the
-// limit, and a centre line of it.
+// Every detector on scenes made of the bytes: an answer that keeps the contract of LaneDetector, soon after
+// the limit, and its centre line.
 
 #include "conelane/drivable_lane.hpp"
 #include "experiments/comparison/known_detectors.hpp"
@@ -20,7 +20,7 @@
 namespace conelane::fuzz {
 namespace {
 
-/// Made once, since some read large tables.
+/// Made once, because some read large tables.
 LaneDetector& made_detector(const experiments::KnownDetector& known) {
     static std::map<std::string_view, std::unique_ptr<LaneDetector>> made;
     std::unique_ptr<LaneDetector>& entry = made[known.name];
@@ -59,7 +59,7 @@ void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_
         case LaneStatus::stopped:
             require(answer.stopped_by.has_value(), "a limit stopped it");
             break;
-        case LaneStatus::error:  // CBC takes no cost above 1e20
+        case LaneStatus::error:  // CBC rejects costs above 1e20
             require(!answer.message.empty() && !is_on_a_map(scene), answer.message);
     }
     if (answer.status != LaneStatus::found) {
@@ -82,7 +82,7 @@ void require_contract(const Scene& scene, const LaneAnswer& answer, bool may_be_
 }
 
 void require_centre_line(const LaneAnswer& answer, const Scene& scene) {
-    answers([&] {  // refuses cones beyond 1000 km and boundaries beyond 20 km
+    answers([&] {  // rejects cones beyond 1000 km and boundaries beyond 20 km
         const DrivableLane lane = drivable(answer, scene);
         require(std::isfinite(lane.length_m), "a length is finite");
         for (const DrivablePoint& point : lane.points) {
@@ -97,7 +97,7 @@ void require_centre_line(const LaneAnswer& answer, const Scene& scene) {
 void detect_on(FuzzedDataProvider& input) {
     constexpr double kLimits_ms[]{0.0, 0.5, 2.0, 5.0, 20.0};
     constexpr double kMaxSeconds =
-        2.0;  // of a processor under a sanitizer; the limits above are 0.02 s at most
+        2.0;  // seconds of processor time under a sanitizer; the limits above are 0.02 s at most
     const std::span<const experiments::KnownDetector> all = experiments::known_detectors();
     const experiments::KnownDetector& known =
         all[input.ConsumeIntegralInRange<std::size_t>(0, all.size() - 1)];

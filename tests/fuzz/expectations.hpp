@@ -10,14 +10,14 @@
 
 namespace conelane::fuzz {
 
-/// Ends the program, which the fuzzer takes as a crash and keeps the input.
+/// Ends the program; the fuzzer counts this as a crash and keeps the input.
 inline void require(bool holds, std::string_view what) {
     if (holds) return;
     std::cerr << "broken promise: " << what << '\n';
     std::abort();
 }
 
-/// Calls a reader, which may answer or refuse; what else it throws ends the program. True where it answered.
+/// Calls a reader, which may return or reject; any other exception ends the program. True if it returned.
 template <typename Read>
 bool answers(const Read& read) {
     std::string message;

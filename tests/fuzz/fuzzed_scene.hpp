@@ -25,13 +25,13 @@ inline double any_number(FuzzedDataProvider& input) {
     return std::isfinite(value) ? value : 0.0;
 }
 
-/// A length that is usual among cones, in steps of 5 cm up to 6.4 m either way.
+/// A length that is usual among cones: a multiple of 5 cm up to 6.4 m, with sign.
 inline double usual_length_m(FuzzedDataProvider& input) {
     return 0.05 * static_cast<double>(input.ConsumeIntegral<std::int8_t>());
 }
 
-/// A cone's place beside the earlier ones: where a lane has it, on top of one, on a line with two, on a grid
-/// where distances tie, mirrored at the car's axis, or anywhere.
+/// A cone's place relative to earlier ones: where a lane would have it, on top of one, on a line with two, on
+/// a grid where distances tie, mirrored at the car's axis, or anywhere.
 inline Point place_of_cone(FuzzedDataProvider& input, const std::vector<Point>& earlier) {
     enum class Place { lane, top, line, grid, mirrored, far, anywhere, kMaxValue = anywhere };
     const auto place = input.ConsumeEnum<Place>();
@@ -90,7 +90,7 @@ inline Cone fuzzed_cone(FuzzedDataProvider& input, const Point& position, std::s
     return cone;
 }
 
-/// Readers of tracks refuse what is farther from the origin. There the numbers of double stand 2e-9 m apart.
+/// Readers of tracks reject points farther from the origin. There, neighbouring doubles are 2e-9 m apart.
 constexpr double kMaxMapDistance_m = 1e7;
 
 inline bool is_on_a_map(const Scene& scene) {
@@ -99,7 +99,7 @@ inline bool is_on_a_map(const Scene& scene) {
            std::ranges::all_of(scene.cones, [&](const Cone& cone) { return is_near(cone.position); });
 }
 
-/// A scene that `validate` takes, made of the bytes: a drawing of up to `max_cones` cones, turned with the
+/// A scene made of the bytes that `validate` accepts: a drawing of up to `max_cones` cones, rotated with the
 /// car, scaled and moved away from the origin.
 inline Scene fuzzed_scene(FuzzedDataProvider& input, std::size_t max_cones) {
     constexpr double kUnits[]{1.0, 1.0, 1.0, 1.0, 1e-9, 1e-3, 0.3, 3.0, 1e3, 1e6, 1e150, 1e300};

@@ -1,6 +1,6 @@
-// The readers of parameters and of what else tells a run what to do: RLD parameters, those of other
-// detectors, the cards of detectors, the record of a tuning, the round trips of an echo, what names a
-// detector from outside.
+// Readers of everything that tells a run what to do: RLD parameters, those of other detectors, the
+// cards of detectors, the record of a tuning, round trips of an echo, and the names of detectors from
+// outside.
 
 #include "evaluation/files/detector_parameter_file.hpp"
 #include "evaluation/files/parameter_file.hpp"

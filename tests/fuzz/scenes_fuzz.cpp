@@ -1,5 +1,5 @@
-// The readers of scenes: a file, a stream, and the boundaries of a file's tracks. What is read can be written
-// and read again.
+// Readers of scenes: a file, a stream, and the boundaries of a file's tracks. A text that is read can be
+// written and read again.
 
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/fuzz/expectations.hpp"

@@ -10,7 +10,7 @@
 
 namespace conelane::fuzz {
 
-/// A folder of this process for what readers take as files; removed at a normal end. TMPDIR says where.
+/// A folder of this process, below TMPDIR, for files that readers need; removed at a normal end.
 class ScratchFolder {
   public:
     ScratchFolder() {

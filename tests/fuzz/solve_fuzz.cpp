@@ -1,5 +1,5 @@
-// The exact solver path-pair on scenes and parameters made of the bytes, at tight limits: what it claims
-// holds by the independent checker, and where a scene is small, every pair of paths says the same.
+// The exact solver path-pair on scenes and parameters made of the bytes, with tight limits: the independent
+// checker confirms its claims, and for small scenes, so does the enumeration of every pair of paths.
 
 #include "conelane/check.hpp"
 #include "conelane/core_solvers.hpp"
@@ -29,7 +29,7 @@ void require_contract(const Scene& scene, const RldParameters& parameters, const
         require(!report.stopped_by, "a search that was stopped proves nothing");
     }
     if (!has_answer) return;
-    // Beyond every map the checker, which computes otherwise, rounds otherwise.
+    // Beyond every map, the checker's different arithmetic has different rounding errors.
     if (!is_on_a_map(scene)) {
         require(paths(*report.lane_graph, scene.cones.size()).value_or(Paths{}).size() == 2, "two paths");
         return;
@@ -52,7 +52,7 @@ void solve_on(FuzzedDataProvider& input) {
     const SolvedScene solved = solve_scene(*path_pair, scene, parameters, limits);
     require_contract(scene, parameters, solved.report);
 
-    // From a start: its own answer, or edges that the bytes say, of cones that may be gone.
+    // A start: its own answer, or edges from the bytes, possibly of cones that do not exist.
     LaneGraph start = solved.report.lane_graph.value_or(LaneGraph{});
     if (input.ConsumeBool()) {
         start.edges.clear();

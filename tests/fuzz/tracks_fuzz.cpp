@@ -1,6 +1,5 @@
-// The track readers: the bytes as each of the four formats. The two files of an FSD track are parted by a
-// line
-// `---`.
+// The track readers: the bytes as each of the four formats. The line `---` separates the two files of an FSD
+// track.
 
 #include "evaluation/tracks/run_log.hpp"
 #include "evaluation/tracks/track_readers.hpp"

@@ -1,5 +1,5 @@
-// The readers of weights: of `front`, of the network of `clc`, of step scores. What is read is valid and is
-// written as it was.
+// Readers of weights: of `front`, of the network of `clc`, of step scores. Weights that are read are valid,
+// and after writing they read the same.
 
 #include "evaluation/files/front_weights_file.hpp"
 #include "evaluation/files/rank_net_file.hpp"

@@ -39,7 +39,7 @@ double objective(const Scene& scene, const RldParameters& parameters, const Lane
     return check(scene, parameters, graph).objective.value();
 }
 
-/// All of its four edges are as long and as straight as expected and lie along the heading.
+/// All four edges have the expected length and angles, and are along the heading.
 TEST(Check, AcceptsTheStraightLane) {
     const CheckReport report = check(six_cone_lane(), {}, kLane);
     EXPECT_THAT(report.violations, IsEmpty());
@@ -94,8 +94,8 @@ TEST(Check, ThePairingSaysWhichEndsAPathMayHave) {
     EXPECT_THAT(violations(six_cone_lane(), parameters, across), Each(Not(HasSubstr("joins both"))));
 }
 
-/// 1.6 m ahead, the cones of one boundary stand beside the middles of the other one's edges.
-TEST(Check, BoundariesKeepTheirDistanceButWhereTwoConesFaceEachOther) {
+/// At 1.6 m ahead, the cones of one boundary are beside the middles of the other boundary's edges.
+TEST(Check, BoundariesKeepTheirDistanceExceptBetweenFacingCones) {
     RldParameters parameters;
     parameters.d_min = 3.5;
     EXPECT_THAT(violations(six_cone_lane(1.6), parameters), IsEmpty());
@@ -145,7 +145,7 @@ TEST(Check, LimitsOfSpacingAndAngle) {
     EXPECT_THAT(violations(scene, {}, {{{0, 7}}}), Contains(HasSubstr("has no length")));
 }
 
-/// An edge counts in (9) where it is near the car and along its heading.
+/// An edge counts in (9) if it is near the car and along its heading.
 TEST(Check, TwoEdgesAlongTheHeading) {
     Scene scene = six_cone_lane();
     add_cone(scene, {20.0, 1.75});
@@ -184,7 +184,7 @@ TEST(Check, NearEndsBesideTheCarEarnABenefit) {
     parameters.w_n = 0.5;
     EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0 - 2.0 * 0.5 * (1.0 - std::pow(0.05 / 1.7, 2)),
                 kRounding);
-    parameters.d_w = 10.0;  // they are far off: no benefit, and no cost either
+    parameters.d_w = 10.0;  // far off: no benefit, and no cost
     EXPECT_NEAR(objective(six_cone_lane(), parameters), -4.0, kRounding);
 }
 
@@ -198,7 +198,7 @@ TEST(Check, UnevenSpacingCosts) {
     EXPECT_NEAR(objective(scene, parameters), -4.0 + spacing + 2.0 * std::pow(1.0 / 1.7, 2), kRounding);
 }
 
-TEST(CheckClaim, IsHeldAgainstWhatIsRecomputed) {
+TEST(CheckClaim, IsComparedWithTheRecomputedValues) {
     const auto claimed = [](const Claim& claim) {
         return check(six_cone_lane(), {}, kLane, claim).violations;
     };

@@ -1,5 +1,5 @@
-// On which side an edge near the car is, as its color is judged: ahead of the car on a straight, and in
-// bends, where neither the car's axis nor the line of the edge tells alone.
+// The side of an edge near the car, for its color cost: on a straight, and in bends, where neither the car's
+// axis nor the line of the edge is enough.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -17,7 +17,7 @@ namespace {
 constexpr ConeColor kBlue = ConeColor::blue;
 constexpr ConeColor kYellow = ConeColor::yellow;
 
-/// Of the edge between two cones; the car stands in the origin and looks along +x.
+/// Cost of the edge between two cones; the car is at the origin and looks along +x.
 double color_cost(const Point& from, ConeColor from_color, const Point& to, ConeColor to_color) {
     Scene scene;
     scene.cones = {{1, from, from_color}, {2, to, to_color}};
@@ -43,10 +43,10 @@ TEST(ColorCost, IsOnTheWrongSideOfAStraightOnly) {
 }
 
 TEST(ColorCost, SparesBothBoundariesOfABend) {
-    // The outer boundary of a bend to the right has crossed the axis, yet the car is to the right of its
+    // The outer boundary of a bend to the right crosses the axis, but the car is to the right of its
     // line.
     EXPECT_EQ(color_cost(kBlue, {4.5, 1.0}, {6.5, -1.6}), 0.0);
-    // The inner one is right of the axis, and its line has turned so far that the car is to its right too.
+    // The inner one is right of the axis, but its line has turned so far that the car is to its right.
     EXPECT_EQ(color_cost(kYellow, {3.0, -2.0}, {4.4, -4.6}), 0.0);
     // The same mirrored: a bend to the left.
     EXPECT_EQ(color_cost(kYellow, {4.5, -1.0}, {6.5, 1.6}), 0.0);
@@ -56,14 +56,14 @@ TEST(ColorCost, SparesBothBoundariesOfABend) {
 TEST(ColorCost, OfAnEdgeOfBothColorsIsOneFarAwayAndTwoBesideTheCar) {
     EXPECT_EQ(color_cost({20, 0}, kBlue, {23, 0}, kYellow), 1.0);
     EXPECT_EQ(color_cost({2, 1.5}, kBlue, {5, 1.5}, kYellow), 2.0);
-    EXPECT_EQ(color_cost({20, 1.5}, kYellow, {23, 1.5}, kYellow), 0.0);  // far away no side is known
+    EXPECT_EQ(color_cost({20, 1.5}, kYellow, {23, 1.5}, kYellow), 0.0);  // too far for a side
 }
 
 /// Blue with 0.7 and yellow with 0.1 at one end, with 0.4 and 0.5 at the other.
-TEST(ColorCost, OfProbabilitiesIsWhatIsExpected) {
+TEST(ColorCost, OfProbabilitiesIsTheExpectedCost) {
     const auto cost = [](const Point& from, const Point& to) {
         Scene scene;
-        scene.cones = {{1, from, ConeColor::yellow}, {2, to, ConeColor::yellow}};  // the labels do not count
+        scene.cones = {{1, from, ConeColor::yellow}, {2, to, ConeColor::yellow}};  // labels have no effect
         scene.cones[0].color_probabilities = {.unknown = 0.2, .blue = 0.7, .yellow = 0.1};
         scene.cones[1].color_probabilities = {.blue = 0.4, .yellow = 0.5, .orange = 0.1};
         return make_problem(scene, {}).edges.at(0).color_cost;
@@ -74,7 +74,7 @@ TEST(ColorCost, OfProbabilitiesIsWhatIsExpected) {
     EXPECT_NEAR(cost({2, 1.5}, {5, 1.5}), kOfBoth + 0.55, 1e-12);    // 1 - 0.9 * 0.5: one is yellow
 }
 
-/// Every edge of a problem, each alone, is as dear to the checker as to the problem.
+/// For every edge of a problem alone, the checker's cost is the problem's.
 TEST(ColorCost, IsThatOfTheIndependentChecker) {
     std::size_t faults = 0;
     for (std::uint64_t seed = 0; seed < 40; ++seed) {

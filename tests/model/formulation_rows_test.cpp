@@ -1,5 +1,5 @@
-// Rows of the two formulations that others imply once everything else is right, and the names of columns:
-// each held against edges that are chosen by hand.
+// Rows of the two formulations that follow from other rows in a right program, and the names of columns: each
+// is compared with edges that are chosen by hand.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "model/lane_graph_model.hpp"
@@ -84,7 +84,7 @@ TEST(PaperRows, AnInlierHasAnEdge) {
     EXPECT_THAT(violated("inlier_has_edge", {{0, 1}, {3, 4}, {4, 5}}, kAll), testing::SizeIs(1));
 }
 
-TEST(PaperRows, AConeHasTwoEdgesAtMostAndNoneWhereItIsNoInlier) {
+TEST(PaperRows, AConeHasAtMostTwoEdgesAndNoneIfItIsNoInlier) {
     std::vector<Edge> rungs = kLane;
     rungs.push_back({1, 4});
     EXPECT_THAT(violated("degree_at_most_two", rungs, kAll), testing::SizeIs(2)) << "1 and 4";
@@ -98,7 +98,7 @@ TEST(PaperRows, TwoPathsHaveFourEndpoints) {
     EXPECT_THAT(violated("four_endpoints", {{0, 1}, {2, 5}, {3, 4}}, kAll), testing::SizeIs(1));
 }
 
-/// Written programs name a column e after the cone that it comes from and the one where the path ends.
+/// A written program names a column e by the cone that it comes from and the one where the path ends.
 TEST(TightRows, NearEndpointsAreColumnsThatEndAtANearCone) {
     const Scene scene = straight_lane();
     const LaneGraphProblem problem = make_problem(scene, {});
@@ -117,7 +117,7 @@ TEST(TightRows, NearEndpointsAreColumnsThatEndAtANearCone) {
     }
 }
 
-/// The path from 0 to 1 joins two near cones. The row that forbids it leaves the lane, where it goes on to 2.
+/// The path from 0 to 1 joins two near cones. The row that forbids it allows the lane, which continues to 2.
 TEST(TightRows, APathBetweenNearConesMayGoOn) {
     const Scene scene = straight_lane();
     const LaneGraphProblem problem = make_problem(scene, {});

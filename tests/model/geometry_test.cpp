@@ -44,11 +44,12 @@ TEST(SegmentDistance, ExactlyFacingSegmentsTieAndCountAsBetweenEnds) {
     const SegmentDistance facing = segment_distance({{0, 0}, {4, 0}}, {{0, 3}, {4, 3}});
     EXPECT_DOUBLE_EQ(facing.distance_m, 3.0);
     EXPECT_TRUE(facing.between_ends);
-    // Shifted along, the ends face the inside of the other segment but the distance is not that of two ends.
+    // The segments are shifted along: an end faces the inside of the other, so the distance is not between
+    // two ends.
     EXPECT_FALSE(segment_distance({{0, 0}, {4, 0}}, {{1, 3}, {5, 3}}).between_ends);
 }
 
-TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveNone) {
+TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveDistanceZero) {
     const SegmentDistance crossing = segment_distance({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}});
     EXPECT_DOUBLE_EQ(crossing.distance_m, 0.0);
     EXPECT_FALSE(crossing.between_ends);
@@ -63,7 +64,7 @@ TEST(SegmentDistance, CrossingTouchingAndOverlappingSegmentsHaveNone) {
     EXPECT_FALSE(overlap.between_ends);
 }
 
-// Of two that have no point in common it is the smallest distance of an end from the other segment.
+// For two segments without a common point, it is the smallest distance of an end from the other segment.
 TEST(SegmentDistance, IsThatOfTheNearestEndsFootPoint) {
     boost::random::mt19937_64 random(1);
     boost::random::uniform_int_distribution<int> grid(-6, 6);  // touching, parallel and without length, too

@@ -1,4 +1,4 @@
-// The program of a problem: an update gives what building anew gives; lane graphs carried from scene to
+// The program of a problem: an update gives the same as a new program; lane graphs carried from scene to
 // scene.
 
 #include "model/lane_graph_model.hpp"
@@ -16,7 +16,7 @@
 namespace conelane {
 namespace {
 
-/// Everything of a program as text, so that a difference shows.
+/// The whole program as text, so that any difference shows.
 std::string text_of(const BinaryProgram& program) {
     std::string text;
     for (const BinaryProgram::Column& column : program.columns) {
@@ -39,7 +39,7 @@ std::string text_of(const BinaryProgram& program) {
 class ModelUpdate : public testing::TestWithParam<Formulation> {};
 
 /// Sizes repeat and change, so that both ways of updating are taken.
-TEST_P(ModelUpdate, EqualsAProgramBuiltAnew) {
+TEST_P(ModelUpdate, EqualsANewProgram) {
     const EdgeExtent extent = parts(GetParam()).extent;
     const RldParameters parameters;
     const LaneGraphProblem first = make_problem(tests::random_scene(0, 8), parameters, extent);
@@ -56,7 +56,7 @@ TEST_P(ModelUpdate, EqualsAProgramBuiltAnew) {
 INSTANTIATE_TEST_SUITE_P(Formulations, ModelUpdate, testing::Values(Formulation::tight, Formulation::paper),
                          [](const auto& test) { return std::string(to_string(test.param)); });
 
-TEST(MapByConeId, FindsConesAgainAndLeavesOutWhatIsGone) {
+TEST(MapByConeId, FindsConesAgainAndDropsMissingOnes) {
     Scene before;
     before.cones = {{7, {0, 0}}, {3, {3, 0}}, {9, {6, 0}}};
     Scene after;
@@ -67,8 +67,8 @@ TEST(MapByConeId, FindsConesAgainAndLeavesOutWhatIsGone) {
     EXPECT_EQ(map_by_cone_id(before, graph, before), graph);
 }
 
-/// Sets of up to six edges at random, many of them lanes but for one thing: the problem's own test and the
-/// checker, which share no code, must agree.
+/// Random sets of up to six edges, many of them lanes with one error: the problem's own test and the checker,
+/// which share no code, must agree.
 TEST(IsFeasible, AgreesWithTheChecker) {
     int feasible = 0;
     for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -84,8 +84,8 @@ TEST(IsFeasible, AgreesWithTheChecker) {
         parameters.pairing = seed % 2 == 0 ? Pairing::paper : Pairing::near_far;
         const LaneGraphProblem problem = make_problem(scene, parameters);
         for (int trial = 0; trial < 40; ++trial) {
-            // Two chains over cones of even and of odd index, as the lane was made, and a stray edge at
-            // times.
+            // Two chains, over cones of even and of odd index, as the lane was made; sometimes with a stray
+            // edge.
             LaneGraph graph;
             for (const std::size_t side : {0u, 1u}) {
                 const std::size_t length = 1 + below(3);

@@ -1,4 +1,4 @@
-// The numbers that a scene becomes, on a lane that can be followed by hand.
+// The numbers of a problem, for a lane that can be followed by hand.
 
 #include "conelane/lane_graph_problem.hpp"
 
@@ -78,7 +78,7 @@ TEST(LaneGraphProblem, ConfidencesOfBothConesScaleTheBenefit) {
 }
 
 /// Cone 1 is 4.55 m from the car, which is as far as the edge 1 - 2 is.
-TEST(LaneGraphProblem, WhatIsOnALimitIsWithinIt) {
+TEST(LaneGraphProblem, AValueOnItsLimitIsWithinIt) {
     RldParameters parameters;
     parameters.d_h = parameters.d_near = 4.55;
     const LaneGraphProblem problem = make_problem(six_cone_lane(), parameters);
@@ -94,13 +94,13 @@ TEST(LaneGraphProblem, AnEdgeWithoutLengthIsNeverAllowed) {
     Scene scene = six_cone_lane();
     scene.cones.push_back({6, scene.cones[0].position});
     RldParameters parameters;
-    parameters.d_e = 1.0;  // a length of 0 would be as good as one of 2 m
+    parameters.d_e = 1.0;  // then a length of 0 would cost as little as one of 2 m
     EXPECT_TRUE(edge(make_problem(scene, parameters, EdgeExtent::all_pairs), 0, 6).high_cost);
     const LaneGraphProblem candidates = make_problem(scene, parameters);
     EXPECT_EQ(edge_number(candidates, 0, 6), candidates.edges.size());
 }
 
-TEST(LaneGraphProblem, EdgesConflictThatAreTooCloseButWhereTwoConesFaceEachOther) {
+TEST(LaneGraphProblem, EdgesThatAreTooCloseConflictExceptBetweenFacingCones) {
     RldParameters parameters;
     parameters.d_min = 3.5;
     EXPECT_FALSE(in_conflict(make_problem(six_cone_lane(1.6), parameters)));
@@ -127,8 +127,8 @@ TEST(LaneGraphProblem, TurnsCostTheirAngleAndTheSharpestAreForbidden) {
     EXPECT_TRUE(corner.high_cost);
 }
 
-/// The near ends are 1.75 m beside the axis, half of the usual width is 1.8 m. A near cone that a path passes
-/// earns nothing: its turn gives back what its two edges got.
+/// The near ends are 1.75 m beside the axis; half of the usual width is 1.8 m. A near cone inside a path
+/// gains nothing: the turn there costs what the two edges gain.
 TEST(LaneGraphProblem, NearEndsBesideTheCarEarnABenefit) {
     RldParameters parameters;
     parameters.w_n = 0.5;
@@ -156,7 +156,7 @@ TEST(LaneGraphProblem, OnlyFarConesAreTooFarApart) {
     EXPECT_THAT(make_problem(six_cone_lane(), parameters).far_apart, ElementsAre(Pair(2, 5)));
 }
 
-/// A turn is paid for where both its edges are chosen.
+/// A turn costs only if both its edges are chosen.
 TEST(LaneGraphProblem, TheObjectiveCountsTurnsThatAreTaken) {
     Scene scene = six_cone_lane();
     scene.cones[2].position = {4.2 + 3.2 * std::cos(0.45), 1.75 + 3.2 * std::sin(0.45)};
@@ -195,8 +195,8 @@ TEST(IsFeasible, ByEachOfItsRules) {
     EXPECT_FALSE(is_feasible(make_problem(six_cone_lane(), parameters), kLane)) << "far ends too far apart";
 }
 
-/// One path between the near ends, one between the far ones. Both lie across the heading, which here is no
-/// matter.
+/// One path between the near ends, one between the far ones. Both are across the heading, which has no effect
+/// here.
 TEST(IsFeasible, ThePairingSaysWhichEndsAPathMayHave) {
     RldParameters parameters;
     parameters.theta_heading = std::numbers::pi / 2.0;

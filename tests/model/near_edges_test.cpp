@@ -1,4 +1,4 @@
-// Which edges of a problem come close to each other, against the plain distances of all pairs.
+// Edges of a problem that are near each other, compared with the distances of all pairs.
 
 #include "model/near_edges.hpp"
 
@@ -47,7 +47,7 @@ class RandomPoints {
   public:
     explicit RandomPoints(std::uint64_t seed) : random_(seed) {}
 
-    /// On a grid there are touching, parallel and overlapping segments, and some without length.
+    /// On a grid, some segments touch, are parallel, overlap, or have no length.
     Point on_grid() { return {grid_(random_), grid_(random_)}; }
     Point anywhere() { return {anywhere_(random_), anywhere_(random_)}; }
 
@@ -116,8 +116,8 @@ TEST(NearEdges, ShareNoCone) {
     EXPECT_THAT(near_edges.after(2), IsEmpty());
 }
 
-// Every pair that comes within reach or crosses is found, and far fewer than all are looked at.
-TEST(NearEdges, LeaveOutNoneThatComesCloserOrCrosses) {
+// Every pair within reach or crossing is found, and far fewer pairs than all are examined.
+TEST(NearEdges, IncludeAllThatComeCloserOrCross) {
     RandomPoints points(2);
     std::size_t pairs = 0;
     std::size_t looked_at = 0;

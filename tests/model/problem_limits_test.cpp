@@ -1,4 +1,4 @@
-// The making of a problem, and of its program, within a deadline and a bound of memory.
+// Making a problem, and its program, within a deadline and a limit of memory.
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -65,8 +65,8 @@ TEST(ProblemLimits, ADeadlineThatHasPassedLeavesNoProblem) {
     }
 }
 
-/// In each of its parts: edges, facing costs, turns and conflicts take longer than this, one by one. The
-/// whole takes seconds and gigabytes; that it ends at all in the time that the test has is the point.
+/// Each part takes longer than this: edges, facing costs, turns and conflicts. The whole takes seconds and
+/// gigabytes, so the test also shows that it stops.
 TEST(ProblemLimits, LargeScenesEndAtTheDeadlineOrAtTheBoundOfMemory) {
     for (const double side_m : {8.0, 30.0, 50.0, 2e6}) {
         for (const std::size_t cones : {800UL, 2000UL, 5000UL}) {
@@ -106,7 +106,7 @@ TEST(ProblemLimits, AreTheNumbersThatStandThere) {
 }
 
 /// 5000 cones within a few metres: the edges alone would be millions.
-TEST(ProblemLimits, MemoryIsTheReasonWhereThereIsTimeEnough) {
+TEST(ProblemLimits, StopsByMemoryIfThereIsEnoughTime) {
     const LimitedProblem limited = make_problem(strewn(5000, 8.0), {}, EdgeExtent::candidates, Deadline());
     EXPECT_FALSE(limited.problem);
     EXPECT_EQ(limited.stopped_by, StopReason::memory);
@@ -135,7 +135,7 @@ TEST(ProgramLimits, AStoppedUpdateLeavesTheModelFitForTheNext) {
         EXPECT_EQ(model.program().entry_columns, anew.program().entry_columns);
         EXPECT_EQ(model.program().entry_values, anew.program().entry_values);
     };
-    // With other columns the program is built anew, and then by a model that was stopped on the way.
+    // With other columns the program is built again, then by a model that was stopped while building.
     for (const std::size_t cones : {12, 13}) {
         for (const Formulation formulation : {Formulation::tight, Formulation::paper})
             update_after_a_stop(formulation, cones);

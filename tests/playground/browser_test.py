@@ -178,7 +178,7 @@ class PlaygroundTest(unittest.TestCase):
         message = self.value("""playground.ask("centreLine", { scene: { pose: { x: 0, y: 0, yaw: 0 }, cones: [{ id: 1, x: 1, y: 1 }] },
             lane: { left: [1, 1], right: [1], closed: false } }).catch((error) => error.message)""")
         self.assertIn("left[1]", message)
-        self.assertIn("started anew", self.value("document.getElementById('error').textContent"))
+        self.assertIn("started again", self.value("document.getElementById('error').textContent"))
         self.assertFalse(self.value("document.getElementById('error').hidden"))
         self.assertEqual(self.value("document.body.dataset.restarts"), "1")
         self.value("playground.turn('clc', true)")

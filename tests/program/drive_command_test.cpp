@@ -137,7 +137,7 @@ TEST_F(DriveCommand, WritesTheColumnsOfTumAndOfFtFsd) {
     EXPECT_TRUE(sides_differ);  // else an exchange would not show
 }
 
-TEST_F(DriveCommand, ALonelyLaneNeedsNoId) {
+TEST_F(DriveCommand, ASingleLaneNeedsNoId) {
     make_files();
     EXPECT_EQ(drive("--lanes one.lanes.jsonl --scenes s.scenes.jsonl --format tum --out d.csv").exit_code, 0);
     const std::string two = "--lanes two.lanes.jsonl --scenes s.scenes.jsonl --format tum --out e.csv ";
@@ -149,7 +149,7 @@ TEST_F(DriveCommand, ALonelyLaneNeedsNoId) {
     expect_refused(two + "--method magic", {"two.lanes.jsonl", "--method", "magic"});
 }
 
-TEST_F(DriveCommand, NamesWhatIsWrong) {
+TEST_F(DriveCommand, NamesErrors) {
     make_files();
     expect_refused("", {"--"});
     expect_refused(kInputs, {"--out"});
@@ -178,7 +178,7 @@ TEST_F(DriveCommand, NamesWhatIsWrong) {
                    {"bad.lanes.jsonl:2: left: "});
 }
 
-TEST_F(DriveCommand, LeavesAnOldFileAsItWasWhereItFails) {
+TEST_F(DriveCommand, AFailureLeavesTheOldFileUnchanged) {
     make_files();
     file_with("precious\n", "d.csv");
     expect_refused(kInputs + "--format tum --id c --out d.csv", {"status"});

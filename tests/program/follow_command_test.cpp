@@ -52,7 +52,7 @@ class FollowCommand : public ProgramFixture {
     void expect_refused(const std::string& arguments, const std::vector<std::string>& names) {
         ProgramFixture::expect_refused("drive " + arguments, names);
     }
-    /// The oval at 6 m/s, ten frames a second.
+    /// The oval at 6 m/s, with ten frames a second.
     static std::vector<Frame> frames(double to_m, bool with_ids = true) {
         std::vector<Frame> all;
         const tests::DrivenCourse course = tests::oval(1);
@@ -98,7 +98,7 @@ TEST_F(FollowCommand, WritesAPlanForEachFrame) {
     EXPECT_NEAR(point.at("x_m"), 5.8, 0.3);
     EXPECT_NEAR(point.at("y_m"), 0.0, 0.3);
     EXPECT_NEAR(point.at("width_left_m"), 1.75, 0.3);
-    // The same again, byte for byte.
+    // A second run gives the same bytes.
     EXPECT_EQ(follow("--follow run.frames.jsonl --out q.jsonl --time-limit inf").exit_code, 0);
     EXPECT_EQ(text_of(path("p.jsonl")), text_of(path("q.jsonl")));
 }
@@ -178,12 +178,12 @@ TEST_F(FollowCommand, ALapGivesTheCourseAndTheStop) {
     EXPECT_NEAR(static_cast<double>(std::ranges::count(tum, '\n')), course.lap_m / 0.5, 6.0);
     ASSERT_EQ(follow(run + "--format ftfsd --step 2 --out d.csv").exit_code, 0);
     EXPECT_THAT(text_of(path("d.csv")), StartsWith("# s_m,x_m,y_m,curvature_1pm\n0.000000,"));
-    // Another detector, and more laps than were driven.
+    // Another detector, and more laps than the frames have.
     ASSERT_EQ(follow("--follow run.frames.jsonl --method clc --laps 2 --out e.jsonl").exit_code, 0);
     EXPECT_NE(plans_in(text_of(path("e.jsonl"))).back().at("state"), "finished");
 }
 
-TEST_F(FollowCommand, NamesWhatIsWrongAndLeavesNothing) {
+TEST_F(FollowCommand, NamesErrorsAndWritesNothing) {
     file_with(lines_of(frames(3.0)), "run.frames.jsonl");
     const std::string run = "--follow run.frames.jsonl ";
     expect_refused(run, {"--out"});

@@ -1,6 +1,6 @@
-// What a long run must survive: being killed anywhere, another run in its folder, a disk that is full, a
-// folder that cannot be written, files cut short, detectors that die. Nothing that was written before is
-// lost, errors name the file, and the next run gives what an undisturbed one gives.
+// Faults that a long run must survive: being killed at any time, another run in its folder, a full disk, a
+// folder that cannot be written, truncated files, detectors that die. Nothing written before is lost, errors
+// name the file, and the next run gives the same as an undisturbed run.
 
 #include "evaluation/files/lane_file.hpp"
 #include "tests/support/program_fixture.hpp"
@@ -37,11 +37,12 @@ class LongRun : public ProgramFixture {
   protected:
     void SetUp() override {
         ProgramFixture::SetUp();
-        // Pages would take most of the time here. Python ends at once that way, and the run goes on without.
+        // Pages would take most of the time here. With this Python they fail at once, and the run continues
+        // without.
         ::setenv("PYTHONHOME", "nowhere", 1);
     }
 
-    /// A program that was started and not yet ended.
+    /// A program that was started and has not ended.
     struct Started {
         pid_t process = -1;
         fs::path errors;
@@ -60,14 +61,14 @@ class LongRun : public ProgramFixture {
         return started;
     }
 
-    /// Its exit code; -1 where a signal ended it.
+    /// Its exit code; -1 if a signal ended it.
     static int wait_for(const Started& started) {
         int status = 0;
         EXPECT_EQ(::waitpid(started.process, &status, 0), started.process);
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
-    /// Whether the program was still at work when the signal came.
+    /// Whether the program was still running when the signal came.
     static bool end_by(const Started& started, int signal) {
         ::kill(-started.process, signal);
         int status = 0;
@@ -75,7 +76,7 @@ class LongRun : public ProgramFixture {
         return WIFSIGNALED(status) && WTERMSIG(status) == signal;
     }
 
-    /// Waits until the condition holds or the program ends; whether it holds.
+    /// Waits until the condition holds or the program ends. Returns whether it holds.
     static bool wait_until(const Started& started, const std::function<bool()>& holds) {
         for (int wait = 0; wait < 60'000; ++wait) {
             if (holds()) return true;
@@ -99,7 +100,7 @@ class LongRun : public ProgramFixture {
         return files;
     }
 
-    /// Answers but for their times, and the status of each.
+    /// Answers without their times, and the status of each.
     [[nodiscard]] std::vector<std::pair<Lane, LaneStatus>> answers(const std::string& file) const {
         std::vector<std::pair<Lane, LaneStatus>> all;
         for (const LaneRecord& record : read_lanes(path(file)))
@@ -107,7 +108,7 @@ class LongRun : public ProgramFixture {
         return all;
     }
 
-    /// The rows of results.jsonl but for what depends on the clock.
+    /// The rows of results.jsonl without everything that depends on the clock.
     [[nodiscard]] std::vector<nlohmann::json> results(const std::string& folder) const {
         std::vector<nlohmann::json> rows;
         std::ifstream lines(path(folder) / "results.jsonl");
@@ -127,14 +128,15 @@ class LongRun : public ProgramFixture {
     }
 };
 
-/// Four laps of a few scenes each; a limit that no solve hits, so that answers depend on the scenes alone.
+/// Four laps of a few scenes each, with a limit that no solve reaches, so that answers depend only on the
+/// scenes.
 std::string compare(const std::string& detector, const std::string& folder, int every_m = 12) {
     return "compare --tracks generated:circle generated:kidney --condition paper --fp 0,0.3 "
            "--nearest 14 --time-limit 60000 --every " +
            std::to_string(every_m) + " --methods " + detector + " --out " + folder;
 }
 
-/// The beginning of a file of lanes that holds whole laps only. `whole`: the same file of a run that ended.
+/// The first lines of a lanes file, with complete laps only. `whole`: the same file of a complete run.
 std::string whole_laps(const std::string& lanes, const std::string& whole) {
     const auto lap_at = [&](std::size_t line) {
         const std::size_t track = whole.find("\"scene\":\"", line);
@@ -156,9 +158,9 @@ std::string whole_laps(const std::string& lanes, const std::string& whole) {
 
 class KilledRun : public LongRun, public testing::WithParamInterface<const char*> {};
 
-// Killed again and again inside each solver, by a signal that nobody can catch and by Ctrl-C; each run goes
-// on where the one before was. In the end everything is as if nothing had happened.
-TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
+// Killed repeatedly during each solver, by a signal that cannot be caught and by Ctrl-C; each run resumes
+// where the one before stopped. In the end, the result is that of an undisturbed run.
+TEST_P(KilledRun, ResumesToTheResultOfAnUndisturbedRun) {
     const std::string detector = GetParam();
     constexpr int kEvery_m = 3;
     ASSERT_EQ(run(compare(detector, "whole", kEvery_m)).exit_code, 0);
@@ -168,7 +170,7 @@ TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
     for (std::size_t attempt = 0; attempt < 6; ++attempt) {
         const std::string before = whole_laps(text_of(part), text_of(path("whole") / lanes));
         const Started started = start(compare(detector, "killed", kEvery_m));
-        // Some milliseconds after the answers of a further lap: in the middle of the next one.
+        // Some milliseconds after the answers of another lap: in the middle of the next one.
         wait_until(started, [&] {
             return whole_laps(text_of(part), text_of(path("whole") / lanes)).size() > before.size() ||
                    fs::exists(path("killed") / lanes);
@@ -182,7 +184,7 @@ TEST_P(KilledRun, GoesOnToWhatAnUndisturbedRunGives) {
         }
     }
     EXPECT_GT(killed, 0) << "it was always done too early";
-    // What was being written when the signal came.
+    // The line that was being written when the signal came.
     std::ofstream(path("killed/scores.jsonl.tmp4711_0")) << "half of a";
     const Outcome resumed = run(compare(detector, "killed", kEvery_m));
     ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
@@ -202,9 +204,9 @@ INSTANTIATE_TEST_SUITE_P(Detectors, KilledRun,
 
 class KilledSolve : public LongRun, public testing::WithParamInterface<const char*> {};
 
-// In the middle of a solver: the old solutions stay until the new ones are whole.
+// During a solver, the old solutions stay until the new ones are complete.
 TEST_P(KilledSolve, LeavesTheOldSolutions) {
-    // Enough of them that the fastest is at work for longer than a program takes to start.
+    // So many scenes that even the fastest solver runs longer than a program takes to start.
     const std::string every_m = GetParam() == std::string("path-pair") ? "0.2" : "2";
     ASSERT_EQ(
         run("scenes --tracks generated:kidney --fp 0.3 --out s.scenes.jsonl --every " + every_m).exit_code,
@@ -238,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, KilledSolve, testing::Values("path-pair", "cbc
                              return name;
                          });
 
-// One at any moment: while scenes are made, while answers, scores and tables are written.
+// Killed at different times: while scenes, answers, scores and tables are written.
 TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     for (int after_ms = 1; after_ms < 200; after_ms += 13) {
@@ -252,10 +254,10 @@ TEST_F(LongRun, KilledAtAnyMomentItLeavesNothingThatStopsTheNextOne) {
     EXPECT_EQ(results("killed"), results("whole"));
 }
 
-TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
+TEST_F(LongRun, ASecondRunInAFolderIsRefusedAndTheFirstIsComplete) {
     ASSERT_EQ(run(compare("rld-cbc", "whole")).exit_code, 0);
     const fs::path part = path("shared/rld-cbc.n014.lanes.jsonl.part");
-    // The first one is held in the middle of its work; where it was done too early, another one.
+    // The first run is stopped in the middle of its work; if it ended too early, another one is started.
     Started first;
     siginfo_t state{};
     for (int attempt = 0; attempt < 20 && state.si_code != CLD_STOPPED; ++attempt) {
@@ -276,8 +278,8 @@ TEST_F(LongRun, OfTwoIntoOneFolderOneIsRefusedAndTheOtherIsWhole) {
     EXPECT_EQ(results("shared"), results("whole"));
 }
 
-// The disk is full after the scenes, after half of the answers, or in the scores. What fits stays, and with
-// room the run goes on.
+// The disk is full after the scenes, after half of the answers, or in the scores. The files that fit stay,
+// and with enough space the run resumes.
 TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     std::uintmax_t scenes = 0;
@@ -301,7 +303,7 @@ TEST_F(LongRun, AFullDiskIsNamedAndNothingIsLost) {
         ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
         EXPECT_EQ(answers("disk/results/clc.n014.lanes.jsonl"), answers("whole/clc.n014.lanes.jsonl"));
         EXPECT_EQ(results("disk/results"), results("whole"));
-        // Whole laps of before are kept with their times.
+        // Complete laps of the earlier run are kept with their times.
         for (const char* lanes : {"clc.n014.lanes.jsonl", "clc.n014.lanes.jsonl.part"}) {
             const auto before = kept.find(lanes);
             if (before == kept.end() || before->second.empty()) continue;
@@ -333,15 +335,15 @@ TEST_F(LongRun, AFolderThatCannotBeWrittenIsNamed) {
     disk.make_read_only(false);
 }
 
-/// Each file of a finished comparison, cut short in the middle of a line, as after a power failure.
-TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
+/// Each file of a finished comparison, truncated in the middle of a line, as after a power failure.
+TEST_F(LongRun, TruncatedFilesAreReplacedOrNamed) {
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
     const auto cut = [&](const std::string& name, std::size_t length) {
         fs::remove_all(path("cut"));
         fs::copy(path("whole"), path("cut"), fs::copy_options::recursive);
         fs::resize_file(path("cut/" + name), length);
     };
-    // Made from what is there.
+    // They are made again from the existing files.
     for (const char* name :
          {"results.jsonl", "scores.jsonl", "table.txt", "scenes.scenes.jsonl", "scenes.tracks.json"}) {
         SCOPED_TRACE(name);
@@ -350,17 +352,17 @@ TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
         ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
         EXPECT_EQ(text_of(path("cut") / name), text_of(path("whole") / name));
     }
-    // Answers under their final name are trusted, so a line that is cut is an error that names it.
+    // Answers under their final name are trusted, so a truncated line is an error that names it.
     const std::string lanes = text_of(path("whole/clc.n014.lanes.jsonl"));
     cut("clc.n014.lanes.jsonl", lanes.size() / 2);
     const std::string left = text_of(path("cut/clc.n014.lanes.jsonl"));
     const auto lines = std::ranges::count(left, '\n');
     expect_refused(compare("clc", "cut"), {"cut/clc.n014.lanes.jsonl:" + std::to_string(lines + 1)});
     EXPECT_EQ(text_of(path("cut/clc.n014.lanes.jsonl")), left);
-    // Whole lines, but too few of them.
+    // Complete lines, but too few.
     cut("clc.n014.lanes.jsonl", left.rfind('\n') + 1);
     expect_refused(compare("clc", "cut"), {"cut/clc.n014.lanes.jsonl"});
-    // Without its record nobody knows what the answers belong to.
+    // Without its record, nobody knows which options the answers belong to.
     for (const std::size_t length : {std::size_t{0}, std::size_t{20}}) {
         cut("run.json", length);
         const auto before = contents("cut");
@@ -377,7 +379,7 @@ TEST_F(LongRun, FilesCutShortAreMadeAnewOrNamed) {
     }
 }
 
-/// A detector from outside that dies, hangs, or prints what is no answer; it is killed with the run, too.
+/// A detector from outside that dies, hangs, or prints an invalid answer; it is killed together with the run.
 TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
     const std::string child = outside_child();
     ASSERT_EQ(run(compare("clc", "whole")).exit_code, 0);
@@ -402,7 +404,7 @@ TEST_F(LongRun, DetectorsFromOutsideThatFailCostTheirAnswersAndNoOthers) {
     }
 }
 
-/// What holds answers is never replaced by another run unless that is asked for, whatever differs.
+/// Answers are never replaced by another run without --overwrite, whatever differs.
 TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
     ASSERT_EQ(run(compare("rld-pair", "results")).exit_code, 0);
     const auto before = contents("results");
@@ -411,7 +413,7 @@ TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
           "--methods clc", "--methods rld-pair,front", "--tracks generated:circle", "--condition car",
           "--noise 0.1", "--candidates", "--threads 2", "--shard 0/2", "--pairing paper", "--full"}) {
         SCOPED_TRACE(other);
-        // The last one of an option that is given twice would not hold; it takes the place of the first.
+        // If an option is given twice, the last value would not count; so this replaces the first value.
         std::string arguments = compare("rld-pair", "results");
         const std::string option = std::string(other).substr(0, std::string(other).find(' '));
         const std::size_t place = arguments.find(option + " ");
@@ -425,7 +427,7 @@ TEST_F(LongRun, AChangedOptionNeverDeletesResults) {
         EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
         EXPECT_EQ(contents("results"), before);
     }
-    // Told to, it does; a wrong option does not even then.
+    // With --overwrite they are replaced, but not if an option is invalid.
     expect_refused(compare("rld-pair", "results") + " --overwrite --shard 99/100", {"--shard"});
     EXPECT_EQ(contents("results"), before);
     ASSERT_EQ(run(compare("rld-pair", "results") + " --seed 7 --overwrite").exit_code, 0);

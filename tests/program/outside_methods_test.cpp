@@ -1,5 +1,5 @@
-// Detectors from outside through the real program: what a program or a file brings in, and that nothing which
-// a program does hurts the run.
+// Detectors from outside through the real program: the answers of programs and files, and that nothing a
+// program does harms the run.
 
 #include "evaluation/files/lane_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
@@ -59,8 +59,8 @@ class OutsideDetectors : public ProgramFixture {
         for (const LaneRecord& record : records) all.push_back(record.answer.lane);
         return all;
     }
-    /// Whether the process whose number the file holds ends within two seconds. One that nobody has asked how
-    /// it ended (a zombie, where the container has no init) has ended.
+    /// Whether the process with the number in the file ends within two seconds. A zombie, which nobody has
+    /// waited for (if the container has no init), has ended.
     [[nodiscard]] bool has_ended(const std::string& file) const {
         for (int wait = 0; wait < 400; ++wait) {
             const std::string number = text_of(path(file)).substr(0, text_of(path(file)).find('\n'));
@@ -101,7 +101,7 @@ TEST_F(OutsideDetectors, ConeIdsScoreAsTheDetectorBehindThemAndTimesAreShown) {
     }
 }
 
-/// The child is told what a detector may know, lap by lap, by ids that say nothing.
+/// The child gets only what a detector may know, lap by lap, with ids that reveal nothing.
 TEST_F(OutsideDetectors, AProgramSeesScenesWithoutWhatIsForScoring) {
     run_well(std::string(kLaps) + "r --condition car --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") +
              "'");
@@ -169,13 +169,13 @@ TEST_F(OutsideDetectors, ACentreLineIsScoredByWhereItLeads) {
 struct Fault {
     std::string name;
     std::string message;
-    /// Which answer is the error: where the program says too much, the one after.
+    /// The index of the error: if the program writes too much, the next answer is the error.
     std::size_t place = 2;
     friend void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 };
 class OutsideFaults : public OutsideDetectors, public testing::WithParamInterface<Fault> {};
 
-/// Its fourth scene is the third of the run, since the first is asked twice.
+/// Its fourth scene is the third of the run, because the first one is asked twice.
 TEST_P(OutsideFaults, CostOneAnswerAndTheRunGoesOn) {
     run_well("scenes --tracks generated:kidney --every 20 --fp 0.2 --out s.scenes.jsonl");
     run_well("detect --method clc --scenes s.scenes.jsonl --out clc.lanes.jsonl");
@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-TEST_F(OutsideDetectors, AProgramThatIsNotThereGivesErrorsAtOnce) {
+TEST_F(OutsideDetectors, AMissingProgramGivesErrorsAtOnce) {
     const auto start = std::chrono::steady_clock::now();
     const Outcome outcome = run(std::string(kCompare) + "r --methods 'exec:none=nowhere --to be, found'");
     EXPECT_EQ(outcome.exit_code, 1) << "nothing was answered";
@@ -256,7 +256,7 @@ TEST_F(OutsideDetectors, ASignalEndsTheProgramToo) {
     EXPECT_TRUE(has_ended("pid"));
 }
 
-TEST_F(OutsideDetectors, AStoppedComparisonGoesOnAndAChangedCommandIsAnother) {
+TEST_F(OutsideDetectors, AStoppedComparisonResumesAndAChangedCommandIsAnother) {
     const std::string detectors = " --methods 'exec:other=OUTSIDE_LOG=log " + child("ids") + "'";
     run_well(kLaps + std::string("whole") + detectors);
     std::filesystem::copy(path("whole"), path("stopped"));
@@ -299,7 +299,7 @@ TEST_F(OutsideDetectors, ShardsAndThreadsGiveTheAnswersOfOneRun) {
     }
 }
 
-/// Answers that were made elsewhere, to some of the scenes and to others.
+/// Answers of a run elsewhere, to some of the scenes and to others.
 class FinishedLanes : public OutsideDetectors {
   protected:
     void SetUp() override {
@@ -313,7 +313,7 @@ class FinishedLanes : public OutsideDetectors {
         for (const json& line : lines) text += line.dump() + "\n";
         file_with(text, "theirs.lanes.jsonl");
     }
-    /// Rows of `score` on the lanes of `clc` and theirs.
+    /// Rows of `score` for the lanes of `clc` and these.
     std::vector<json> rows() {
         table_ = run_well(
             "score --scenes s.scenes.jsonl --lanes clc.lanes.jsonl --methods lanes:them=theirs.lanes.jsonl "
@@ -349,7 +349,7 @@ TEST_F(FinishedLanes, ThatMissAnAnswerCountItAsAnError) {
     EXPECT_THAT(table_, HasSubstr("the lanes file has no answer to this scene"));
 }
 
-TEST_F(FinishedLanes, ThatAreWrongAreRefusedBeforeTheWork) {
+TEST_F(FinishedLanes, AreRefusedBeforeTheWorkIfInvalid) {
     const auto refuse = [&](const std::vector<json>& theirs, const std::vector<std::string>& names) {
         write_theirs(theirs);
         expect_refused("score --scenes s.scenes.jsonl --methods lanes:them=theirs.lanes.jsonl --json rows",
@@ -398,7 +398,7 @@ TEST_F(FinishedLanes, ThatChangeAreAnotherComparison) {
         {"r/mine.lanes.jsonl", "directory of the results"});
 }
 
-TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
+TEST_F(OutsideDetectors, TheirCardsAreInTheRecordAndTheRows) {
     file_with("cat >/dev/null\n", "silent.sh");
     file_with(
         R"({"name": "Silence", "address": "https://example.org", "licence": "MIT", "colour_used": true,)"
@@ -417,7 +417,7 @@ TEST_F(OutsideDetectors, WhatTheirAuthorsSayIsInTheRecordAndTheRows) {
     for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["card"], card);
 }
 
-TEST_F(OutsideDetectors, WhatIsNoDetectorIsRefused) {
+TEST_F(OutsideDetectors, InvalidDetectorsAreRefused) {
     run_well("scenes --tracks generated:circle --every 30 --out s.scenes.jsonl");
     const std::string detect = "detect --scenes s.scenes.jsonl --out x.lanes.jsonl --method ";
     for (const char* detector : {"exec:", "exec:name", "exec:=true", "exec:name=", "exec:a/b=true",
@@ -457,7 +457,7 @@ std::vector<double> objectives(const std::vector<LaneRecord>& records) {
     return all;
 }
 
-/// The child solves what it is sent by CBC, so its optima are those of rld-pair.
+/// The child solves its programs with CBC, so its optima are those of rld-pair.
 TEST_F(OutsideDetectors, ASolverFromOutsideIsRldAtEachConeSetSize) {
     run_well(
         "sweep --tracks generated:circle --condition paper --sizes 6,8 --every 30 --fp 0.2 --out r "
@@ -486,7 +486,7 @@ TEST_F(OutsideDetectors, ASolverFromOutsideIsRldAtEachConeSetSize) {
     for (const json& row : lines("r/results.jsonl")) EXPECT_EQ(row["errors"], 0) << row;
 }
 
-/// Its lanes are checked: what is not within the rows of the program becomes an answer of status error.
+/// Its lanes are checked: a lane that violates rows of the program becomes an answer of status error.
 TEST_F(OutsideDetectors, AWrongSolverIsAnErrorAndNeverALane) {
     const Outcome outcome = run(
         "compare --tracks generated:circle --condition paper --every 30 --fp 0 --nearest 8 --out r --methods "
@@ -501,7 +501,7 @@ TEST_F(OutsideDetectors, AWrongSolverIsAnErrorAndNeverALane) {
     expect_refused("sweep --out r2 --methods 'solver:a=run {mps} {lp}'", {"{lp}"});
 }
 
-/// The two programs that stand in docs/methods-from-outside.md.
+/// The two programs in docs/methods-from-outside.md.
 TEST_F(OutsideDetectors, TheExampleInCppAnswersAsClc) {
     run_well(std::string(kCompare) + "r --methods clc exec:clc-stream=" + clc_stream());
     EXPECT_EQ(only_lanes(lanes("r/clc-stream")), only_lanes(lanes("r/clc")));
@@ -520,8 +520,8 @@ TEST_F(OutsideDetectors, TheExampleInPythonFindsStraightLanes) {
     }
 }
 
-/// The interface of ft-fsd-path-planning that the adapter uses, with a sorting that finds straight lanes:
-/// what is tested is the adapter, not the package.
+/// A replacement for the interface of ft-fsd-path-planning that the adapter uses; it finds straight lanes.
+/// The test is about the adapter, not the package.
 constexpr const char* kStandIn = R"(import enum
 import sys
 import types

@@ -1,4 +1,4 @@
-// `conelane plot` as a user calls it: the picture holds what the scene and the lanes hold.
+// `conelane plot` as a user calls it: the picture contains what the scene and the lanes contain.
 
 #include "tests/support/program_fixture.hpp"
 
@@ -70,7 +70,7 @@ TEST_F(PlotCommand, MarksConesFalseOnesAndMissedOnes) {
     EXPECT_EQ(points_in(picture, "found-missed"), 1U);
     for (const char* words : {">cone<", ">false positive<", ">cone that was missed<", ">ground truth<"})
         EXPECT_THAT(picture, HasSubstr(words));
-    // No track, no word of what is false.
+    // Without a track, the picture does not mention false cones.
     std::filesystem::remove(path("s.tracks.json"));
     const std::string without = svg("--lanes front.lanes.jsonl");
     EXPECT_EQ(points_in(without, "found-cone"), 6U);

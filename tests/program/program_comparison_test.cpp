@@ -1,4 +1,4 @@
-// Folders of comparisons: written, gone on with, merged.
+// Folders of comparisons: written, resumed, merged.
 
 #include "evaluation/files/folder_lock.hpp"
 #include "evaluation/files/lane_file.hpp"
@@ -21,8 +21,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The rows of results.jsonl without what depends on the clock, and without the record of the run, in which a
-/// merged one names no shard.
+/// The rows of results.jsonl without everything that depends on the clock, and without the record of the run,
+/// because that of a merged run names no shard.
 std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
     std::vector<nlohmann::json> rows;
     std::ifstream lines(directory / "results.jsonl");
@@ -37,12 +37,12 @@ std::vector<nlohmann::json> results_in(const std::filesystem::path& directory) {
 constexpr const char* kTwoTracks =
     "compare --tracks generated:circle generated:kidney --every 15 --fp 0,0.3 --time-limit 60000 ";
 
-TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
+TEST_F(Program, CompareWritesATableAndItsData) {
     const Outcome outcome = run("compare --tracks generated:circle --every 15 --fp 0,0.3 --out results");
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
     EXPECT_THAT(outcome.output, HasSubstr("rld-cbc n=12"));
     EXPECT_THAT(text_of(path("results") / "table.txt"), HasSubstr("CLC paper"));
-    // What a terminal shows: the same methods, in its columns and lines, and where the rest is.
+    // The output on a terminal: the same methods, within its columns and lines, and where the rest is.
     std::istringstream lines(outcome.output);
     std::size_t count = 0;
     for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 100U) << line;
@@ -61,7 +61,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
             "results/clc.lanes.jsonl "
             "results/clc-paper.lanes.jsonl results/delaunay-beam.lanes.jsonl results/astar-lane.lanes.jsonl");
     EXPECT_EQ(again.output, text_of(path("results") / "table.txt"));
-    // And without --wide the same summary.
+    // Without --wide it gives the same summary.
     const Outcome summary =
         run("score --scenes results/scenes.scenes.jsonl --lanes results/rld-cbc.lanes.jsonl "
             "results/rld-pair.lanes.jsonl results/rld-shape.lanes.jsonl results/front.lanes.jsonl "
@@ -72,7 +72,7 @@ TEST_F(Program, CompareWritesATableAndEverythingBehindIt) {
     expect_refused("report --results results --out page.html --png results/table.txt", {"results/table.txt"});
 }
 
-/// Where one of the tables cannot be written, those of an earlier run stay as they were.
+/// If one of the tables cannot be written, those of an earlier run stay unchanged.
 TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
     const std::string compare =
         "compare --tracks generated:circle --condition paper --every 30 --fp 0 --methods clc --out r";
@@ -90,8 +90,8 @@ TEST_F(Program, ScoresResultsAndTableOfAComparisonArePutInPlaceTogether) {
     EXPECT_THAT(text_of(path("r/scores.jsonl")), HasSubstr("circle/pose_0000"));
 }
 
-// Centre lines are 25 m long: of poses that are 40 m apart nobody can say whether they agree.
-TEST_F(Program, SteadinessIsKnownWherePosesHaveSomethingInCommon) {
+// Centre lines are 25 m long, so those of poses 40 m apart cannot be compared.
+TEST_F(Program, SteadinessIsKnownIfPosesHaveACommonStretch) {
     for (const auto& [every, is_known] : {std::pair{"20", true}, {"40", false}}) {
         SCOPED_TRACE(every);
         const std::string folder = std::string("every_") + every;
@@ -117,9 +117,9 @@ TEST_F(Program, RldAnswersOfAComparisonAreChecked) {
     for (const nlohmann::json& row : results_in(path("results"))) EXPECT_EQ(row.at("errors"), 0);
 }
 
-TEST_F(Program, AStoppedComparisonGoesOn) {
+TEST_F(Program, AStoppedComparisonResumes) {
     ASSERT_EQ(run(std::string(kTwoTracks) + "--out whole").exit_code, 0);
-    // What a run leaves that is killed while it writes: some lines, the last one torn.
+    // The files of a run that was killed while writing: some lines, the last one incomplete.
     std::filesystem::copy(path("whole"), path("stopped"));
     const std::string lines = text_of(path("whole") / "clc.lanes.jsonl");
     for (const char* file : {"clc.lanes.jsonl", "scores.jsonl", "results.jsonl", "table.txt"}) {
@@ -133,7 +133,7 @@ TEST_F(Program, AStoppedComparisonGoesOn) {
     EXPECT_EQ(results_in(path("stopped")).size(), 8U * 2U * 2U);  // detectors, conditions, rates
 }
 
-TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedUnlessToOverwrite) {
+TEST_F(Program, OtherOptionsInTheSameDirectoryAreRefusedWithoutOverwrite) {
     const std::string clc = "compare --tracks generated:circle --every 15 --methods clc --out results ";
     ASSERT_EQ(run(clc + "--fp 0").exit_code, 0);
     const std::string lanes = text_of(path("results") / "clc.lanes.jsonl");
@@ -190,7 +190,8 @@ TEST_F(Program, MergedShardsEqualOneRun) {
     expect_refused("merge part0 part1 part2 --out other", {"other", "--overwrite"});
 }
 
-/// In the second pose of these hairpins the right boundary goes on beside another leg: 12 cones against 75.
+/// In the second pose of these hairpins, the right boundary continues beside another leg: 12 cones against
+/// 75.
 TEST_F(Program, DegenerateGroundTruthsAreLeftOutAndCounted) {
     const std::string hairpins = "--tracks generated:tight_hairpins --fp 0,0.3 --every 22 ";
     const std::string degenerate = "tight_hairpins/pose_0001/fp_0.00/range_30";

@@ -50,7 +50,7 @@ TEST_F(Program, LanesDoNotDependOnThreads) {
     EXPECT_EQ(lanes("rld-cbc", "1"), lanes("rld-cbc", "3"));
 }
 
-/// What a detector does not use is refused before the work, and nothing is written.
+/// An option that a detector does not use is refused before the work, and nothing is written.
 TEST_F(Program, OptionsThatADetectorDoesNotUseAreRefused) {
     make_scenes("--fp 0");
     const auto refuse = [&](const std::string& detector, const std::string& options, const std::string& why) {
@@ -75,7 +75,7 @@ TEST_F(Program, OptionsThatADetectorDoesNotUseAreRefused) {
         << "one of the methods has RLD parameters";
 }
 
-TEST_F(Program, DetectsByWeightsOfOnesOwn) {
+TEST_F(Program, DetectsWithOwnWeights) {
     make_scenes("--fp 0");
     const std::string shipped = (source_directory() / "graph_search/weights/front.json").string();
     const auto lanes = [&](const std::string& options) {
@@ -99,7 +99,7 @@ TEST_F(Program, DetectsByWeightsOfOnesOwn) {
     EXPECT_FALSE(std::filesystem::exists(path("x.lanes.jsonl")));
 }
 
-/// 132 cones of which most edges are possible keep an exact search busy for hours.
+/// 132 cones with most edges allowed keep an exact search busy for hours.
 TEST_F(Program, DetectionEndsInRealTimeUnlessToldOtherwise) {
     nlohmann::json scene{{"id", "lattice"}, {"pose", {{"x", 0}, {"y", 0}, {"yaw", 0}}}};
     for (int id = 0; id < 132; ++id) {
@@ -166,7 +166,7 @@ TEST_F(Program, AStreamIsAnsweredLineByLine) {
     expect_refused("detect --method clc --scenes - --out - --threads 2", {"--threads", "stream"});
 }
 
-/// The ground truth, handed in as a detector's lanes, is the best there can be.
+/// The ground truth as a detector's lanes has the best possible scores.
 TEST_F(Program, GroundTruthAsLanesScoresFull) {
     make_scenes("--fp 0,0.3,0.5 --range 30,50");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
@@ -196,7 +196,7 @@ TEST_F(Program, GroundTruthAsLanesScoresFull) {
     EXPECT_EQ(rows, 6U);
 }
 
-/// That there is no lane is as good an answer as a proven optimum, in time and of a detector that optimises.
+/// A proof that there is no lane counts like a proven optimum, if it is in time and the detector optimises.
 TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
     make_scenes("--fp 0");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("s.scenes.jsonl"));
@@ -212,7 +212,7 @@ TEST_F(Program, AProofThatThereIsNoLaneCountsAsSolved) {
     records[1].answer.status = LaneStatus::stopped;
     records[2].latency_ms = 401.0;
     const std::size_t answers = records.size();
-    // A detector that states no objective has solved nothing, whatever it finds.
+    // A detector without an objective has solved nothing, whatever it finds.
     for (const AnnotatedScene& scene : scenes) {
         records.push_back({scene.scene.id, "search", {}, 1.0, {}});
         records.back().answer.status = LaneStatus::none;

@@ -1,4 +1,4 @@
-// The program ended by a signal while it works.
+// Signals that end the program while it works.
 
 #include "tests/support/program_on_scenes.hpp"
 #include "tests/support/test_paths.hpp"
@@ -26,7 +26,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Whether the program has come so far that it waits for the signal, which it blocks to do so.
+/// Whether the program already waits for the signal; it blocks the signal to do so.
 bool waits_for(pid_t program, int signal) {
     std::ifstream status("/proc/" + std::to_string(program) + "/status");
     for (std::string line; std::getline(status, line);) {
@@ -37,7 +37,7 @@ bool waits_for(pid_t program, int signal) {
     return false;
 }
 
-/// Work that is begun, and a signal to all of it, as Ctrl-C gives.
+/// Work that has begun, and a signal to the whole process group, as Ctrl-C sends it.
 class Interruption : public Program {
   protected:
     /// Runs the program until `begun` says so, then ends it by the signal. Its temporary files go to `tmp`.
@@ -69,7 +69,7 @@ class Interruption : public Program {
             EXPECT_THAT(entry.path().string(), Not(HasSubstr(".tmp")));
         }
     }
-    /// Seconds of work.
+    /// Work that takes seconds.
     void make_dense_scenes() {
         ASSERT_EQ(run("scenes --tracks generated:kidney --every 1.1 --fp 0,0.1,0.2,0.3,0.4,0.5 --out "
                       "s.scenes.jsonl")
@@ -122,7 +122,7 @@ TEST_F(Interruption, OfAReportLeavesNoPage) {
     }
 }
 
-/// A file that is open all the time: a stream of scenes that has not ended.
+/// A file that is open for a long time: a stream of scenes that has not ended.
 TEST_F(Interruption, OfAStreamLeavesNoTemporaryFile) {
     ASSERT_EQ(std::system(("mkfifo " + path("scenes").string()).c_str()), 0);
     const int held_open = ::open(path("scenes").c_str(), O_RDWR);

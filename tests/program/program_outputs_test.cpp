@@ -1,5 +1,5 @@
-// Where the program writes: tried first, never to what it reads, and an old result stays until there is a new
-// one.
+// Outputs of the program: it tries them before the work, never overwrites its input, and keeps an old result
+// until a new one is complete.
 
 #include "evaluation/files/parameter_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
@@ -22,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Long work is not begun whose result has no place: the scenes would come first, and are bad.
+/// The work does not begin if its result cannot be written: the invalid scenes would be reported first.
 TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     file_with("{", "bad.scenes.jsonl");
     std::filesystem::create_directory(path("folder"));
@@ -39,7 +39,7 @@ TEST_F(Program, OutputsAreTriedBeforeTheWork) {
     expect_refused("scenes --tracks generated:circle --every 60 --out folder", {"--out", "folder"});
 }
 
-/// What is tried and not written stays; a pipe is not tried, since that would end it.
+/// A file that was tried but not written stays; a pipe is not tried, because that would end it.
 TEST_F(Program, TryingAnOutputLeavesItAsItWas) {
     file_with("old\n", "x.lanes.jsonl");
     expect_refused("detect --method clc --scenes nowhere.scenes.jsonl --out x.lanes.jsonl", {"nowhere"});
@@ -64,8 +64,8 @@ TEST_F(Program, AFileThatCannotBeReadLeavesTheOldResult) {
     EXPECT_EQ(text_of(path("x.lanes.jsonl")), "old\n");
 }
 
-/// Under another name, through links, by the companion: nothing that is read is written.
-TEST_F(Program, AnOutputIsNoInput) {
+/// Through another name, links or the companion: no input is overwritten.
+TEST_F(Program, AnOutputMustNotBeAnInput) {
     make_scenes("--fp 0.2");
     const std::string scenes = text_of(path("s.scenes.jsonl"));
     std::filesystem::create_symlink(path("s.scenes.jsonl"), path("link"));
@@ -91,7 +91,7 @@ TEST_F(Program, AnOutputIsNoInput) {
     file_with("", "r/results.jsonl");
     expect_refused("report --results r --out r/results.jsonl", {"--out", "--results"});
     EXPECT_EQ(text_of(path("s.scenes.jsonl")), scenes);
-    // What is no file may have a file's name.
+    // A value that is not a file may be the name of a file.
     EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
     EXPECT_EQ(run("detect --method clc --scenes s.scenes.jsonl --out clc").exit_code, 0);
 }
@@ -117,7 +117,7 @@ TEST_F(Program, AnOutputThatIsNotWrittenIsAFailure) {
     EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out - >/dev/full"), 2);
     EXPECT_EQ(text_of(path("stderr")),
               "conelane: standard output cannot be written to its end: No space left on device\n");
-    // A closed output is not given to the next file that is opened.
+    // The number of a closed output is not given to the next file that is opened.
     EXPECT_EQ(exit_code("scenes --tracks generated:circle --every 40 --out c.scenes.jsonl >&-"), 2);
     EXPECT_THAT(text_of(path("c.scenes.jsonl")), Not(HasSubstr("boundaries in")));
     EXPECT_EQ(exit_code("detect --method clc --scenes s.scenes.jsonl --out m.lanes.jsonl >&-"), 0)

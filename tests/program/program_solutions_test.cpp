@@ -1,4 +1,4 @@
-// Solutions and certificates of the program, checked by it; forged ones fail.
+// Solutions and certificates that the program checks; forged ones are found.
 
 #include "evaluation/scenes/scene_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
@@ -56,7 +56,7 @@ TEST_F(Program, AnImportedSolutionNamesItsSolver) {
     EXPECT_THAT(text_of(path("y.solutions.jsonl")), HasSubstr(R"("solver":"import")"));
 }
 
-/// One line for each claim, whoever makes it; the scene has ten cones in two rows, or too few.
+/// One line for each claim of any solver; the scene has ten cones in two rows, or too few.
 class Claims : public Program {
   protected:
     static nlohmann::json scene(const std::string& id, int pairs) {
@@ -92,7 +92,7 @@ TEST_F(Claims, AnUnprovenInfeasibleFails) {
         EXPECT_THAT(outcome.output, HasSubstr("lane: " + std::string(solver) + " claims infeasible, but"));
         EXPECT_THAT(outcome.output, HasSubstr("0 passed, 1 failed"));
     }
-    // Too many cones for a search of the checker's own: a solver finds the lane graph, the checker accepts
+    // Too many cones for the checker's own search: a solver finds the lane graph, and the checker accepts
     // it.
     make_scenes("--fp 0.3", "c");
     const std::vector<AnnotatedScene> scenes = read_scenes(path("c.scenes.jsonl"));
@@ -104,7 +104,7 @@ TEST_F(Claims, AnUnprovenInfeasibleFails) {
 }
 
 TEST_F(Claims, AProvenInfeasiblePasses) {
-    // A pair of cones is no lane; far away ones have no edge that counts in (9).
+    // A pair of cones is not a lane; far from the car, no edge counts in (9).
     nlohmann::json behind = scene("behind", 5);
     behind["pose"]["x"] = 100;
     file_with(scene("pair", 1).dump() + "\n" + behind.dump() + "\n", "c.scenes.jsonl");
@@ -136,7 +136,7 @@ TEST_F(Claims, AMissingAnswerFails) {
     EXPECT_THAT(partial.output, HasSubstr("1 passed, 0 failed"));
 }
 
-/// An optimum is none where another lane graph of the file is better.
+/// A claimed optimum is refuted by a better lane graph in the file.
 TEST_F(Claims, ABetterLaneGraphRefutesAnOptimum) {
     file_with(scene("lane", 5).dump() + "\n", "c.scenes.jsonl");
     ASSERT_EQ(run("solve --scenes c.scenes.jsonl --out best.solutions.jsonl").exit_code, 0);
@@ -167,7 +167,7 @@ TEST_F(Claims, StoppedSolutionsSayWhyAndClaimNothing) {
     EXPECT_THAT(outcome.output, HasSubstr("0 passed, 0 failed"));
 }
 
-/// What faces an edge is a matter of the cone set.
+/// Which edges face an edge depends on the cone set.
 TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     make_scenes("--fp 0.5");
     const std::string on = "--nearest 12 --params shape --scenes s.scenes.jsonl ";
@@ -180,9 +180,9 @@ TEST_F(Program, ShapeCostsAreCheckedOnTheirConeSet) {
     expect_refused(shape + "--nearest 20", {"n.solutions.jsonl:1", "nearest"});
 }
 
-/// What was made with other parameters, another pairing or other cones is refused in one line, before
-/// anything is said of its claims. What does not say how it was made is checked as it is.
-TEST_F(Program, ClaimsThatWereMadeOtherwiseAreNamed) {
+/// Claims made with other parameters, another pairing or other cones are refused in one line, before they are
+/// checked. Claims that do not say how they were made are checked as they are.
+TEST_F(Program, ClaimsWithOtherParametersAreNamed) {
     make_scenes("--fp 0.2");
     const std::string on = " --nearest 12 --params shape --scenes s.scenes.jsonl ";
     ASSERT_EQ(run("solve --solver path-pair" + on + "--out c.jsonl").exit_code, 0);
@@ -222,7 +222,7 @@ TEST_F(Program, CertificatesAreVerifiedAndForgeriesAreNot) {
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
 
-    // A bound that is higher by 1, a multiplier below zero, a clique of edges that may go together.
+    // A bound that is higher by 1, a multiplier below zero, a clique of edges that do not exclude each other.
     std::string first_line = text_of(path("s.certificates.jsonl"));
     first_line.resize(first_line.find('\n'));
     const nlohmann::json certificate = nlohmann::json::parse(first_line);
@@ -313,7 +313,7 @@ TEST_F(Program, CertificatesCoverShapeCosts) {
     const Outcome good = run(on_scenes + "--params shape --verify shape.certificates.jsonl");
     EXPECT_EQ(good.exit_code, 0) << good.output;
     EXPECT_THAT(good.output, HasSubstr(" verified, 0 failed"));
-    // They are about these costs and this cone set, also where they do not say so.
+    // They are about these costs and this cone set, even if they do not say so.
     std::string unnamed;
     std::istringstream lines(text_of(path("shape.certificates.jsonl")));
     for (std::string line; std::getline(lines, line);) {
@@ -328,7 +328,7 @@ TEST_F(Program, CertificatesCoverShapeCosts) {
         1);
 }
 
-/// Verified, tampered with, of another cone, and more than may be looked at: the exit code tells the first
+/// Verified, changed, with another cone, and with too many steps: the exit code distinguishes the first case
 /// from the others.
 TEST_F(Program, CertifiesWholeSearches) {
     make_scenes("--fp 0.2");

@@ -1,4 +1,4 @@
-// Training, tuning and studies by the program.
+// Training, tuning and studies through the program.
 
 #include "evaluation/files/parameter_file.hpp"
 #include "evaluation/scenes/scene_file.hpp"
@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
+TEST_F(Program, TrainsFrontAndResumes) {
     const std::string command =
         "train front --tracks generated:slalom@1 --hold-out generated:kidney@2 --hold-out-every 80 --fp 0.3 "
         "--draws 1 --trust-draws 4 --imitation-steps 4 --search-steps 4 --judge-steps 4 --figures-every 6 "
@@ -36,7 +36,7 @@ TEST_F(Program, TrainsFrontAndGoesOnWhereItWasStopped) {
     EXPECT_THAT(again.output, Not(HasSubstr("step"))) << "nothing is left to do";
     const auto weights = [&](const std::string& file) {
         auto json = nlohmann::json::parse(text_of(path(file)));
-        json.erase("training");  // the figures of a run that has nothing left to do are missing
+        json.erase("training");  // a run without remaining work has no figures
         return json;
     };
     EXPECT_EQ(weights("again.json"), weights("whole.json"));
@@ -68,7 +68,7 @@ TEST_F(Program, TuneWithContextAndShapeLeavesARecordThatTheColorStudyUses) {
     const Outcome study = run("study confidence-and-colour --record p.record.json --out study.jsonl");
     ASSERT_EQ(study.exit_code, 0) << study.errors;
     EXPECT_THAT(study.output, HasSubstr("colours, 20 % wrong"));
-    // Geometry alone, on the held-out tracks: what the tuning says.
+    // Geometry alone, on the held-out tracks, gives the figures of the tuning.
     std::ifstream lines(path("study.jsonl"));
     std::string first;
     std::getline(lines, first);

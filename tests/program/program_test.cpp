@@ -1,4 +1,4 @@
-// The program as a user or a script calls it: what it tells of itself, one line and exit code 2 on bad input.
+// The program as a user or a script calls it: its help, and one line and exit code 2 for bad input.
 
 #include "tests/support/program_on_scenes.hpp"
 
@@ -71,7 +71,7 @@ TEST_F(Program, BadOptionsAreNamed) {
         expect_refused("scenes --tracks generated:circle --out a.scenes.jsonl --seed " + std::string(seed),
                        {"--seed", seed});
     }
-    // As a script leaves them whose variable is not set.
+    // As from scripts with an unset variable.
     expect_refused("scenes --tracks generated:circle --out ''", {"--out", "empty"});
     expect_refused("compare --tracks generated:circle --fp '' --out results", {"--fp", "empty"});
     expect_refused("study formulations --scenes a.scenes.jsonl --out ''", {"--out", "empty"});
@@ -162,7 +162,7 @@ TEST_F(Program, BadFilesAreNamed) {
     expect_refused("score --scenes a.scenes.jsonl --lanes b.lanes.jsonl", {"b.lanes.jsonl", ":1:", "scene"});
 }
 
-/// Nothing is not right, and lines are counted with the blank ones.
+/// No scene is an error, and line numbers count blank lines.
 TEST_F(Program, RecordsAreNamedByTheirLine) {
     file_with(std::string(kScene) + "\n", "a.scenes.jsonl");
     ASSERT_EQ(run("detect --method clc --scenes a.scenes.jsonl --out a.lanes.jsonl").exit_code, 0);

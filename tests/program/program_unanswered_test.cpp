@@ -1,5 +1,5 @@
-// Detectors and solvers all of whose answers are errors: every command says so on stderr and ends by 1. What
-// it writes is there all the same.
+// Detectors and solvers whose answers are all errors: every command says so on stderr and exits with 1. Its
+// output is written all the same.
 
 #include "tests/support/program_on_scenes.hpp"
 
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class Unanswered : public Program {
   protected:
-    /// Exit code 1, and one line on stderr that begins and goes on so.
+    /// Exit code 1, and one line on stderr that begins and continues like this.
     static void expect_unanswered(const Outcome& outcome, const std::string& begin, const std::string& more) {
         EXPECT_EQ(outcome.exit_code, 1);
         EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
@@ -39,7 +39,7 @@ TEST_F(Unanswered, ADetectionOfErrorsAloneEndsBy1) {
     const Outcome streamed = run("detect --method exec:mine=false --scenes s.scenes.jsonl --out -");
     expect_unanswered(streamed, "mine: " + count, "the program ");
     EXPECT_EQ(std::ranges::count(streamed.output, '\n'), scenes);
-    // No lane of them can be driven either.
+    // None of these lanes can be driven.
     expect_unanswered(run("drive --lanes l.lanes.jsonl --scenes s.scenes.jsonl --out d.jsonl"),
                       "mine: " + count, "kidney/pose_0000");
     EXPECT_EQ(std::ranges::count(text_of(path("d.jsonl")), '\n'), scenes);
@@ -72,13 +72,13 @@ TEST_F(Unanswered, AComparisonInWhichOneDetectorAnswersNothingEndsBy1) {
     expect_unanswered(outcome, "mine: ", "answers are errors, the first to circle/pose_0000");
     EXPECT_THAT(outcome.output, HasSubstr("clc"));
     EXPECT_TRUE(std::filesystem::exists(path("r/results.jsonl")));
-    // In the table each scene stands in one column: error, not none as well.
+    // In the table, each scene is in one column: error, and not none as well.
     std::istringstream table(text_of(path("r/table.txt")));
     std::vector<std::string> header;
     for (std::string line; std::getline(table, line);) {
         const bool is_header = header.empty();
         if (!is_header && !line.starts_with("mine ")) continue;
-        // Titles are parted by two blanks, since some of them hold one.
+        // Titles are separated by two blanks, because some contain one.
         std::vector<std::string> cells;
         for (std::size_t begin = 0; begin < line.size();) {
             const std::size_t end = std::min(line.find("  ", begin), line.size());

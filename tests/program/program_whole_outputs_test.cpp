@@ -1,5 +1,5 @@
-// Outputs of several files: all of them are written, or all are as they were, be the disk full or the program
-// ended by a signal. Nothing that the program did not write is replaced without being asked for.
+// Outputs of several files: all are written, or all stay unchanged, whether the disk is full or a signal ends
+// the program. Files that the program did not write are not replaced without a request.
 
 #include "evaluation/files/atomic_file.hpp"
 #include "tests/support/program_on_scenes.hpp"
@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 class WholeOutputs : public Program {
   protected:
-    /// Every file of a folder by its name, but for the lock.
+    /// Every file of a folder by its name, except the lock.
     [[nodiscard]] std::map<std::string, std::string> contents(const std::string& folder) const {
         std::map<std::string, std::string> files;
         if (!fs::exists(path(folder))) return files;
@@ -39,7 +39,7 @@ class WholeOutputs : public Program {
         return files;
     }
 
-    /// Starts the program and ends it by the signal once a file whose name holds `part` is in the folder.
+    /// Starts the program and sends the signal once the folder has a file whose name contains `part`.
     void interrupt(const std::string& arguments, int signal, const std::string& folder,
                    const std::string& part) {
         const std::string command = "cd " + path("").string() + " && exec " + conelane_program() + " " +
@@ -69,13 +69,13 @@ class WholeOutputs : public Program {
     }
 };
 
-TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
+TEST_F(WholeOutputs, StayUnchangedIfOneNameCannotBeGiven) {
     file_with("old a", "a");
     AtomicFile a(path("a"));
     AtomicFile b(path("b"));
     AtomicFile c(path("c"));
     for (AtomicFile* file : {&a, &b, &c}) file->stream() << "new";
-    fs::create_directory(path("c"));  // no file can have this name now
+    fs::create_directory(path("c"));  // no file can get this name now
     EXPECT_THAT(error_of([&] {
                     commit_together(std::array{&a, &b, &c});
                 }),
@@ -90,7 +90,7 @@ TEST_F(WholeOutputs, ThatHaveOneNameThatCannotBeGivenStayAsTheyWere) {
         << "what was kept aside is left";
 }
 
-TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNotWritten) {
     const SmallDisk disk(path("disk"), "200k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
     const std::string scenes = "scenes --tracks generated:kidney --out disk/s.scenes.jsonl --every ";
@@ -106,13 +106,13 @@ TEST_F(WholeOutputs, OfScenesOnAFullDiskAreNone) {
     EXPECT_EQ(contents("disk"), before) << "the old pair";
 }
 
-/// Few programs at first, and more of other names.
+/// Few programs at first, then more with other names.
 constexpr const char* kInstances =
     "instances --tracks generated:circle --fp 0.5 --every 1000 --nearest 12 --seed 3 --out made";
 constexpr const char* kMoreInstances =
     "instances --tracks generated:curvy --fp 0.5 --every 30 --nearest 12,16 --seed 3 --out made";
 
-TEST_F(WholeOutputs, OfInstancesThatASignalEndedAreNone) {
+TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
     for (const int signal : {SIGINT, SIGTERM}) {
         interrupt(kMoreInstances, signal, "made", ".mps.gz");
         EXPECT_THAT(contents("made"), testing::IsEmpty());
@@ -140,7 +140,7 @@ TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
         EXPECT_THAT(files.at("conelane.test"), HasSubstr(name));
     }
     EXPECT_EQ(programs, 2U);
-    // What no list names is of nobody knows which library.
+    // A program that no list names may belong to any library.
     file_with("x", "made/stray.tight.mps.gz");
     expect_refused(kInstances, {"made", "stray.tight.mps.gz", "conelane.test"});
     fs::remove(path("made/conelane.test"));
@@ -148,7 +148,7 @@ TEST_F(WholeOutputs, OfInstancesHoldOneLibrary) {
     expect_refused(kInstances, {"made", "straight"});
 }
 
-TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfInstancesOnAFullDiskAreNotWritten) {
     const SmallDisk disk(path("made"), "24k");
     if (!disk.is_mounted()) GTEST_SKIP() << "no disk can be mounted here";
     const Outcome full = run(kMoreInstances);
@@ -182,7 +182,7 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     EXPECT_EQ(full.exit_code, 2) << full.output;
     EXPECT_THAT(full.errors,
                 HasSubstr("disk/r/report.html: cannot be written to its end: No space left on device"));
-    EXPECT_THAT(full.output, HasSubstr("all of it in disk/r, but no page"));
+    EXPECT_THAT(full.output, HasSubstr("results: disk/r, without a page"));
     EXPECT_FALSE(fs::exists(path("disk/r/report.html")));
     disk.grow("64m");
     EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0);
@@ -190,7 +190,7 @@ TEST_F(WholeOutputs, AComparisonWithoutRoomForItsPageFails) {
     EXPECT_EQ(run(kCompare + std::string("disk/r")).exit_code, 0) << "its own page is replaced";
 }
 
-TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
+TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNotWritten) {
     ASSERT_EQ(run(kCompare + std::string("r")).exit_code, 0);
     if (!fs::exists(path("r/report.html"))) GTEST_SKIP() << "no Python with matplotlib";
     const SmallDisk disk(path("disk"), "64k");
@@ -200,7 +200,7 @@ TEST_F(WholeOutputs, OfAReportOnAFullDiskAreNone) {
     EXPECT_FALSE(fs::exists(path("page.html")));
 }
 
-/// /dev/full takes nothing.
+/// /dev/full rejects every write.
 TEST_F(WholeOutputs, AFailureSaysWhy) {
     make_scenes("");
     for (const char* command : {"detect --method clc", "solve --solver path-pair", "certify",

@@ -1,5 +1,5 @@
-// What the program says where a word of the command line or a key of a file is not what it takes: the word
-// itself, and what would be right.
+// Messages of the program about a wrong word of the command line or a wrong key of a file: they name the
+// word, and what would be right.
 
 #include "evaluation/files/json_node.hpp"
 #include "tests/support/program_on_scenes.hpp"
@@ -31,7 +31,7 @@ TEST_F(Words, AListWithAnEmptyPartIsRefused) {
                 expect_refused(begin + between + list,
                                {std::string(option) + ": '" + list + "' is a list with an empty part"});
             }
-            // What follows is no part of the list.
+            // The following word is not part of the list.
             expect_refused(std::string("scenes --tracks generated:circle ") + option + " " + list +
                                " --out s.scenes.jsonl",
                            {option, "empty part"});
@@ -40,7 +40,7 @@ TEST_F(Words, AListWithAnEmptyPartIsRefused) {
     expect_refused("sweep --sizes , --out r", {"--sizes: ',' is a list with an empty part"});
 }
 
-TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
+TEST_F(Words, ACountThatIsNotAWholeNumberIsRefused) {
     for (const char* count : {"2.5", "0", "-1", "many", "100001", "99999999999999999999", "12x"}) {
         expect_refused(
             "scenes --tracks generated:circle --out s.scenes.jsonl --nearest=" + std::string(count),
@@ -53,7 +53,7 @@ TEST_F(Words, ACountThatIsNoWholeNumberIsSaidToBeNone) {
     expect_refused("study growth --scenes s.scenes.jsonl --sizes 2.5", {"--sizes: '2.5'"});
 }
 
-TEST_F(Words, ANameThatIsNoCommandIsAnsweredByThoseThereAre) {
+TEST_F(Words, AnUnknownCommandListsTheCommands) {
     expect_refused("study nope", {"study: there is no 'nope'", "optimality", "front-beam", "memory"});
     expect_refused("study nope --scenes s.scenes.jsonl --out x", {"study: there is no 'nope'", "optimality"});
     expect_refused("nope", {"there is no 'nope'", "compare", "solve"});
@@ -66,7 +66,7 @@ TEST_F(Words, HelpOfTrainSaysWhatItTrains) {
     EXPECT_THAT(run("--help").output, HasSubstr("train front"));
 }
 
-/// The commands that a help lists, each as the words that call it.
+/// The commands that a help text lists, each as the words that call it.
 std::vector<std::string> commands_in(const std::string& help, const std::string& before) {
     std::vector<std::string> commands;
     std::istringstream lines(help.substr(std::min(help.find("Subcommands:"), help.size())));
@@ -93,7 +93,7 @@ TEST_F(Words, HelpOfEveryCommandFitsAHundredColumns) {
     EXPECT_THAT(commands, testing::IsSupersetOf({"compare ", "study optimality ", "train front "}));
 }
 
-/// A terminal on stderr is told how far the work is; files, pipes and standard output are not.
+/// Progress is shown on a terminal on stderr; files, pipes and standard output get none.
 TEST_F(Words, LongWorkSaysOnATerminalHowMuchTimeIsLeft) {
     if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no program `script`";
     const std::string scenes = "scenes --tracks generated:long_lap --fp 0,0.1,0.3,0.5 --every 0.15 --out ";
@@ -120,7 +120,7 @@ TEST_F(Words, AKeyThatIsThereTwiceIsNamedWithItsLine) {
               "s.scenes.jsonl");
     expect_refused("detect --method clc --scenes s.scenes.jsonl --out l.lanes.jsonl",
                    {"s.scenes.jsonl:2: cones[1].x: is there twice"});
-    // Of keys that nobody reads, too: which of the two was meant?
+    // Also for keys that are not read: it is unknown which of the two is right.
     file_with(R"({"note": {"a": [1, {"b": 1}, {"b": 2, "b": 3}]}})"
               "\n",
               "s.scenes.jsonl");
@@ -134,7 +134,7 @@ TEST_F(Words, AKeyThatIsThereTwiceIsNamedWithItsLine) {
     EXPECT_THAT(streamed.output, Not(HasSubstr("\"status\":\"found\"")));
 }
 
-/// What is read is what nlohmann's own parser reads.
+/// The values are those of nlohmann's own parser.
 TEST_F(Words, AnyOtherJsonIsReadAsItWas) {
     for (const char* text :
          {R"({})", R"({"a": [], "b": {}, "c": null, "d": true, "e": false})",

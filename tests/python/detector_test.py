@@ -190,6 +190,8 @@ class Refusals(unittest.TestCase):
             (f"weights: line {cut.count(newline) + 1}: the file ends in the middle",
              lambda: conelane.Detector("front", weights=cut)),
             ("step_m", lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(step_m=0.0)),
+            ("usual_width_m: must be in [",
+             lambda: conelane.Detector("clc").detect(STRAIGHT, ORIGIN).centre_line(usual_width_m=0.5)),
         ):
             with self.subTest(message), self.assertRaises(ValueError) as raised:
                 call()

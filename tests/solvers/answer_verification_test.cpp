@@ -1,4 +1,4 @@
-// Every answer of a solver is verified before it leaves.
+// Every answer of a solver is verified before it is returned.
 
 #include "model/answer_verification.hpp"
 
@@ -41,7 +41,7 @@ TEST(AnswerVerification, AcceptsTheLaneAndKnowsItsCost) {
     EXPECT_NEAR(answer.objective, -4.0, 1e-9);
 }
 
-TEST(AnswerVerification, NamesWhatIsBroken) {
+TEST(AnswerVerification, NamesTheBrokenConstraint) {
     RldParameters wide;
     wide.t_crit = 1e6;
     wide.d_min = 1.0;
@@ -68,8 +68,8 @@ TEST(AnswerVerification, NamesWhatIsBroken) {
     EXPECT_THAT(violation(lane, {{{0, 1}, {1, 4}, {3, 4}}}), HasSubstr("(28)"));
 }
 
-/// Of drawn edge sets, many of them lane graphs: feasible and infeasible alike, by code that has nothing in
-/// common.
+/// Two independent checks agree on random edge sets, many of them lane graphs: which are feasible, and which
+/// are not.
 TEST(AnswerVerification, AgreesWithTheSearchesOnDrawnEdges) {
     int feasible = 0;
     int infeasible = 0;
@@ -102,7 +102,7 @@ TEST(AnswerVerification, AgreesWithTheSearchesOnDrawnEdges) {
     EXPECT_GT(infeasible, 200);
 }
 
-/// Says what it is told to.
+/// A solver that answers what the test says.
 class Liar : public RldSolver {
   public:
     explicit Liar(RldReport report) : report_(std::move(report)) {}
@@ -128,7 +128,7 @@ RldReport told(const std::function<void(RldReport&)>& falsify, const LaneGraph* 
     return Liar(report).solve(make_problem(tests::six_cone_lane(), {}), {}, start);
 }
 
-TEST(VerifiedSolver, PassesWhatIsTrue) {
+TEST(VerifiedSolver, PassesTrueClaims) {
     const RldReport report = told([](RldReport&) {});
     EXPECT_EQ(report.status, SolveStatus::optimal);
     EXPECT_EQ(report.message, "");
@@ -158,8 +158,8 @@ TEST(VerifiedSolver, MakesAnErrorOfEveryWrongClaim) {
     }
 }
 
-/// A start that is feasible refutes claims, and is what is left then.
-TEST(VerifiedSolver, HoldsClaimsAgainstTheStart) {
+/// A feasible start refutes claims, and is then the answer.
+TEST(VerifiedSolver, ComparesClaimsWithTheStart) {
     const LaneGraph shorter{{{1, 2}, {3, 4}, {4, 5}}};
     const std::vector<std::pair<std::string, std::function<void(RldReport&)>>> lies{
         {"the start is one",
@@ -189,8 +189,8 @@ TEST(VerifiedSolver, HoldsClaimsAgainstTheStart) {
     }
 }
 
-/// Own optimum, another's, a lane graph that costs more, invalid edges, edges of cones that are not in the
-/// scene.
+/// Its own optimum, another optimum, a lane graph that costs more, invalid edges, and edges of cones that are
+/// not in the scene.
 TEST(VerifiedSolver, NoStartChangesAnOptimum) {
     int with_lane = 0;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
@@ -209,7 +209,7 @@ TEST(VerifiedSolver, NoStartChangesAnOptimum) {
                 }
             }
             for (const tests::SolverCase& tried : tests::solver_cases()) {
-                // The printed program takes a hundred times as long, by the same code.
+                // The printed program takes a hundred times as long, in the same code.
                 if (!tried.entry->exact || tried.formulation == Formulation::paper) continue;
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << tried.entry->name);
                 const auto solver = tried.entry->make(tried.formulation);

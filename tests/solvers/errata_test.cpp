@@ -1,5 +1,5 @@
-// Errata of the printed RLD paper: each test builds a small instance by hand, puts in the row as printed, and
-// shows what goes wrong. The corrected rows stand beside it. model/formulation.md lists the errata.
+// Errata of the printed RLD paper: each test builds a small instance, applies the row as printed, and shows
+// its effect beside that of the corrected row. model/formulation.md lists the errata.
 
 #include "conelane/check.hpp"
 #include "model/geometry.hpp"
@@ -31,7 +31,7 @@ LaneGraphProblem paper_problem(const Scene& scene, const RldParameters& paramete
     return make_problem(scene, parameters, EdgeExtent::all_pairs);
 }
 
-/// Solves a program as it stands, without the rows that are added on demand.
+/// Solves a program without the rows that are added on demand.
 MilpReport solve(const BinaryProgram& program) {
     return make_cbc_solver()->load(program)->solve({});
 }
@@ -44,7 +44,7 @@ RldReport solve_corrected(const LaneGraphProblem& problem) {
 const Scene kStaggered =
     scene_of({{2.6, 1.5}, {5.8, 1.5}, {9.0, 1.5}, {1.0, -1.5}, {4.2, -1.5}, {7.4, -1.5}});
 
-/// (7) printed: a_ij + a_kl <= 1 where MinDist > d_min. Meant: MinDist < d_min.
+/// (7) printed: a_ij + a_kl <= 1 if MinDist > d_min. Meant: MinDist < d_min.
 TEST(Errata, Equation7AsPrintedForbidsFacingEdges) {
     LaneGraphProblem problem = paper_problem(kStaggered);
     const RldReport corrected = solve_corrected(problem);

@@ -1,4 +1,4 @@
-// What the relaxation of each formulation proves before any branching.
+// What the relaxation of each formulation proves without branching.
 
 #include "model/lane_graph_model.hpp"
 #include "solvers/registry.hpp"
@@ -39,12 +39,12 @@ TEST(TightRelaxation, NoPathEndsHalfHereAndHalfThere) {
     parameters.d_max = 4.5;  // across and one spacing: 4.39 m
     EXPECT_NEAR(optimum(scene, parameters).value(), -5.0, 1e-9);
     EXPECT_NEAR(relaxed(scene, parameters, Formulation::tight), -5.0, 1e-7);
-    // The printed pairing knows a path between the two far ends, for which they are partners.
+    // With the printed pairing, a path between the two far ends is allowed; for it they are partners.
     parameters.pairing = Pairing::paper;
     EXPECT_LT(relaxed(scene, parameters, Formulation::tight), -5.0 - 1e-3);
 }
 
-/// A relaxation never proves too much, and the tight one proves at least what the printed one does.
+/// A relaxation is never above the optimum, and the tight one proves at least as much as the printed one.
 TEST(Relaxations, AreOrdered) {
     int proven = 0;
     int feasible = 0;

@@ -1,5 +1,5 @@
-// Learned costs in the problem: what they are of, that they are what the networks say, and what they may not
-// be.
+// Learned costs in the problem: they equal the values of the networks, depend on what they should, and obey
+// their limits.
 
 #include "conelane/learned_costs.hpp"
 
@@ -52,8 +52,8 @@ const ProblemEdge& edge_of(const LaneGraphProblem& problem, std::size_t i, std::
                                  [&](const ProblemEdge& edge) { return edge.i == i && edge.j == j; });
 }
 
-/// Edges that cost more the farther they are make the lane begin later or not at all; ends that gain inside
-/// the view make it end earlier.
+/// If edges cost more the farther away they are, the lane begins later or not at all; if ends gain inside the
+/// view, it ends earlier.
 TEST(LearnedCosts, DecideWhichLaneIsBest) {
     const Scene scene =
         scene_of({{1, 1.75}, {4.2, 1.75}, {7.4, 1.75}, {1, -1.75}, {4.2, -1.75}, {7.4, -1.75}});
@@ -69,8 +69,8 @@ TEST(LearnedCosts, DecideWhichLaneIsBest) {
     EXPECT_NEAR(*begins_later.objective, 2.0 * (10.0 * std::hypot(5.8, 1.75) / 30.0 - 1.0), 1e-9);
     const RldParameters cheap = with_weight(LearnedPart::edge, "distance", 1.0);
     EXPECT_EQ(make_exhaustive_solver()->solve(make_problem(scene, cheap), {}).lane_graph, whole);
-    // Two cones more, and ends that gain by what is left of the view: now the lane ends at 7.4 m, where the
-    // plain one goes on to 10.6 m.
+    // With two more cones, and ends that gain by the remaining view, the lane ends at 7.4 m, while the plain
+    // one continues to 10.6 m.
     Scene longer = scene;
     longer.cones.push_back({6, {10.6, 1.75}});
     longer.cones.push_back({7, {10.6, -1.75}});
@@ -79,7 +79,8 @@ TEST(LearnedCosts, DecideWhichLaneIsBest) {
     const RldParameters ends = with_weight(LearnedPart::far_end, "in_view", -10.0);
     const RldReport shorter = make_exhaustive_solver()->solve(make_problem(longer, ends), {});
     EXPECT_EQ(shorter.lane_graph, whole);
-    // By hand: four edges at -1, and two ends in view by what the farthest cones are beyond them.
+    // By hand: four edges at -1, and two ends whose gain depends on how far the farthest cones are beyond
+    // them.
     const double in_view = (std::hypot(10.6, 1.75) - std::hypot(7.4, 1.75)) / 10.0;
     EXPECT_NEAR(*shorter.objective, -4.0 - 2 * 10.0 * in_view, 1e-9);
 }
@@ -181,7 +182,7 @@ TEST(LearnedCosts, OfTheProblemAreThoseOfTheNetworks) {
     EXPECT_GT(gaps, 20);
 }
 
-/// The sums of the problem are those of a checker with other arithmetic, for whole lanes and single edges.
+/// The sums of the problem equal those of a checker with other arithmetic, for whole lanes and single edges.
 TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
     int lanes = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -219,7 +220,7 @@ TEST(LearnedCosts, AreThoseOfTheIndependentChecker) {
     EXPECT_GT(lanes, 30);
 }
 
-/// Three cones in line along an axis cut off an area of 0 or of -0, which atan2 tells apart.
+/// Three cones in line along an axis enclose an area of 0 or of -0, which atan2 distinguishes.
 TEST(LearnedCosts, StraightOnIsStraightOnForTheCheckerToo) {
     const RldParameters parameters = with_weight(LearnedPart::turn, "angle", 1.0);
     int turns = 0;
@@ -243,7 +244,7 @@ TEST(LearnedCosts, StraightOnIsStraightOnForTheCheckerToo) {
     EXPECT_EQ(turns, 24);
 }
 
-/// A missed cone leaves 6.4 m. The edge over it is there only where one of its ends goes straight on.
+/// A missed cone leaves a gap of 6.4 m. The edge over it exists only if one of its ends continues straight.
 TEST(Gaps, GoStraightOnAtAnEnd) {
     const auto has_gap = [](const Scene& scene, const RldParameters& parameters, std::size_t i,
                             std::size_t j) {
@@ -274,7 +275,7 @@ TEST(Gaps, GoStraightOnAtAnEnd) {
     EXPECT_TRUE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}}), parameters, 0, 1))
         << "the first edge in view";
     EXPECT_FALSE(has_gap(scene_of({{4.2, 1.5}, {10.6, 1.5}}), parameters, 0, 1)) << "nothing around it";
-    // A turn at its end may be no sharper than theta_gap, though t_crit allows more.
+    // A turn at its end may not exceed theta_gap, even if t_crit allows more.
     parameters.theta_gap = 0.4;
     const Scene forked = scene_of({{1, 1.5}, {4.2, 1.5}, {10.6, 1.5}, {13.8, 1.5}, {13.0, 3.5}});
     const LaneGraphProblem problem = make_problem(forked, parameters);

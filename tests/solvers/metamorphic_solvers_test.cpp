@@ -1,5 +1,5 @@
-// Another view of the same cones has the same optimum, for every solver of the registry and every formulation
-// it uses.
+// Transformed scenes have the same optimum, for every solver of the registry and every formulation that it
+// uses.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/path_pair_solver.hpp"
@@ -24,7 +24,7 @@ namespace {
 using tests::Change;
 using tests::SolverCase;
 
-/// What an LP's tolerance leaves.
+/// The tolerance of an LP.
 constexpr double kObjectiveTolerance = 1e-6;
 
 RldParameters parameters_of(std::uint64_t seed) {
@@ -42,7 +42,7 @@ RldParameters with_lengths_scaled(RldParameters parameters, double factor) {
     return parameters;
 }
 
-/// The objective of a lane of `original`, whose cones the change has renumbered and put into another order.
+/// The objective of a lane of `original`, whose cones the transformation has renumbered and reordered.
 double objective_of(const LaneGraph& graph, const Scene& original, const LaneGraphProblem& changed_problem,
                     const Scene& changed, const Change& change) {
     LaneGraph same;
@@ -72,22 +72,22 @@ Solved solve(RldSolver& solver, Scene scene, const RldParameters& parameters) {
     return solved;
 }
 
-/// Status and objective; and either lane costs the same in the other's scene.
+/// Status and objective are equal, and each lane has the same cost in the other scene.
 void expect_same_optimum(const Solved& original, const Solved& changed, const Change& change) {
     const RldReport& a = original.report;
     const RldReport& b = changed.report;
     ASSERT_NE(a.status, SolveStatus::error) << a.message;
     ASSERT_EQ(b.status, a.status) << b.message;
     if (a.status != SolveStatus::optimal) return;
-    // There positions are multiples of a micrometre, and the middles of edges are rounded.
+    // For these, positions are multiples of a micrometre, and the midpoints of edges are rounded.
     const double tolerance = change.name == "MovedFar" ? 1e-5 : kObjectiveTolerance;
     EXPECT_NEAR(*b.objective, *a.objective, tolerance);
     EXPECT_NEAR(objective_of(*a.lane_graph, original.scene, changed.problem, changed.scene, change),
                 *b.objective, tolerance);
 }
 
-/// What a heuristic finds depends on the order of its columns and on the last bits of its numbers. A lane
-/// that it answers is one all the same, and no better than the optimum, which path-pair knows.
+/// The answer of a heuristic depends on the order of its columns and on the last bits of its numbers. But it
+/// is always a lane, and not better than the optimum, which path-pair knows.
 void expect_no_better(const Solved& changed) {
     if (!changed.report.lane_graph) return;
     EXPECT_TRUE(is_feasible(changed.problem, *changed.report.lane_graph));
@@ -102,7 +102,7 @@ void expect_same(const Solved& original, const Solved& changed, const Change& ch
     } else {
         expect_no_better(changed);
     }
-    // Ids and sides are in none of the numbers of a problem.
+    // Ids and sides influence no number of a problem.
     if (change.name == "Renumbered" || change.name == "Mirrored") {
         EXPECT_EQ(changed.report.status, original.report.status);
         EXPECT_EQ(changed.report.lane_graph, original.report.lane_graph);
@@ -118,14 +118,14 @@ TEST_P(SolverMetamorphic, FindsTheSameOptimum) {
     std::size_t lanes = 0;
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
-        // exhaustive takes nine cones, one of them added.
+        // exhaustive takes at most nine cones, and one is added.
         const Scene scene = tests::on_grid(tests::random_scene(seed, 8));
         const Solved original = solve(*solver, scene, parameters_of(seed));
         const Solved changed = solve(*solver, change.apply(scene), parameters_of(seed));
         expect_same(original, changed, change, tried.entry->exact);
         if (original.report.lane_graph) ++lanes;
     }
-    // How many a heuristic finds is its own affair.
+    // The number of lanes that a heuristic finds is not compared.
     if (tried.entry->exact) {
         EXPECT_GE(lanes, seeds / 4);
     }
@@ -149,7 +149,7 @@ TEST_P(SolverScale, FindsTheSameOptimumWithTheLengthsOfTheParameters) {
     }
 }
 
-/// Many cones, which no other solver takes so soon.
+/// Many cones, for which all other solvers take too long.
 class PathPairMetamorphic : public testing::TestWithParam<Change> {};
 
 TEST_P(PathPairMetamorphic, FindsTheSameOptimumAmongManyCones) {

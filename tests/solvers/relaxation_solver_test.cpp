@@ -1,5 +1,5 @@
-// Relaxations and their rounding: derivatives against finite differences, lane graphs that the checker
-// accepts, never better than the optimum and never worse than their own bound.
+// Relaxations and their rounding: derivatives equal finite differences, lane graphs pass the checker, and
+// they are never better than the optimum or their own bound.
 
 #include "conelane/check.hpp"
 #include "conelane/relaxation_solvers.hpp"
@@ -106,8 +106,8 @@ TEST(Relaxations, AnswerLaneGraphsBetweenBoundAndOptimumAndClaimNoOptimality) {
     }
 }
 
-/// Two straight boundaries at the expected spacing and nothing else: four edges at -1 each, and the linear
-/// relaxation is there already.
+/// Two straight boundaries at the expected spacing and nothing else: four edges at -1 each, which is also the
+/// optimum of the linear relaxation.
 TEST(Relaxations, FindTheOnlyLane) {
     Scene scene;
     for (const double left_m : {1.5, -1.5}) {
@@ -125,7 +125,7 @@ TEST(Relaxations, FindTheOnlyLane) {
     }
 }
 
-/// The linear relaxation proves it; other heuristics need not.
+/// The linear relaxation proves it; other heuristics do not have to.
 TEST(Relaxations, ProveThatTooFewConesHaveNoLane) {
     Scene too_few;
     for (const Point& position : {Point(4, 1.5), Point(7.2, 1.5), Point(4, -1.5)}) {

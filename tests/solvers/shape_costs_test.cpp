@@ -1,5 +1,5 @@
-// The costs of a lane's shape, on lanes that can be followed by hand; and the same numbers from the
-// independent checker, which knows them only as the paper-and-pencil definition says.
+// The costs of a lane's shape, on lanes that can be followed by hand, and the same numbers from the
+// independent checker, which computes them by definition.
 
 #include "model/shape_costs.hpp"
 
@@ -27,7 +27,7 @@ Scene scene_of(const std::vector<Point>& cones) {
     return scene;
 }
 
-/// Facing alone, of a lane 4 m wide: that is all an edge costs.
+/// Only the facing cost, for a lane 4 m wide; edges cost nothing else.
 RldParameters facing_parameters() {
     RldParameters parameters;
     parameters.w_s = parameters.w_t = parameters.w_p = parameters.w_b = 0.0;
@@ -39,7 +39,7 @@ RldParameters facing_parameters() {
     return parameters;
 }
 
-/// Of the problem; the checker's is the same.
+/// The problem's cost, after a test that the checker's is equal.
 double facing_cost(const Scene& scene, const RldParameters& parameters, std::size_t i, std::size_t j) {
     const double checked = *check(scene, parameters, LaneGraph{{{i, j}}}).objective;
     for (const ProblemEdge& edge : make_problem(scene, parameters).edges) {
@@ -59,7 +59,7 @@ TEST(Unevenness, IsTheSquaredDifferenceInUnitsOfTheSpacingThreshold) {
     EXPECT_EQ(unevenness(4.0, 3.0, parameters), 0.25);
 }
 
-TEST(FacingCost, IsNothingWhereALaneHasItsWidth) {
+TEST(FacingCost, IsZeroIfTheLaneHasTheExpectedWidth) {
     const Scene lane = scene_of({{2, 2}, {5, 2}, {2, -2}, {5, -2}});
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 0, 1), 0.0, 1e-12);
     EXPECT_NEAR(facing_cost(lane, facing_parameters(), 2, 3), 0.0, 1e-12);
@@ -84,17 +84,17 @@ TEST(FacingCost, GrowsWithWidthOffsetAngleAndLength) {
 
 TEST(FacingCost, IsOneWhereNothingFaces) {
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}}), facing_parameters(), 0, 1), 1.0);
-    // Out of reach, across, or with a cone in common.
+    // Too far away, across, or with a cone in common.
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {2, -8}, {5, -8}}), facing_parameters(), 0, 1), 1.0);
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {3.5, -1}, {3.5, -4}}), facing_parameters(), 0, 1), 1.0);
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, -1}}), facing_parameters(), 0, 1), 1.0);
-    // It would be faced by an edge to its own end, were the lane that narrow.
+    // If the lane were that narrow, an edge to its own end would face it.
     RldParameters narrow = facing_parameters();
     narrow.d_w = 0.5;
     EXPECT_EQ(facing_cost(scene_of({{2, 2}, {5, 2}, {5, 1}}), narrow, 0, 1), 1.0);
 }
 
-/// What (27) forbids can be no boundary, whether a problem lists it or not.
+/// An edge that (27) forbids cannot be a boundary, whether a problem lists it or not.
 TEST(FacingCost, CountsNoEdgeThatIsTooLong) {
     const RldParameters parameters = facing_parameters();
     const Scene scene = scene_of({{2, 2}, {5, 2}, {0.5, -2}, {6.5, -2}});  // 6 m apart
@@ -117,7 +117,7 @@ TEST(NearEndFit, IsBestHalfALaneBesideTheCar) {
     EXPECT_NEAR(near_end_fit(scene, {2, 0}, parameters), 1.0, 1e-12);
 }
 
-/// A straight lane with uneven spacing: what the near ends are worth and the unevenness are all there is.
+/// A straight lane with uneven spacing: its only costs are the near ends and the unevenness.
 TEST(ShapeCosts, AddUpOnALaneByHand) {
     const Scene lane = scene_of({{2, 2}, {4, 2}, {7, 2}, {2, -2}, {4, -2}, {7, -2}});
     RldParameters parameters;
@@ -133,7 +133,7 @@ TEST(ShapeCosts, AddUpOnALaneByHand) {
     EXPECT_NEAR(*check(lane, parameters, graph).objective, expected, 1e-12);
 }
 
-TEST(ShapeCosts, OffMeansNoneAtAll) {
+TEST(ShapeCosts, AreZeroIfSwitchedOff) {
     const Scene scene = tests::random_scene(3, 9);
     RldParameters other_thresholds;
     other_thresholds.d_w = 3.0;
@@ -148,8 +148,8 @@ TEST(ShapeCosts, OffMeansNoneAtAll) {
     EXPECT_FALSE(has_shape_costs(RldParameters{}));
 }
 
-/// Two cones at one place, and an edge of 0.2 m beside them at just the width expected: what has no direction
-/// is faced by nothing.
+/// Two cones at one place, and an edge of 0.2 m beside them at exactly the expected width: nothing faces an
+/// edge without a direction.
 TEST(ShapeCosts, AnEdgeWithoutLengthIsFacedByNothing) {
     Scene scene;
     for (const Point& place : {Point(2.0, 0.0), Point(2.0, 0.0), Point(1.9, 0.5), Point(2.1, 0.5)})
@@ -174,8 +174,8 @@ TEST(ShapeCosts, ComeByHandWhereThereAreNone) {
     EXPECT_EQ(same.s_crit, RldParameters{}.s_crit);
 }
 
-/// Each edge alone, and every lane graph that is best under some weights, costs what the checker says. With
-/// it the near ends, which the problem spreads over edges and turns.
+/// Each edge alone, and every lane graph that is best for some weights, has the checker's cost. This includes
+/// the near ends, which the problem distributes over edges and turns.
 TEST(ShapeCosts, AreThoseOfTheIndependentChecker) {
     std::size_t faced = 0;
     std::size_t lanes = 0;

@@ -24,7 +24,7 @@ namespace {
 
 using tests::SolverCase;
 
-/// Those that prove their optimum; what is asked of all is in solver_robustness_test.
+/// The solvers that prove their optimum. Requirements of all solvers are in solver_robustness_test.
 std::vector<SolverCase> exact_solver_cases() {
     std::vector<SolverCase> all = tests::solver_cases();
     std::erase_if(all, [](const SolverCase& solver) { return !solver.entry->exact; });
@@ -87,8 +87,8 @@ TEST_P(SolverContract, FarEndsMoreThanTheLimitApartAreInfeasible) {
               SolveStatus::infeasible);
 }
 
-/// Found by cross-check, far from the origin. A limit is met within 1e-9 m, a row within 1e-7: the rows
-/// decide as the model does. Both far ends are 3 m apart.
+/// Found by cross-check, far from the origin. The problem's tolerance of limits is 1e-9 m, a solver's
+/// tolerance of rows 1e-7: the rows must decide like the problem. Both far ends are 3 m apart.
 TEST_P(SolverContract, FarEndsThatNearlyTieWithTheLimit) {
     for (const double beyond_m : {-1e-9, 0.0, 0.5e-9, 1.5e-9, 1e-8, 1e-7, 1e-6}) {
         SCOPED_TRACE(beyond_m);
@@ -100,7 +100,7 @@ TEST_P(SolverContract, FarEndsThatNearlyTieWithTheLimit) {
     }
 }
 
-/// Two cones at one place: no edge joins them, and one of them is left out.
+/// Two cones at one place: no edge joins them, and one is left out.
 TEST_P(SolverContract, CoincidentCones) {
     const RldReport report = solve(scene_of({{4, 1.5}, {7.2, 1.5}, {4, -1.5}, {7.2, -1.5}, {7.2, -1.5}}));
     ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
@@ -108,7 +108,7 @@ TEST_P(SolverContract, CoincidentCones) {
     EXPECT_EQ(report.lane_graph->edges.size(), 2u);
 }
 
-/// The car stands on the midpoint of an edge across its way: the heading cost has its pole there and stays
+/// The car is on the midpoint of an edge across its way: the heading cost has its pole there and must be
 /// finite.
 TEST_P(SolverContract, CarOnAMidpoint) {
     RldParameters parameters;
@@ -184,7 +184,7 @@ TEST_P(SolverContract, ExactlyFacingEdgesAreBetweenEnds) {
     }
 }
 
-/// The left boundary goes on to either of two cones at the same cost: any of the two is right.
+/// The left boundary continues to either of two cones at the same cost: both answers are right.
 TEST_P(SolverContract, EquallyGoodLanesTie) {
     RldParameters parameters;
     parameters.w_p = 0.0;
@@ -201,7 +201,7 @@ TEST_P(SolverContract, EquallyGoodLanesTie) {
         testing::IsEmpty());
 }
 
-/// However little time there is, a claim is true: no wrong optimum, a bound that is one, a lane graph that is
+/// With however little time, a claim is true: no wrong optimum, a valid bound, a lane graph that is
 /// one.
 TEST_P(SolverContract, ATimeLimitNeverMakesAClaimWrong) {
     const std::size_t cones = GetParam().entry->uses_formulation ? 14 : kExhaustiveMostCones;
@@ -280,7 +280,7 @@ TEST_P(SolverContract, ExtrasAgreeWithTheReferenceAndTheChecker) {
 }
 
 /// Learned costs and edges over gaps are numbers of the problem like all others: every solver minimises the
-/// same ones, and the checker finds them again.
+/// same costs, and the checker computes them too.
 TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
     int changed = 0;
     int over_gaps = 0;
@@ -311,9 +311,10 @@ TEST_P(SolverContract, LearnedCostsAgreeWithTheReferenceAndTheChecker) {
     EXPECT_GT(over_gaps, 0) << "no lane goes over a gap";
 }
 
-/// Two near edges that cross pay more than a lane that does not; with d_min = 0 only forbid_crossing tells.
+/// Two near edges that cross gain more than a lane without crossing; with d_min = 0 only forbid_crossing
+/// excludes them.
 TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
-    // Crosswise edges have the expected spacing, straight ones are too short to be allowed.
+    // Edges across have the expected spacing; straight ones are too short to be allowed.
     const Scene scene = scene_of({{4, 1.0}, {6.5, 1.0}, {4, -1.0}, {6.5, -1.0}});
     RldParameters parameters;
     parameters.d_min = 0.0;
@@ -328,7 +329,7 @@ TEST_P(SolverContract, CrossingEdgesAreForbiddenOnRequest) {
     EXPECT_THAT(check(scene, parameters, expected).violations, testing::SizeIs(1));
 }
 
-/// From any lane graph as start, the optimum is found with proof; a start that is not a lane graph of this
+/// With any lane graph as start, the optimum is found and proven; a start that is not a lane graph of this
 /// problem is dropped.
 TEST_P(SolverContract, AStartChangesNoOptimum) {
     int started = 0;

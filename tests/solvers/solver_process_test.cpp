@@ -1,5 +1,5 @@
-// What a solve leaves of the process around it: SIGINT stays the program's, and no library's assertion ends
-// it.
+// Effects of a solve on its process: SIGINT still belongs to the program, and no library's assertion ends the
+// process.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "model/formulation_parts.hpp"
@@ -22,10 +22,10 @@ namespace {
 
 constexpr unsigned kMaxDuration_s = 60;
 
-/// Solves again and again; SIGINT comes from a thread of its own in the midst of it. Relaxations of the
-/// printed rows with 40 cones take seconds, so nearly all of the time is spent inside of Clp.
+/// Solves repeatedly; SIGINT comes from another thread meanwhile. Relaxations of the printed rows with 40
+/// cones take seconds, so nearly all of the time is spent inside Clp.
 [[noreturn]] void be_interrupted_in(const char* name, Formulation formulation, std::size_t cones) {
-    alarm(kMaxDuration_s);  // where SIGINT is swallowed, this ends the process
+    alarm(kMaxDuration_s);  // if SIGINT has no effect, this ends the process
     const std::unique_ptr<RldSolver> solver = find_rld_solver(name)->make(formulation);
     const LaneGraphProblem problem =
         make_problem(tests::random_scene(1, cones), {}, parts(formulation).extent);
@@ -47,7 +47,7 @@ TEST_P(Interrupt, EndsAProgramThatHasNoHandler) {
 
 volatile std::sig_atomic_t interrupts = 0;
 
-/// A handler that the program has installed is still there after a solve, and is called in the midst of one.
+/// A handler that the program has installed is still there after a solve, and is called during one.
 TEST_P(Interrupt, IsSeenByTheProgramsHandler) {
     const auto before = std::signal(SIGINT, [](int) { interrupts = interrupts + 1; });
     interrupts = 0;
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Cbc, Interrupt, testing::Values("cbc", "cbc-main"), [](
     return std::string(test.param) == "cbc" ? "cbc" : "cbc_main";
 });
 
-/// A scene on which CBC's feasibility pump ran into an assertion of Clp, every time.
+/// A scene on which CBC's feasibility pump always fails an assertion of Clp.
 TEST(CbcMain, SolvesWhatTheFeasibilityPumpAbortedOn) {
     constexpr std::pair<double, double> kCones[] = {
         {13.203246, -10.469978}, {19.8542, 1.4488},       {15.09518, -16.433888}, {16.7573, -2.6786},

@@ -1,5 +1,5 @@
-// What every solver of the registry promises, heuristics too, where time is short, scenes are degenerate,
-// limits are odd or a backend fails.
+// Requirements of every solver of the registry, including heuristics: little time, degenerate scenes, unusual
+// limits and failing backends.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -50,7 +50,7 @@ class SolverRobustness : public testing::TestWithParam<SolverCase> {
 
     LaneGraphProblem problem_of(const Scene& scene) { return make_problem(scene, {}, solver->extent()); }
 
-    /// That the report says what is true without a limit: there is no lane. A heuristic need not prove it.
+    /// The report is right without a limit: there is no lane. A heuristic need not prove it.
     static void expect_no_lane(const RldReport& report) {
         EXPECT_TRUE(report.status == SolveStatus::infeasible ||
                     (!GetParam().entry->exact && report.status == SolveStatus::stopped))
@@ -59,7 +59,7 @@ class SolverRobustness : public testing::TestWithParam<SolverCase> {
         EXPECT_FALSE(report.lane_graph.has_value());
     }
 
-    /// That the report claims nothing that the reference, solved without a limit, contradicts.
+    /// The report claims nothing that contradicts the reference, which was solved without a limit.
     static void expect_true(const RldReport& report, const LaneGraphProblem& problem,
                             const RldReport& reference) {
         const bool has_lane = reference.status == SolveStatus::optimal;
@@ -82,7 +82,7 @@ class SolverRobustness : public testing::TestWithParam<SolverCase> {
     }
 };
 
-/// Limits all over the time that the solve takes, so that the deadline falls into each of its parts.
+/// Limits spread over the time of the solve, so that the deadline is in each of its parts.
 TEST_P(SolverRobustness, ADeadlineAnywhereInTheSolveMakesNoFalseProof) {
     constexpr int kLimits = 60;
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
@@ -118,9 +118,9 @@ TEST_P(SolverRobustness, ALimitThatHasPassedStopsAtOnce) {
     }
 }
 
-/// The numbers of a clock, a backend's seconds and its milliseconds overflow long before a double. What a
-/// heuristic finds without a limit it finds here.
-TEST_P(SolverRobustness, AHugeFiniteLimitIsNone) {
+/// The integers of a clock, a backend's seconds and its milliseconds overflow long before a double. The
+/// answer of a heuristic must be the one without a limit.
+TEST_P(SolverRobustness, AHugeFiniteLimitIsNoLimit) {
     const RldReport unlimited = solver->solve(problem_of(four_cones()), {});
     if (GetParam().entry->exact) {
         ASSERT_EQ(unlimited.status, SolveStatus::optimal) << unlimited.message;
@@ -163,7 +163,7 @@ TEST_P(SolverRobustness, AllConesAtOnePlace) {
 }
 
 /// The last cone's edges cost 10^29; the printed formulation lists them.
-TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrNotFelt) {
+TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrHasNoEffect) {
     Scene scene = four_cones();
     scene.cones.push_back({4, {1e15, 0.0}});
     const LaneGraphProblem problem = problem_of(scene);
@@ -175,7 +175,7 @@ TEST_P(SolverRobustness, ACostBeyondWhatABackendTakesIsAnErrorOrNotFelt) {
     expect_true(report, problem, make_path_pair_solver()->solve(make_problem(scene, {}), {}));
 }
 
-/// Nothing better than the start is found before the limit, so the start is the answer.
+/// The solver finds nothing better than the start before the limit, so the start is the answer.
 TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
     const RldReport report = solver->solve(problem_of(four_cones()), {0.0}, &kFourConesLane);
     EXPECT_EQ(report.status, SolveStatus::feasible) << report.message;
@@ -184,7 +184,8 @@ TEST_P(SolverRobustness, AStartOutlivesTheLimit) {
     EXPECT_NEAR(report.objective.value_or(0.0), -2.0, 1e-9);
 }
 
-/// An instance a thread: they share nothing that tells. Libraries that cannot do so take turns.
+/// One instance in each thread: they share no state that matters. Libraries that cannot run in parallel take
+/// turns.
 TEST_P(SolverRobustness, SolvesTheSameInThreads) {
     constexpr std::uint64_t kSeeds = 4;
     const auto solve_all = [] {
@@ -219,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Registry, SolverRobustness, testing::ValuesIn(solver_ca
     return name;
 });
 
-/// A backend that fails in one of the ways that backends fail in.
+/// A backend that fails in one of several ways.
 class FailingMilpSolver : public MilpSolver {
   public:
     enum class Way { load_throws, throws, throws_no_std_exception, reports, gives_a_wrong_point };
@@ -284,7 +285,7 @@ TEST(FailingBackend, ARelaxationThatThrowsIsAnErrorToo) {
     EXPECT_EQ(solver->solve(problem, {}, &kFourConesLane).lane_graph, kFourConesLane);
 }
 
-TEST(FailingBackend, OutOfMemoryIsHandedOn) {
+TEST(FailingBackend, OutOfMemoryIsPassedOn) {
     const LaneGraphProblem problem = make_problem(four_cones(), {});
     const auto solver = make_relaxation_solver(
         [](const LaneGraphProblem&, const std::vector<double>&,

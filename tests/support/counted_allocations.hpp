@@ -10,8 +10,8 @@ namespace {
 std::size_t allocations = 0;
 }  // namespace
 
-// Every allocation of this program comes through here; the other forms of operator new call this one.
-// Inlined, GCC 12 takes new and free for a mismatch.
+// Every allocation of this program uses this; the other forms of operator new call it.
+// If this is inlined, GCC 12 reports new and free as a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     ++allocations;
     if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;

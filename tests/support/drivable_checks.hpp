@@ -29,7 +29,7 @@ inline bool all_finite(const DrivableLane& lane) {
            });
 }
 
-/// Whether a point is inside of outlines, by the number of times that a ray from it meets them.
+/// Whether a point is inside outlines, by the number of intersections with a ray from it.
 inline bool is_inside(const Point& point, const std::vector<Segment>& outlines) {
     bool inside = false;
     for (const Segment& side : outlines) {
@@ -40,8 +40,8 @@ inline bool is_inside(const Point& point, const std::vector<Segment>& outlines) 
     return inside;
 }
 
-/// What holds for every centre line: it goes on in equal steps along its heading, and neither its points nor
-/// the lines between them touch a boundary or leave the lane.
+/// Expects a valid centre line: equal steps along its heading, and no point or segment that touches a
+/// boundary or leaves the lane.
 inline void expect_drivable(const Course& course, const DrivableLane& lane, double step_m = 0.5) {
     ASSERT_GE(lane.points.size(), 2U);
     ASSERT_TRUE(all_finite(lane));
@@ -50,7 +50,7 @@ inline void expect_drivable(const Course& course, const DrivableLane& lane, doub
     const std::vector<Point> right = course.right();
     std::vector<Segment> boundaries = segments(left, closed);
     std::ranges::copy(segments(right, closed), std::back_inserter(boundaries));
-    // What of a boundary goes on round a bend after the other one has ended bounds no lane.
+    // If one boundary ends, the part of the other one behind the next bend does not bound the lane.
     std::vector<Point> left_beside = left;
     std::vector<Point> right_beside = right;
     const auto drop_far = [&](std::vector<Point>& boundary, const Point& end) {

@@ -11,9 +11,9 @@ namespace conelane::tests {
 
 /// Of this thread.
 struct Allocations {
-    std::int64_t made = 0;            ///< or tried
+    std::int64_t made = 0;            ///< including failed ones
     std::int64_t living = 0;          ///< made and not freed
-    std::int64_t until_failure = -1;  ///< so many succeed, then one fails; below 0 none fails
+    std::int64_t until_failure = -1;  ///< successes before the next failure; negative: no failure
 };
 inline thread_local Allocations allocations;
 
@@ -34,7 +34,7 @@ inline void free_memory(void* memory) {
 
 }  // namespace conelane::tests
 
-// The other forms call these. Inlined, GCC 12 takes new and free for a mismatch.
+// The other forms call these. If inlined, GCC 12 reports new and free as a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     if (void* const memory = conelane::tests::allocate(size, 0)) return memory;
     throw std::bad_alloc();

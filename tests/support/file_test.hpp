@@ -39,7 +39,7 @@ class FileTest : public testing::Test {
     [[nodiscard]] std::size_t files_in_folder() const {
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
-    /// What `read` says of a file, without the folder.
+    /// The message of `read` about a file, without the folder.
     [[nodiscard]] std::string error_of(const std::function<void()>& read) const {
         try {
             read();

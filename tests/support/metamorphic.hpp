@@ -18,7 +18,7 @@
 
 namespace conelane::tests {
 
-/// Another view of the same cones, in which the lane is the same one.
+/// A transformation of a scene that has the same lane.
 struct Change {
     std::string_view name;
     std::function<Scene(Scene)> apply;
@@ -53,7 +53,7 @@ inline Scene moved(Scene scene, const Point& by) {
     return scene;
 }
 
-/// About the origin.
+/// Around the origin.
 inline Scene rotated(Scene scene, double angle_rad) {
     const double cosine = std::cos(angle_rad);
     const double sine = std::sin(angle_rad);
@@ -96,7 +96,7 @@ inline Scene shuffled(Scene scene) {
     return scene;
 }
 
-/// A one-to-one map, whose order is nearly that of chance.
+/// A bijection that changes the order as if by chance.
 inline ConeId scattered_id(ConeId id) {
     return std::bit_cast<ConeId>(std::bit_cast<std::uint64_t>(id) * 0x9e3779b97f4a7c15U);
 }
@@ -105,7 +105,7 @@ inline Scene renumbered(Scene scene) {
     return scene;
 }
 
-/// With one more cone, seen from the car.
+/// Adds one cone, as seen from the car.
 inline Scene with_cone(Scene scene, double ahead_m, double left_m) {
     const Point heading = scene.pose.heading();
     scene.cones.push_back(
@@ -113,7 +113,7 @@ inline Scene with_cone(Scene scene, double ahead_m, double left_m) {
     return scene;
 }
 
-/// How far doubles allow, on the grid: 2^32 m.
+/// The largest shift that doubles allow, on the grid: 2^32 m.
 inline constexpr double kFarAway_m = 4294967296.0;
 
 inline std::vector<Change> changes() {

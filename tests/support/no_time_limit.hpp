@@ -6,7 +6,7 @@
 
 namespace conelane::tests {
 
-/// For tests of what is found, however slow the machine is.
+/// For tests of answers, which must not depend on the speed of the machine.
 inline constexpr DetectionLimits kNoTimeLimit{.time_limit_ms = std::numeric_limits<double>::infinity()};
 
 }  // namespace conelane::tests

@@ -24,7 +24,7 @@ namespace tests {
 inline constexpr std::array<std::string_view, 6> kPhases{"approach", "right 1", "right 2",
                                                          "left 1",   "left 2",  "exit"};
 
-/// What holds for every plan, whatever the frame was. `pose`: where the car was in the youngest frame.
+/// Expects a valid plan for any frame. `pose`: the car's pose in the latest frame.
 inline void expect_consistent(const Plan& plan, Mission mission, const Pose& pose) {
     SCOPED_TRACE(to_string(plan.state));
     const DrivableLane& lane = plan.lane;
@@ -63,7 +63,7 @@ inline void expect_consistent(const Plan& plan, Mission mission, const Pose& pos
     if (lane.trusted_m) {
         EXPECT_LE(*lane.trusted_m, lane.length_m + 1e-9);
     }
-    // It begins at the car, and ends ahead of it.
+    // The lane begins at the car and ends ahead of it.
     const DrivablePoint& first = lane.points.front();
     EXPECT_EQ(first.s_m, 0.0);
     EXPECT_LT(std::abs(pose.ahead_m(first.position)), 0.75);
@@ -81,7 +81,7 @@ inline void expect_consistent(const Plan& plan, Mission mission, const Pose& pos
     }
 }
 
-/// The same plan, to the bit.
+/// Expects the same plan, to the bit.
 inline void expect_same_plan(const Plan& a, const Plan& b) {
     EXPECT_EQ(a.state, b.state);
     EXPECT_EQ(a.safe_m, b.safe_m);

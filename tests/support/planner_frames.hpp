@@ -20,7 +20,7 @@ struct DrivenCourse {
     std::vector<Cone> cones;           ///< ids from 0, true colors
     std::function<Pose(double)> pose;  ///< of the car after so many metres from the start
     double finish_m = 0.0;             ///< where the last line is crossed
-    double lap_m = 0.0;                ///< once around; 0 where the course does not come round
+    double lap_m = 0.0;                ///< once around; 0 if the course does not come round
 };
 
 inline Pose between(const Pose& a, const Pose& b, double share) {
@@ -93,7 +93,7 @@ inline DrivenCourse course_of(Mission mission) {
     return oval(mission == Mission::autocross ? 1 : 10);
 }
 
-/// How a car sees.
+/// Properties of a car's perception.
 struct Sight {
     double range_m = 20.0;  ///< of the half disc ahead
     bool with_ids = true;
@@ -101,7 +101,7 @@ struct Sight {
     double noise_m = 0.0;  ///< standard deviation of a seen position, along either axis
 };
 
-/// The frame of a car at `s_m`. `random` is asked for noise alone.
+/// The frame of a car at `s_m`. `random` is used for noise only.
 inline Frame frame_at(const DrivenCourse& course, double s_m, double time_s, const Sight& sight = {},
                       std::mt19937* random = nullptr) {
     Frame frame{time_s, course.pose(s_m), {}};
@@ -120,12 +120,12 @@ inline Frame frame_at(const DrivenCourse& course, double s_m, double time_s, con
     return frame;
 }
 
-/// The farthest that a lane is from the middle of the course ahead of the car [m].
+/// The largest distance of a lane from the middle of the course ahead of the car [m].
 inline double farthest_from_middle_m(const DrivenCourse& course, double s_m, const DrivableLane& lane) {
     double farthest_m = 0.0;
     for (const DrivablePoint& point : lane.points) {
         double nearest_m = std::numeric_limits<double>::infinity();
-        // The middle may meet itself: only what the lane can reach counts.
+        // The middle may cross itself: only the part that the lane can reach counts.
         for (double s = point.s_m - 4.0; s <= point.s_m + 4.0; s += 0.1) {
             nearest_m = std::min(nearest_m, (course.pose(s_m + s).position - point.position).norm());
         }

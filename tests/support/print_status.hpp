@@ -6,7 +6,7 @@
 
 namespace conelane {
 
-/// For GoogleTest, which would print the bytes.
+/// For GoogleTest, which would print bytes.
 inline void PrintTo(SolveStatus status, std::ostream* out) {
     *out << to_string(status);
 }

@@ -8,16 +8,16 @@
 
 namespace conelane::tests {
 
-/// Processor time of this program: what others do on the machine does not count.
+/// Processor time of this program, which does not include other programs.
 inline double processor_time_ms() {
     timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// By how much a call takes longer than its time limit. The least of up to three tries, as the first call
-/// pays for memory that later ones find, and divided by kSlowness. Far above what any call needs between two
-/// looks at its clock is `ample_ms`: a try below it is the last.
+/// By how much a call exceeds its time limit: the smallest value of up to three tries (the first call pays
+/// for memory that later ones find), divided by kSlowness. `ample_ms` is far above the work of any call
+/// between two checks of its clock: a try below it is the last.
 template <typename Call>
 double overrun_ms(double limit_ms, double ample_ms, const Call& call) {
     double min_ms = std::numeric_limits<double>::infinity();

@@ -25,7 +25,7 @@ class Program : public ProgramFixture {
 inline constexpr const char* kScene =
     R"({"id": "a", "pose": {"x": 0, "y": 0, "yaw": 0}, "cones": [{"id": 1, "x": 1, "y": 2}, {"id": 2, "x": 4, "y": 2}]})";
 
-/// Lanes files hold the same but for the times.
+/// Lanes files are equal, except for the times.
 inline std::vector<Lane> lanes_in(const std::filesystem::path& file) {
     std::vector<Lane> lanes;
     for (const LaneRecord& record : read_lanes(file)) lanes.push_back(record.answer.lane);

@@ -11,15 +11,15 @@
 
 namespace conelane {
 
-/// The folder that the environment variable CONELANE_DATA names, else ../shared/data beside the sources;
-/// there may be neither.
+/// The folder in the environment variable CONELANE_DATA, else ../shared/data beside the sources; it may not
+/// exist.
 inline std::filesystem::path recorded_data() {
     const char* const given = std::getenv("CONELANE_DATA");
     if (given != nullptr) return given;
     return source_directory().parent_path() / "shared" / "data";
 }
 
-/// All recorded courses. None where there is no data.
+/// All recorded courses; none without the data.
 inline std::vector<Track> recorded_tracks() {
     namespace fs = std::filesystem;
     const fs::path data = recorded_data();

@@ -2,13 +2,13 @@
 
 namespace conelane::tests {
 
-#if defined(__has_feature)  // Clang's way to say it
+#if defined(__has_feature)  // defined by Clang
 #if __has_feature(address_sanitizer)
 #define CONELANE_UNDER_SANITIZER
 #endif
 #endif
 
-/// By what factor a build under sanitizers, or one that does not optimise, may be slower.
+/// Factor by which a build with sanitizers, or without optimisation, may be slower.
 #if defined(__SANITIZE_ADDRESS__) || defined(CONELANE_UNDER_SANITIZER) || !defined(__OPTIMIZE__)
 inline constexpr double kSlowness = 20.0;
 #else

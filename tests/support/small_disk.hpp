@@ -9,7 +9,7 @@
 
 namespace conelane {
 
-/// A disk of its own that is soon full; gone with the test.
+/// A disk of its own that is soon full; it is removed with the test.
 class SmallDisk {
   public:
     SmallDisk(std::filesystem::path folder, const std::string& size) : folder_(std::move(folder)) {

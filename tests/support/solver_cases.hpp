@@ -18,7 +18,7 @@ struct SolverCase {
     }
 };
 
-/// All of them, on every formulation that they use.
+/// All solvers, on every formulation that they use.
 inline std::vector<SolverCase> solver_cases() {
     std::vector<SolverCase> all;
     for (const RldSolverEntry& entry : rld_solvers()) {

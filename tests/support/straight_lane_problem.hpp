@@ -5,8 +5,8 @@
 
 namespace conelane::tests {
 
-/// A straight lane, cones 0, 2, 4, 6 on the left, 1, 3, 5, 7 on the right: each boundary can only be run
-/// along cone by cone.
+/// A straight lane, cones 0, 2, 4, 6 on the left, 1, 3, 5, 7 on the right: along each boundary, a path can
+/// only go cone by cone.
 inline LaneGraphProblem straight_lane_problem() {
     Scene scene;
     for (int row = 0; row < 4; ++row) {

@@ -1,4 +1,4 @@
-// One detector a thread, all at once, in the thread sanitizer too.
+// One detector in each thread, all at once; also with the thread sanitizer.
 
 #include "graph_search/clc/clc_detector.hpp"
 #include "tests/support/no_time_limit.hpp"

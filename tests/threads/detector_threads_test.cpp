@@ -1,4 +1,4 @@
-// Detectors of the library in several threads at once, an instance each, in the thread sanitizer too.
+// Detectors of the library in several threads at once, one instance each; also with the thread sanitizer.
 
 #include "conelane/detectors.hpp"
 #include "tests/support/no_time_limit.hpp"

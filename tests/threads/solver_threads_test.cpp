@@ -1,4 +1,4 @@
-// Solvers of the core in several threads at once, an instance each.
+// Solvers of the core in several threads at once, one instance each.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"

@@ -28,7 +28,7 @@ enum class ClosedLanes { never, possible };
 
 /// What a detector does with the colors of cones. Unknown ones never matter.
 enum class ColorUse {
-    ignored,    ///< the lane is the same whatever they are
+    ignored,    ///< the lane is the same for all colors
     by_weight,  ///< RldParameters::w_color says how much they count; by default it is 0
     used,
 };

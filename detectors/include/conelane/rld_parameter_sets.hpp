@@ -14,11 +14,11 @@ namespace conelane {
 /// - `n12`: accuracy of lanes found among the 12 nearest cones,
 /// - `full`: IoU of lanes found among all visible cones at 30 m,
 /// - `learned`: lanes of all visible cones, by learned costs alone (the detector rld-learned); its weights
-/// have
-///   their record with them.
-/// Of the others, parameters/NAME.record.json has the scenes of the tuning and the figures on tracks held
-/// out; docs/results.md compares the sets with the defaults. None is better everywhere, so none is the
-/// default.
+///   file contains its record.
+///
+/// For the other sets, parameters/NAME.record.json has the scenes of the tuning and the figures on held-out
+/// tracks; docs/results.md compares the sets with the defaults. No set is better everywhere, so the default
+/// is none of them.
 [[nodiscard]] std::vector<std::string_view> rld_parameter_set_names();
 
 /// The set of that name; nothing for an unknown name.

@@ -1,9 +1,9 @@
-"""What the exact search knows when its time is up
+"""What the exact search knows at its time limit
 
-Claim: Where the time does not suffice, there is a lane graph and a proven gap, and both get better with time.
+Claim: If the time is too short for a proof, there are a lane graph and a proven gap; both improve with time.
 Protocol: `path-pair` on all cones of each scene, solved again under each limit, one thread. Gap: from the bound to the \
-best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 where the optimum is proven. \
-Close: a lane graph that costs within 1 % of that one.
+best lane graph known under any limit, divided by the larger of 1 and its cost's size; 0 if the optimum is proven. \
+Close: a lane graph whose cost is within 1 % of that one's.
 Source: this project.
 Command: conelane study anytime --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/anytime.jsonl
 """
@@ -56,10 +56,10 @@ def html(results, published):
     logarithmic(axes.xaxis)
     percent_axis(axes)
     legend(axes)
-    shares = drawn("anytime-shares", "Where a curve turns level, more time proves no more. Share of "
+    shares = drawn("anytime-shares", "Where a curve is level, more time proves nothing more. Share of "
                    f"{len(by_limit[limits[0]])} scenes, by the limit. {origin}".strip(), figure,
                    "Proven, and nearly best")
-    # Scenes that the first limit is too short for: the same ones at every limit.
+    # Scenes that are not solved within the first limit: the same scenes at every limit.
     hard = {row["scene"] for row in by_limit[limits[0]] if not row["proven"]}
     figure, axes = new_figure()
     for index, share in enumerate((50, 75, 90)):
@@ -70,7 +70,7 @@ def html(results, published):
     axes.set_ylim(bottom=0.0)
     logarithmic(axes.xaxis)
     legend(axes)
-    gap = drawn("anytime-gap", "The faster a curve falls, the more its first answer is worth. Of the "
-                f"{len(hard)} scenes that {limits[0]:g} ms are too short for. {origin}".strip(),
+    gap = drawn("anytime-gap", "The faster a curve falls, the better the first answers are. For the "
+                f"{len(hard)} scenes that are not solved within {limits[0]:g} ms. {origin}".strip(),
                 figure, "Gap against time")
     return group([shares, gap])

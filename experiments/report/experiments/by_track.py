@@ -1,6 +1,6 @@
 """Usable lanes by track
 
-Claim: Does it hang on the track whether a method's lane can be driven by?
+Claim: How much does the share of usable lanes depend on the track?
 Protocol: share of usable lanes (success in results of earlier versions), all rates and ranges of a track together.
 Source: this project.
 Command: conelane compare --out RESULTS

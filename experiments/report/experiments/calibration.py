@@ -1,8 +1,8 @@
 """Confidence and trusted length
 
 Claim: Does a method know when its lane is wrong, and how far it is right?
-Protocol: of lanes said to be usable with about the same probability, the share that is; the dotted line is where both \
-are equal, bins of 0.1, all rates and ranges together. Error: mean over the lanes of the distance from that line. Sure: \
+Protocol: the share of usable lanes among lanes with about the same confidence, in bins of 0.1, all rates and ranges \
+together; on the dotted line, share and confidence are equal. Error: mean over the lanes of the distance from that line. Sure: \
 confidence of 0.99 or more. Right where trusted: the lane does not leave the true boundaries within its trusted length; \
 trusted: these lengths together, as a share of the lanes' lengths.
 Source: this project.
@@ -54,8 +54,8 @@ def _figure(shown, condition):
     axes.set_ylabel("share usable")
     method_legend(axes)
     name = f"calibration-{condition}" if condition else "calibration"
-    return drawn(name, "The nearer to the dotted line, the more its confidence says; above it a method is better than it says. "
-                 "Numbers: lanes of a point.", figure, title=f"Confidence, condition {condition}" if condition else "",
+    return drawn(name, "Near the dotted line, the confidence is right; above it, the method is better than its confidence. "
+                 "Numbers: lanes at a point.", figure, title=f"Confidence, condition {condition}" if condition else "",
                  condition=condition)
 
 

@@ -1,8 +1,8 @@
 """CLC Fig. 11: iterations to the first good candidate
 
 Claim: A candidate of IoU ≥ 98 % is enumerated early, in nearly every scene.
-Protocol: share of scenes, rates up to 30 %, in which such a candidate was enumerated by then. A plateau below 100 % \
-is what the search does not find within its limit.
+Protocol: share of scenes, rates up to 30 %, in which such a candidate was enumerated up to this iteration. A \
+plateau below 100 %: in the other scenes, none is found within the limit.
 Source: CLC paper, VIII-E, Fig. 11.
 Published: most within 500 iterations; 5 % of scenes without one after 2500; a plateau up to 20000.
 Command: conelane compare --methods clc --candidates --out RESULTS/candidates
@@ -44,7 +44,7 @@ def html(results, published):
     axes.set_ylim(0, 102)
     axes.set_xlim(left=0)
     legend(axes)
-    return drawn("clc-fig-11", "The earlier a curve is high, the sooner a good lane is met; where it stays level, none is found.", figure)
+    return drawn("clc-fig-11", "A curve that rises early: good lanes are found early. Where it is level, no more are found.", figure)
 
 
 def verdict(results, published):

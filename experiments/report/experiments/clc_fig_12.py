@@ -34,7 +34,7 @@ def html(results, published):
     axes.set_xlabel("length [m]")
     axes.set_ylabel("of all scenes [%]")
     legend(axes)
-    return drawn("clc-fig-12", "A line that follows the filled shape has lanes as long as the ground truth's; lanes that do not diverge.", figure)
+    return drawn("clc-fig-12", "A line along the filled shape: the lanes are as long as the ground truth. Only lanes that do not diverge.", figure)
 
 
 def verdict(results, published):

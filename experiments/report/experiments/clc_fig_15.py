@@ -1,6 +1,6 @@
 """CLC Fig. 15: latency of the graph search
 
-Claim: The graph search is fast enough for a car, at its worst too.
+Claim: The graph search is fast enough for a car, even in its slowest scene.
 Protocol: methods that enumerate, all rates and ranges. Quartiles and median; whiskers to the 1st and 99th \
 percentile; the tick is the maximum.
 Source: CLC paper, VIII-G, Fig. 15: Intel i7-12700K.
@@ -28,7 +28,7 @@ def html(results, published):
         axes.axvline(value, color=ACCENT, linewidth=1)
         axes.annotate(label, (value, 1.01), xycoords=("data", "axes fraction"), ha=side, va="bottom", color=ACCENT,
                       fontsize=8)
-    return drawn("clc-fig-15", "Boxes and ticks left of the lines are faster than the paper's median and maximum, which are of its own machine.", figure)
+    return drawn("clc-fig-15", "Boxes and ticks left of the lines are faster than the paper's median and maximum, which were measured on its own machine.", figure)
 
 
 def verdict(results, published):

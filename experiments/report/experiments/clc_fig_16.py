@@ -38,7 +38,7 @@ def html(results, published):
     if not samples:
         raise Missing("no method enumerates.")
     return group([
-        drawn("clc-fig-16a", "A straight rise: time goes with the iterations. Means and standard deviations.",
+        drawn("clc-fig-16a", "A straight line: the time is proportional to the iterations. Means and standard deviations.",
               _latency_against(results, samples, "iterations", "iterations"), "By iterations"),
         drawn("clc-fig-16b", "A flat line: more points cost little time. Means and standard deviations.",
               _latency_against(results, samples, "cones", "points in the map"), "By map points")])

@@ -1,6 +1,6 @@
 """CLC Fig. 9: where lanes diverge
 
-Claim: Lanes that go wrong do so far from the car.
+Claim: Most wrong lanes leave the track far from the car.
 Protocol: distance along the boundary up to which a diverging lane is right, rates up to 30 %, bins of 5 m, in per \
 cent of all scenes. Left of the line a divergence is critical.
 Source: CLC paper, VIII-D, Fig. 9.
@@ -34,7 +34,7 @@ def html(results, published):
     axes.set_xlabel("divergence distance [m]")
     axes.set_ylabel("of all scenes [%]")
     legend(axes)
-    return drawn("clc-fig-9", "What lies left of the line, at 20 m, is critical; low there is good. Rates up to 30 %, bins of 5 m.", figure)
+    return drawn("clc-fig-9", "Divergence left of the line, at 20 m, is critical: a low curve there is good. Rates up to 30 %, bins of 5 m.", figure)
 
 
 def verdict(results, published):

@@ -1,11 +1,11 @@
-"""CLC Table I: what became of the scenes
+"""CLC Table I: outcomes of the scenes
 
 Claim: Up to 30 % false positives, at least 99 % of lanes are right for 20 m.
-Protocol: every method on what it sees, all ranges together, as in the paper. The categories are the paper's; none \
-counts apart here.
+Protocol: every method on what it sees, all ranges together, as in the paper. The categories are the paper's; \
+`none` is separate here.
 Source: CLC paper, VIII-D, Table I: 1964 poses over 9 recorded tracks, 30 m and 50 m.
 Published: success 99.4 / 99.2 / 99.3 / 95.0 % and mean IoU 96.9 / 96.0 / 93.2 / 79.5 % at 0 / 10 / 30 / 50 % false \
-positives. The text of VIII-D gives 2.6 % critical failures at 50 % where the table has 5.0; the table is taken.
+positives. The text of VIII-D says 2.6 % critical failures at 50 %, the table 5.0 %; the table is used here.
 Command: conelane compare --full --tracks fsd:DIR --out RESULTS
 """
 

@@ -1,6 +1,6 @@
-"""CLC Table II: enumerations that came to their end
+"""CLC Table II: complete enumerations
 
-Claim: Without false positives the search sees the whole space in nearly half of the scenes.
+Claim: Without false positives the search is complete in nearly half of the scenes.
 Protocol: methods that enumerate, all ranges together. The best candidate's IoU is known where candidates were kept.
 Source: CLC paper, VIII-E, Table II.
 Published: 46.4 / 34.4 / 13.4 / 2.3 % complete at 0 / 10 / 30 / 50 % false positives.

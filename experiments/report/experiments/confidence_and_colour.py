@@ -1,9 +1,9 @@
 """Confidence and colour
 
-Claim: What do detection confidences, or cone colours of which some are wrong, add to the accuracy of RLD?
+Claim: How much more accurate is RLD with detection confidences, or with cone colours of which some are wrong?
 Protocol: scenes and folds of a tuning whose parameters were fitted to geometry alone; the same scenes with simulated \
-confidences or colours. Each fold answers for the tracks that it held out; the weight of what is known beside the \
-geometry (w_b with confidences, w_color with colours) is chosen on the others. Accurate: the RLD paper's four checks \
+confidences or colours. Each fold is measured on its held-out tracks; the weight of the additional data (w_b with \
+confidences, w_color with colours) is chosen on the other tracks. Accurate: the RLD paper's four checks \
 on the cone set; success: no lane that leaves the track within 20 m.
 Source: this project; the question is the RLD paper's own, V.
 Command: conelane study confidence-and-colour --record detectors/parameters/context.record.json --tracks TRACK... \

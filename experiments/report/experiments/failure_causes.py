@@ -1,13 +1,13 @@
 """Why lanes are not usable
 
-Claim: What goes wrong first?
+Claim: What is the first error in lanes that are not usable?
 Protocol: every lane that is not usable, all rates and ranges together, by the first place where it leaves the truth. \
-Of a lane that diverges within 20 m that is its first vertex off the annotated boundary. Wrong start: the first of its \
-side. False cone taken: on no boundary of the course. Wrong leg: a cone of the course, but of another stretch of it. \
-Wrong side: of the opposite boundary of this stretch. Cone skipped: its own boundary goes there, by way of cones that \
-it left out. A lane that is too short stopped early, or before a gap, a step longer than one and a half times the \
-median step of the ground truth; it has a wrong start where most of what is missing lies before it. Leaves the path: \
-where only a driven path, or a centre line without boundaries, is known, which does not tell why.
+If a lane diverges within 20 m, this place is its first vertex off the annotated boundary. Wrong start: the first vertex \
+of its side. False cone taken: a cone on no boundary of the course. Wrong leg: a cone of another stretch of the course. \
+Wrong side: a cone of the opposite boundary of this stretch. Cone skipped: a later cone of its own boundary, so cones \
+before it were left out. A lane that is too short stopped early, or before a gap, a step longer than one and a half times the \
+median step of the ground truth; it has a wrong start if most of the missing length is before it. Leaves the path: \
+only a driven path, or a centre line without boundaries, is known, which does not show the cause.
 Source: this project.
 Command: conelane compare --out RESULTS
 """

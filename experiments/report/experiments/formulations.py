@@ -1,7 +1,7 @@
 """Formulations
 
 Claim: Both formulations have the same optimum; the tight one has the stronger relaxation and is solved faster.
-Protocol: the n nearest cones of each scene that has as many; the tight formulation by `cbc`, the printed one by \
+Protocol: the n nearest cones of each scene with at least n cones; the tight formulation by `cbc`, the printed one by \
 `cbc-main`, each the faster of the two on it; one thread, building included. LP gap: (optimum - relaxation) divided \
 by the larger of 1 and the optimum's size. A difference in optima above 1e-6 would have stopped the run.
 Source: this project; the printed rows are those of the RLD paper, III.

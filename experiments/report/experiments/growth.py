@@ -2,8 +2,8 @@
 
 Claim: Time grows mildly with the cones and steeply with their density.
 Protocol: `path-pair` on the nearest cones of each scene at each size that it exceeds, and on all of them; processor \
-time of its thread, from the scene in memory to the answer in memory. A search that its limit ends counts with the time \
-it took. Density: how many others a cone has within 5.5 m, on average.
+time of its thread, from the scene in memory to the answer in memory. A search that reached its limit counts with the \
+time that it took. Density: mean number of other cones within 5.5 m of a cone.
 Source: this project.
 Command: conelane study growth --scenes RESULTS/scenes.scenes.jsonl --limit 300 --out RESULTS/growth.jsonl
 """
@@ -56,7 +56,7 @@ def html(results, published):
                                f"multiplies the time. Scenes that have more cones. {origin}".strip(), "growth-size", "By the number of cones"))
     if by_density:
         figures.append(_curves("others within 5.5 m of a cone", dict(sorted(by_density.items())),
-                               "The right end, where cones stand densely, is what takes the time. All visible cones. "
+                               "Scenes at the right end, with dense cones, take most time. All visible cones. "
                                f"{origin}".strip(), "growth-density", "By density"))
     if not figures:
         raise Missing(f"{FILE} holds no row.")

@@ -2,7 +2,7 @@
 
 Claim: Which method answers in time, at the median and in the tail?
 Protocol: from the scene in memory to the lane in memory, the building of any model included; one thread, pinned to \
-one processor; one untimed call a lap before. A run at its time limit counts with the time it took. The real-time \
+one processor; one untimed call before each lap. A run at its time limit counts with the time it took. The real-time \
 budget is 50 ms, the period of a 20 Hz LiDAR.
 Source: this project.
 Command: conelane compare --out RESULTS
@@ -86,9 +86,9 @@ def by_rate_figure(results):
 def html(results, published):
     under, alone = results.under(results.main_condition), in_condition(results)
     return group([
-        drawn("latency-by-rate", "Below the line a method answers in time; thin curves, the 99th percentile, tell what happens at worst, strong "
-              "ones the median. "
+        drawn("latency-by-rate", "Below the line, a method answers in time. Strong curves: the median. Thin curves: the 99th percentile, the slowest "
+              "answers. "
               f"{counts_of_points(under, under.samples)}{alone}", by_rate_figure(under), "Latency by false-positive rate"),
-        drawn("latency", "A tick, the maximum, right of the line: once or more it was too late for real time. Quartiles and "
+        drawn("latency", "A tick (the maximum) right of the line: at least one answer was too late for real time. Boxes: quartiles and "
               f"median; whiskers to the 1st and 99th percentile.{alone}", boxes_figure(under), "Latency over all rates and ranges")
     ], method_key(results, under.samples)) + latency_table(results)

@@ -2,9 +2,9 @@
 
 Claim: How far from optimal is the graph search under the objective that RLD minimises, and does the optimum drive \
 better?
-Protocol: every candidate that CLC enumerates within its iteration limit is priced by RLD's objective (29); those \
-that RLD's constraints forbid are counted apart. The cheapest is held against the optimum that `path-pair` proves on \
-the same cones. Gap: difference divided by the larger of 1 and the optimum's size. Equal: within 1e-6. Optimum and \
+Protocol: every candidate that CLC enumerates within its iteration limit gets its cost under RLD's objective (29); \
+candidates that RLD's constraints forbid are counted separately. The cheapest is compared with the optimum that \
+`path-pair` proves on the same cones. Gap: difference divided by the larger of 1 and the optimum's size. Equal: within 1e-6. Optimum and \
 cheapest candidate pass the independent checker; a candidate below a proven optimum would have stopped the run.
 Source: this project; neither paper compares them.
 Command: conelane study optimality --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/optimality.jsonl
@@ -152,8 +152,8 @@ def html(results, published):
     cones = {row.get("nearest") for row in rows}
     where = " and ".join("all visible cones" if n is None else f"the {n} nearest cones" for n in sorted(
         cones, key=lambda n: n or 0))
-    figures = [drawn("optimality-gaps", f"A curve that starts high: the cheapest candidate often is the optimum. Candidates of {rows[0]['method']} on {where}.", _gaps(rows), "Gap"),
-               drawn("optimality-success", "Curves that lie on one another: the optimum drives no better. The scenes with "
+    figures = [drawn("optimality-gaps", f"A curve that starts high: the cheapest candidate is often the optimum. Candidates of {rows[0]['method']} on {where}.", _gaps(rows), "Gap"),
+               drawn("optimality-success", "Equal curves: the optimum drives no better. The scenes with "
                      "a proven optimum and a feasible candidate, as in the table.", _driving(compared(rows)),
                      "Does the optimum drive better?")]
     return group(figures) + _table(rows, results.origin(rows[0]))

@@ -1,10 +1,10 @@
-"""What became of the scenes
+"""Outcomes of the scenes
 
 Claim: How do methods fail, not only how often?
-Protocol: the first that fits of: no lane, ground truth (the very same cones), diverging, too short (below 75 % of \
+Protocol: the first category that fits: no lane, ground truth (exactly the same cones), diverging, too short (below 75 % of \
 the ground truth's length), near (all other lanes, which do not diverge). All but none and diverging below 20 m are \
-successes. Errors, a part of none: the method failed, or the independent checker rejected what an RLD method \
-answered; the checker recomputes every constraint, objective and bound from the scene.
+successes. Errors, a part of none: the method failed, or the independent checker rejected the answer of an RLD \
+method; the checker recomputes every constraint, objective and bound from the scene.
 Source: categories of the CLC paper, VIII-D; the checker is this project's.
 Command: conelane compare --out RESULTS
 """

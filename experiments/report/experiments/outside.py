@@ -1,9 +1,9 @@
 """Methods from outside
 
-Claim: Which of these methods are not this project's, and what do their authors say of them?
-Protocol: a program answers scene by scene through a pipe; its latency is the whole round trip, beside what an echo \
-program takes for the same. Self-timed is what a method says that it took. Of a finished lanes file all latencies are \
-self-timed. The rest is from the method's own card.
+Claim: Which of these methods are not this project's, and how do their authors describe them?
+Protocol: a program answers scene by scene through a pipe; its latency is the whole round trip; that of an echo \
+program is shown for comparison. Self-timed: the time that the method itself reports. All latencies of a finished lanes \
+file are self-timed. The other columns are from the method's own card.
 Source: this project; the cards are their authors'.
 Command: conelane compare --methods exec:NAME=COMMAND,lanes:NAME=FILE --out RESULTS
 """

@@ -1,11 +1,11 @@
 """Performance profiles
 
 Claim: Which exact method is fastest on most scenes, and how far behind are the others?
-Protocol: Dolan and Moré: the share of scenes that a method solves, be it that it proves the optimum or that there is \
-no lane, within a multiple of the fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set and \
+Protocol: Dolan and Moré: the share of scenes that a method solves (it proves the optimum, or that there is \
+no lane) within a multiple of the fastest method's time on the same scene. Height at 1: how often it is the fastest. Methods of the same cone set and \
 the same objective only; \
-what is unproven after 0.4 s counts as unsolved. Where the methods of the comparison saw different cone sets, those \
-of the sweep stand in.
+a scene without a proof after 0.4 s counts as unsolved. If the methods of the comparison saw different cone sets, \
+those of the sweep are shown.
 Source: Dolan and Moré, Benchmarking optimization software with performance profiles, 2002.
 Command: conelane compare --methods rld-cbc,rld-pair --nearest 12 --out RESULTS
 """
@@ -69,8 +69,8 @@ def html(results, published):
                                 np.array(columns).T)
         of_set[nearest] = of_set.get(nearest, 0) + 1  # one for each objective
         name = f"profile-{nearest or 'all'}" + (f"-{of_set[nearest]}" if of_set[nearest] > 1 else "")
-        figures.append(drawn(name, f"The upper left curve is the fastest on most scenes, a curve below 100 % at the "
-                             f"right left some unproven. On {name_of_set(nearest)}, {len(scenes)} scenes.", figure))
+        figures.append(drawn(name, f"The upper left curve is the fastest on most scenes, a curve that ends below 100 % "
+                             f"left some unproven. On {name_of_set(nearest)}, {len(scenes)} scenes.", figure))
     if not figures:
         raise Missing("no two methods prove optimality of one objective on the same cone sets.")
     return group(figures) if len(figures) > 1 else figures[0]

@@ -1,12 +1,12 @@
 """Quality of the lanes
 
-Claim: Which method finds a lane to drive by most often, and how does it bear false positives?
+Claim: Which method finds a usable lane most often, and how does this depend on false positives?
 Protocol: every method on the same scenes, each on the cone set it was made for (its own n, or all that is visible). \
-Usable: a lane that does not leave the track within 20 m and, where it never does, is at least 20 m or 75 % of the \
-ground truth long. Success: the first half of that, as the CLC paper has it. IoU: overlap with the ground truth of all that is visible, \
-so a small cone set bounds it. Accurate: the four checks of the RLD paper, against the ground truth of the method's \
-own cone set. A method whose name ends in warm carries its last lane along; where false positives are drawn at \
-every pose, as in condition paper, that helps it. Intervals are 95 % bootstrap, tracks resampled, as scenes of one track are alike. Failures and \
+Usable: a lane that does not leave the track within 20 m; if it never leaves it, it must be at least 20 m or 75 % of the \
+ground truth long. Success: it does not leave the track within 20 m, as in the CLC paper. IoU: overlap with the ground truth of all that is visible, \
+so a small cone set limits it. Accurate: the four checks of the RLD paper, against the ground truth of the method's \
+own cone set. A method whose name ends in warm keeps its last lane; this helps it if false positives are new at \
+every pose, as in condition paper. Intervals are 95 % bootstrap, tracks resampled, because scenes of one track are similar. Failures and \
 time-outs count in every mean.
 Source: usable is this project's; success and IoU as in the CLC paper, VIII; accurate as in the RLD paper, IV-B.
 Command: conelane compare --out RESULTS
@@ -99,18 +99,18 @@ def html(results, published):
         under = results.under(condition)
         if any(sample.has("usable") for sample in under.samples):
             name, title = (f"-{condition}", f", condition {condition}") if condition else ("", "")
-            figures.append(drawn(f"usable-by-rate{name}", f"High and level is good: the share of scenes with a lane to drive by as false "
-                                 f"positives grow. {bars}",
+            figures.append(drawn(f"usable-by-rate{name}", f"High and level curves are good. Share of scenes with a usable lane, by the share of "
+                                 f"false positives. {bars}",
                                  usable_figure(under), f"Usable lanes{title}",
                                  condition if len(results.conditions) > 1 else ""))
     under, alone = results.under(results.main_condition), in_condition(results)
-    figures.append(drawn("success-by-rate", "High and level is good: the share of scenes whose lane does not diverge within 20 m, be "
-                         f"it a stub. {bars}"
+    figures.append(drawn("success-by-rate", "High and level curves are good. Share of scenes whose lane does not diverge within 20 m, "
+                         f"also if it is short. {bars}"
                          f"{alone}", success_figure(under), "Success"))
     if any(sample.has("iou") for sample in under.samples):
-        figures.append(drawn("iou-by-rate", "High is good; against all that is visible, so a method on a small cone set stays low. "
+        figures.append(drawn("iou-by-rate", "High is good. Compared with everything visible, so a method with a small cone set stays low. "
                              f"{bars}{alone}", iou_figure(under), "Overlap"))
     if any(sample.has("accurate") for sample in under.samples):
-        figures.append(drawn("accurate-by-rate", "High is good: all four checks of the RLD paper hold, against the ground "
+        figures.append(drawn("accurate-by-rate", "High is good. All four checks of the RLD paper pass, compared with the ground "
                              f"truth of the method's own cone set. {bars}{alone}", accurate_figure(under), "Accurate lanes"))
     return group(figures, method_key(results, results.samples)) + quality_table(results)

@@ -1,8 +1,8 @@
-"""Round the course by the answers
+"""Races: driving the course with the answers
 
-Claim: Does a car that drives by a method's lanes get round?
-Protocol: a kinematic car with pure pursuit drives by the centre line of each answer, 10 frames a second; it ends with \
-the last lap, or where the car's middle leaves the lane. Finished: races driven to their end. To departure: median of \
+Claim: Does a car that follows a method's lanes finish the race?
+Protocol: a kinematic car with pure pursuit follows the centre line of each answer, 10 frames a second; the race ends \
+after the last lap, or where the car's middle leaves the lane. Finished: races driven to their end. To departure: median of \
 the metres along the course of the races that left the lane. Unsteady: the path moved by more than 0.3 m within 10 m \
 from one frame to the next. Wrong path: frames whose path leaves the lane within 10 m and does not say that it is old.
 Source: this project.
@@ -126,7 +126,7 @@ def html(results, published):
         ("m/s", "speed_mps"), ("latency in ms", "latency_ms"), ("fault", "fault")) if run.get(key) not in (None, ""))
     tracks = len({race["track"] for races in rows.values() for race in races})
     note = f"{tracks} courses; {told}.{results.origin(run)}"
-    figure = drawn("race-finished", f"The higher, the more races are driven to their end. {note}", _figure(rows),
+    figure = drawn("race-finished", f"High is good: share of races that were finished. {note}", _figure(rows),
                    "Races finished")
     body = table("race-table", "", _COLUMNS, [_cells(method, rate, races) for (method, rate), races in rows.items()],
                  note=note)

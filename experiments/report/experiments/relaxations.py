@@ -1,9 +1,9 @@
 """Relaxations
 
-Claim: Does relaxing the binary constraints decrease latency, and at what price?
+Claim: Does relaxing the binary constraints decrease latency, and how much accuracy does it cost?
 Protocol: every solver that proves nothing, and `path-pair`, which gives the optimum, on the n nearest cones; one \
 thread, the problem's making included. Gap: (objective - least cost) divided by the larger of 1 and the least cost's \
-size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer being inaccurate.
+size, over the answered scenes. Accurate: the RLD paper's four checks, a solve without an answer counts as inaccurate.
 Source: this project; the question is the RLD paper's own, V.
 Command: conelane study relaxations --scenes RESULTS/scenes.scenes.jsonl --limit 40 --out RESULTS/relaxations.jsonl
 """

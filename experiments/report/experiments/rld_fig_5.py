@@ -33,7 +33,7 @@ def html(results, published):
     axes.set_xlabel("cones in the set, n")
     axes.set_ylabel("latency [ms]")
     legend(axes)
-    return drawn("rld-fig-5", "Below the star a method is faster than the paper's mean; the steeper a curve, the dearer more cones are.", figure)
+    return drawn("rld-fig-5", "Below the star, a method is faster than the paper's mean. A steep curve: more cones cost much time.", figure)
 
 
 def verdict(results, published):

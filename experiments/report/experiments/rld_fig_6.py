@@ -61,7 +61,7 @@ def html(results, published):
     samples = [sample for sample in results.samples if sample.nearest == size]
     if not samples:
         raise Missing(f"no method ran on the {size} nearest cones.")
-    figure = drawn("rld-fig-6", "What lies left of the lines is faster than the paper's mean and 95 %. All rates and ranges together.", _distribution(results, samples, published))
+    figure = drawn("rld-fig-6", "Left of the lines, a method is faster than the paper's mean and 95 % quantile. All rates and ranges together.", _distribution(results, samples, published))
     exact = [sample for sample in samples if sample.has("solved")]
     return group([figure]) + (_solved(results, exact, published) if exact else "")
 

@@ -44,8 +44,8 @@ def _topology(results, samples, topology, most, published):
     axes.set_xlabel("false positives [% of all points]")
     axes.set_ylabel("inaccurate [%]")
     legend(axes)
-    return drawn(f"rld-fig-7-{topology}", "Below the stars fewer lanes are inaccurate than in the paper, which has all topologies together and a bound at "
-                 "50 %.",
+    return drawn(f"rld-fig-7-{topology}", "Below the stars, fewer lanes are inaccurate than in the paper. The paper's figures are for all topologies together; "
+                 "at 50 % it gives a bound.",
                  figure, topology.capitalize())
 
 

@@ -1,8 +1,8 @@
 """The same cone set for all
 
 Claim: Which method is ahead at which cone-set size, and how does its time grow?
-Protocol: every method on the n nearest cones ahead, the same scenes at every size. Several names: the paired \
-difference to the best has a 95 % interval, tracks resampled, that holds zero. Fastest: least geometric mean.
+Protocol: every method on the n nearest cones ahead, the same scenes at every size. If several names are listed, zero \
+is within the 95 % interval of the paired difference from the best (tracks resampled). Fastest: least geometric mean.
 Source: this project; the sizes are those of the RLD paper's Fig. 5 and beyond.
 Command: conelane sweep --out RESULTS/sweep
 """
@@ -86,8 +86,8 @@ def quality_figure(results, words, values_of):
 def html(results, published):
     if not results.sweep:
         raise Missing("there is no sweep over cone-set sizes.")
-    figures = [drawn("growth", "A level curve: more cones cost no time. Strong: the median. Thin: the 99th percentile.", growth_figure(results), "Latency")]
-    figures += [drawn(f"{name}-by-size", "High is good; where a curve turns level, more cones help no more. Error bars: 95 % intervals, tracks resampled.",
+    figures = [drawn("growth", "A level curve: more cones cost no time. Strong curves: the median. Thin curves: the 99th percentile.", growth_figure(results), "Latency")]
+    figures += [drawn(f"{name}-by-size", "High is good. Where a curve is level, more cones do not help. Error bars: 95 % intervals, tracks resampled.",
                       quality_figure(results, words, values_of), words.capitalize())
                 for name, words, values_of in MEASURES]
     return group(figures) + _by_size(results)

@@ -1,12 +1,12 @@
 """Measures of solvers
 
-Claim: Which solver is fastest on the whole, how steady is it, and what would it gain to choose one for each scene?
-Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: what is proven \
-within the limit, passes the checker and is refuted by no other backend. Geometric mean shifted by 1 ms, failures at the \
+Claim: Which solver is fastest overall, how steady is it, and what is gained by choosing a solver for each scene?
+Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: proven \
+within the limit, accepted by the checker, and refuted by no other backend. Geometric mean shifted by 1 ms, failures at the \
 limit. PAR 2 and PAR 10: mean time, failures at 2 and 10 times the limit. By all: over the runs that every backend \
 solved. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the \
-gap to the best lane graph known, over time. Memory: by how much the process grew, or of a program from outside all of \
-it. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources: \
+gap to the best lane graph known, over time. Memory: growth of the process; for a program from outside, all its \
+memory. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources: \
 docs/benchmark-measures.md.
 Source: this project.
 Command: conelane study backends --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out \
@@ -74,7 +74,7 @@ def _summaries(summaries, blocks):
         deviation = (sum((one - mean) ** 2 for one in reference) / (len(reference) - 1)) ** 0.5
         note = (f"A reference problem between blocks took {mean:.3f} ms in the mean, coefficient of variation "
                 f"{100.0 * deviation / mean:.1f} %: times that differ by less say nothing. ")
-    versions = dict.fromkeys(f"{block['backend']}: {block['version'] or 'tells no version'}" for block in blocks)
+    versions = dict.fromkeys(f"{block['backend']}: {block['version'] or 'version unknown'}" for block in blocks)
     return table("solver-measures", "", columns, rows, note=note + "; ".join(versions) + ".")
 
 
@@ -131,8 +131,8 @@ def _gaps(gaps):
         logarithmic(axes.xaxis)
         legend(axes)
         name = solves.size_name(size)
-        figures.append(drawn(f"solver-gap-{name}", "The faster a curve falls, the sooner a good lane graph is there. Solved "
-                             "anew under each limit.", figure, f"Gap over time, n = {name}"))
+        figures.append(drawn(f"solver-gap-{name}", "The faster a curve falls, the sooner a good lane graph is found. Solved "
+                             "again with each limit.", figure, f"Gap over time, n = {name}"))
     return figures
 
 

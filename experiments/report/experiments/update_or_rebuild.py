@@ -1,8 +1,8 @@
 """Update against rebuild
 
-Claim: A program built at start and updated before each solve, as the RLD paper does it, saves the building.
-Protocol: Google Benchmark; the scenes take turns. Problem: the numbers of a scene. Build: the program from them, \
-anew. Update: the same program brought in line with them.
+Claim: A program built at start and updated before each solve, as the RLD paper does it, saves building it.
+Protocol: Google Benchmark; the scenes take turns. Problem: the numbers of a scene. Build: a new program from \
+them. Update: the same program with the new numbers.
 Source: this project; the RLD paper, III, builds its model at program start.
 Command: conelane_benchmarks --benchmark_filter=problem/|build/|update/ --benchmark_out_format=json \
 --benchmark_out=RESULTS/benchmarks.json

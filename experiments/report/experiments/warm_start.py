@@ -2,7 +2,7 @@
 
 Claim: What does the last scene's lane graph save an exact solver?
 Protocol: each backend twice on the same scenes in travel order, without and with the start. Ratio: geometric mean of \
-the time with it divided by the time without, scene by scene; below 1 it pays. False positives are drawn at \
+the time with it divided by the time without, scene by scene; below 1, the start saves time. False positives are drawn at \
 every pose.
 Source: this project; the RLD paper builds its model once and updates it.
 Command: conelane study backends --warm-start --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl

@@ -41,20 +41,20 @@ constexpr std::array kFields{
 };
 constexpr std::int64_t kMaxSteps = 1'000'000;
 
-/// Of an arc, and of a cell of the lattice [m].
+/// Length of an arc, and width of a cell of the lattice [m].
 constexpr double kStep_m = 1.5;
 constexpr double kCell_m = 0.5;
-/// Half the width of a car [m]: nearer cones are hit.
+/// Half the width of a car [m]: a path hits nearer cones.
 constexpr double kCarHalfWidth_m = 0.75;
-/// Curvatures are -2 to 2 times half the largest; after a step the heading has turned by as many units.
+/// Curvatures are -2 to 2 times half the largest one. A heading is counted in the same units, a step's turn.
 constexpr int kHardestTurn = 2;
-/// Between samples of the path that boundaries are read off [m].
+/// Distance between the samples of a path from which boundaries are read [m].
 constexpr double kSample_m = 0.25;
-/// Paths tried for boundaries; the next ones are hardly different.
+/// Number of paths tried for boundaries; later paths hardly differ.
 constexpr int kMaxReadings = 50;
-/// What reading boundaries may take once the time is up.
+/// Work that reading boundaries may still do after the time has ended.
 constexpr double kLastReading_ms = 2.0;
-/// Two cones a side.
+/// A lane has at least two cones a side.
 constexpr std::size_t kMinPlaces = 4;
 
 struct Node {
@@ -73,7 +73,7 @@ struct Open {
     bool end;
 };
 
-/// The next to be taken is on top: the lowest estimate, of equal ones the one made last, which has come
+/// The heap's top is the next entry: the lowest estimate; of equal ones the latest, which has come
 /// farthest.
 struct TakenLater {
     bool operator()(const Open& a, const Open& b) const {
@@ -143,8 +143,8 @@ class AstarLaneDetector : public LaneDetector {
         return false;
     }
 
-    /// Takes paths in the order of their estimates until one has boundaries. Returns whether the search came
-    /// to its own end: with boundaries, or with all paths seen.
+    /// Takes paths in the order of their estimates until one has boundaries. Returns whether the search is
+    /// complete: it found boundaries, or it met all paths.
     bool find_path(SearchBudget& budget) {
         nodes_.assign(1, Node{-1, 0, 0, 0, {0.0, 0.0}, 0.0});
         open_.clear();
@@ -174,7 +174,7 @@ class AstarLaneDetector : public LaneDetector {
         return true;
     }
 
-    /// The search was cut off: of the paths met, the one that would cost least if it ended where it is.
+    /// The search was interrupted: of the paths met, take the one that would cost least if it ended here.
     void read_best_so_far(const SearchBudget& budget) {
         SearchBudget reading;
         if (budget.stopped_by) reading.deadline = Deadline(kLastReading_ms);
@@ -201,8 +201,8 @@ class AstarLaneDetector : public LaneDetector {
                closed_.size() * 4 * sizeof(std::uint64_t);
     }
 
-    /// The cell of the lattice. A position is less than 2^14 cells from the car, a heading 2^14 units from
-    /// the car's, and a path has less than 2^8 steps.
+    /// Key of the lattice cell. A position is less than 2^14 cells from the car, a heading less than 2^14
+    /// units from the car's, and a path has less than 2^8 steps.
     static std::uint64_t key_of(const Node& node) {
         const auto shifted = [](std::int64_t value) {
             return static_cast<std::uint64_t>(value + (std::int64_t{1} << 14)) & 0x7fffU;
@@ -244,7 +244,7 @@ class AstarLaneDetector : public LaneDetector {
         put({estimate(to), static_cast<std::int32_t>(nodes_.size() - 1), false});
     }
 
-    /// Of a metre at a place.
+    /// Cost of one metre at a place.
     [[nodiscard]] double cost_at(const PathSample& place, SearchBudget& budget) const {
         constexpr double kNowhere = std::numeric_limits<double>::infinity();
         std::array<double, 2> side_m{kNowhere, kNowhere};
@@ -306,10 +306,10 @@ class AstarLaneDetector : public LaneDetector {
     }
 
     const AstarLaneParameters parameters_;
-    double unit_rad_ = 0.0;             ///< of a heading
-    std::int32_t last_step_ = 0;        ///< of a path as long as the horizon
-    double radius_m_ = 0.0;             ///< within which cones matter to a place
-    std::vector<Point> points_;         ///< of the cones in reach, in the frame of the car
+    double unit_rad_ = 0.0;             ///< one unit of heading
+    std::int32_t last_step_ = 0;        ///< number of steps of a path as long as the horizon
+    double radius_m_ = 0.0;             ///< radius within which cones affect a place
+    std::vector<Point> points_;         ///< of the cones within reach, in the frame of the car
     std::vector<std::uint32_t> cones_;  ///< by point: its index in the scene
     NearCones near_;
     std::vector<Node> nodes_;
@@ -327,7 +327,7 @@ std::span<const ParameterField<AstarLaneParameters>> astar_lane_fields() {
 void validate(const AstarLaneParameters& parameters) {
     require_in_range(parameters, astar_lane_fields());
     if (parameters.max_steps < 1 || parameters.max_steps > kMaxSteps)
-        throw InvalidInput("most_steps", "must be between 1 and " + std::to_string(kMaxSteps));
+        throw InvalidInput("max_steps", "must be between 1 and " + std::to_string(kMaxSteps));
 }
 
 std::unique_ptr<LaneDetector> make_astar_lane_detector(const AstarLaneParameters& parameters) {

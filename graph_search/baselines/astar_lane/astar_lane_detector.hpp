@@ -19,7 +19,7 @@ struct AstarLaneParameters {
     double w_steer = 0.1;         ///< weight of the squared change of curvature between two steps
     double clearance_m = 1.6;     ///< distance from cones that a path prefers to keep
     double w_clearance = 4.0;     ///< weight of the squared missing share of the clearance
-    double w_hit = 5.0;           ///< cost of a metre that is nearer to a cone than half a car
+    double w_hit = 5.0;           ///< cost of a metre that is nearer to a cone than half the width of a car
     double window_m = 2.8;  ///< a cone up to this distance before or behind a point is beside the path there
     double widest_side_m = 4.0;     ///< a cone farther aside is not
     double expected_width_m = 4.0;  ///< distance between the nearest cones on the two sides
@@ -41,7 +41,6 @@ void validate(const AstarLaneParameters& parameters);
 /// positions, headings and lengths). A path keeps away from cones; hitting a cone is expensive but allowed,
 /// since it may be a false detection. A metre with cones on both sides, about a lane apart, costs least. The
 /// boundaries are then read off the path: on each side, the chain of cones that runs along it most evenly.
-/// cones that runs along it most evenly.
 ///
 /// The answer is the cheapest path whose boundaries have at least two cones each. Paths are taken in the
 /// order of their costs, exactly so if `heuristic` underestimates. LaneAnswer::status: `none` if fewer than

@@ -9,7 +9,7 @@ void NearCones::build(std::span<const Point> points, double reach_m, double radi
     reach_m_ = reach_m;
     const double fitting = std::floor(2.0 * reach_m / radius_m);
     cells_a_side_ = static_cast<std::int64_t>(std::clamp(fitting, 1.0, static_cast<double>(kMaxCells)));
-    // A little wider, so that a point at the far end has a cell.
+    // The grid is a little wider than the reach, so that a point at the far end has a cell.
     cell_m_ = 2.0 * reach_m / static_cast<double>(cells_a_side_) * (1.0 + 1e-9);
     const auto number_of = [this](const Point& point) {
         const std::int64_t column = std::clamp<std::int64_t>(cell_of(point.x()), 0, cells_a_side_ - 1);

@@ -10,7 +10,7 @@
 namespace conelane {
 namespace {
 
-/// Steeper chains have no use; this only keeps the slope finite.
+/// Keeps the slope finite; steeper chains are of no use.
 constexpr double kMinAdvance_m = 0.1;
 
 /// A point in the frame of the path.

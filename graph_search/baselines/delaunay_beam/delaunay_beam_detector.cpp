@@ -38,7 +38,7 @@ constexpr std::array kFields{
 };
 constexpr double kMaxColorWeight = 1000.0;
 constexpr std::size_t kMaxBeamWidth = 10'000;
-/// Nearer middle points have no direction from the car that means anything.
+/// The direction from the car to a nearer middle point carries no information [m].
 constexpr double kNoDirection_m = 0.5;
 /// For SearchBudget::spend.
 constexpr std::size_t kWorkPerNode = 40;
@@ -65,7 +65,7 @@ struct Node {
     std::int32_t parent = -1;
     Vertex left = 0;
     Vertex right = 0;
-    HalfEdge ahead = DelaunayTriangulation::kNone;  ///< from left to right, a side of the triangle ahead
+    HalfEdge ahead = DelaunayTriangulation::kNone;  ///< a side of the triangle ahead, from left to right
     Side advanced = kLeft;                          ///< the boundary that has one cone more than the parent's
     Point middle{0.0, 0.0};
     Point direction{0.0, 0.0};  ///< unit vector of the last segment
@@ -74,7 +74,7 @@ struct Node {
     double largest_turn_rad = 0.0;
     double length_m = 0.0;
     double start_m = 0.0;
-    double wrong_colors = 0.0;  ///< expected number
+    double wrong_colors = 0.0;  ///< expected number of cones of a wrong color
     double cost = 0.0;
 };
 
@@ -82,7 +82,7 @@ double turn_rad(const Point& a, const Point& b) {
     return std::abs(std::atan2(cross(a, b), a.dot(b)));
 }
 
-/// Probability that a cone of this color is none of that side's.
+/// Probability that a cone of this color does not belong to that side.
 double wrong_color(ConeColor color, Side side) {
     if (color == ConeColor::blue) return side == kLeft ? 0.0 : 1.0;
     if (color == ConeColor::yellow) return side == kRight ? 0.0 : 1.0;
@@ -120,7 +120,7 @@ class DelaunayBeamDetector : public LaneDetector {
         return answer;
     }
 
-    /// Cones that no path can reach would only make the triangulation larger.
+    /// Cones that no path can reach would only enlarge the triangulation.
     void keep_near_cones(const Scene& scene) {
         points_.clear();
         cones_.clear();
@@ -200,7 +200,7 @@ class DelaunayBeamDetector : public LaneDetector {
         tree_.push_back(node);
     }
 
-    /// The third cone of the triangle ahead is the next of one boundary or of the other.
+    /// The third cone of the triangle ahead is the next cone of one of the two boundaries.
     void add_children(std::size_t parent, const Scene& scene) {
         const HalfEdge ahead = tree_[parent].ahead;
         if (ahead == DelaunayTriangulation::kNone) return;
@@ -285,9 +285,9 @@ class DelaunayBeamDetector : public LaneDetector {
 
     const DelaunayBeamParameters parameters_;
     DelaunayTriangulation triangulation_;
-    std::vector<Point> points_;         ///< of the cones near enough, from the car
+    std::vector<Point> points_;         ///< of the cones that are near enough, relative to the car
     std::vector<std::uint32_t> cones_;  ///< by point: its index in the scene
-    std::vector<Node> tree_;            ///< a level after the other
+    std::vector<Node> tree_;            ///< one level after another
     std::optional<std::size_t> best_;
     bool left_out_ = false;  ///< the beam was too narrow for some paths
 };

@@ -7,8 +7,8 @@
 namespace conelane {
 namespace {
 
-/// Half the extent of the points in units of the grid. Differences then have 31 bits, and the products of
-/// four that in_circle adds have 124.
+/// Half the extent of the points in grid units. Differences then have 31 bits, and the sum of four products
+/// in in_circle has 124.
 constexpr double kGridRadius = 536870912.0;
 
 __extension__ using Wide = __int128;
@@ -17,13 +17,13 @@ int sign(Wide value) {
     return static_cast<int>(value > 0) - static_cast<int>(value < 0);
 }
 
-/// 1 where c lies to the left of the line from a to b, -1 to the right, 0 on it.
+/// 1 if c is to the left of the line from a to b, -1 to the right, 0 on it.
 template <typename Site>
 int orientation(const Site& a, const Site& b, const Site& c) {
     return sign(Wide{b.x - a.x} * (c.y - a.y) - Wide{b.y - a.y} * (c.x - a.x));
 }
 
-/// 1 where d lies inside the circumcircle of the counter-clockwise triangle abc, 0 on it.
+/// 1 if d is inside the circumcircle of the counter-clockwise triangle abc, 0 on it.
 template <typename Site>
 int in_circle(const Site& a, const Site& b, const Site& c, const Site& d) {
     const Wide ax = a.x - d.x, ay = a.y - d.y;
@@ -44,7 +44,7 @@ void DelaunayTriangulation::place_sites(std::span<const Point> points) {
         lowest = lowest.cwiseMin(point);
         highest = highest.cwiseMax(point);
     }
-    // Halved first: the sum of two finite numbers may be none.
+    // Halved first, because the sum of two finite numbers may be infinite.
     const Point centre = 0.5 * lowest + 0.5 * highest;
     const double radius =
         std::max((0.5 * highest - 0.5 * lowest).maxCoeff(), std::numeric_limits<double>::min());
@@ -73,13 +73,13 @@ void DelaunayTriangulation::join(HalfEdge side, HalfEdge twin) {
     }
 }
 
-/// The sites before `apex` are on one line that it is not on.
+/// All sites before `apex` are on one line, and `apex` is not.
 void DelaunayTriangulation::join_first_triangles(SiteIndex apex) {
     const bool left = orientation(sites_[0], sites_[1], sites_[apex]) > 0;
-    HalfEdge shared = kNone;  // the side of the triangle before that the next one has too
+    HalfEdge shared = kNone;  // the side that the previous triangle shares with the next one
     for (SiteIndex i = 0; i + 1 < apex; ++i) {
         const HalfEdge base = left ? add_triangle(i, i + 1, apex) : add_triangle(i + 1, i, apex);
-        // Counter-clockwise after the base come the sides to and from the apex.
+        // Counter-clockwise, the sides to and from the apex follow the base.
         const HalfEdge before = left ? base + 2 : base + 1;
         const HalfEdge after = left ? base + 1 : base + 2;
         join(base, kNone);
@@ -96,7 +96,7 @@ void DelaunayTriangulation::join_first_triangles(SiteIndex apex) {
     left ? follow(apex, 0) : follow(0, apex);
 }
 
-/// The site is the greatest so far, so it lies outside the hull and sees a side at the site before it.
+/// Sites come in ascending order, so this one is outside the hull and sees a side at the site before it.
 void DelaunayTriangulation::insert(SiteIndex site) {
     const auto sees = [&](SiteIndex from, SiteIndex to) {
         return orientation(sites_[from], sites_[to], sites_[site]) < 0;

@@ -28,7 +28,7 @@ struct BoundCertificate {
 
 struct BoundVerdict {
     std::vector<std::string> violations;  ///< a sentence each; empty if the claim holds
-    std::optional<double> bound;          ///< proven by the multipliers; infinite where no lane graph exists
+    std::optional<double> bound;          ///< proven by the multipliers; infinite if no lane graph exists
 };
 
 /// Recomputes the bound from the scene alone, by shortest walks of its own; shares no code with any solver.

@@ -30,7 +30,7 @@ struct LaneGraph {
 };
 
 /// The simple paths that the edges form, each as cone indices from the end with the smaller index, ordered by
-/// that index. Nothing where the edges hold a cycle, a cone of degree above two or an index not below
+/// that index. Nothing if the edges hold a cycle, a cone of degree above two or an index not below
 /// `cone_count`.
 [[nodiscard]] std::optional<std::vector<std::vector<std::size_t>>> paths(const LaneGraph& graph,
                                                                          std::size_t cone_count);

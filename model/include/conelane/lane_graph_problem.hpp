@@ -31,7 +31,7 @@ struct ProblemEdge {
     /// along the heading; to the left likewise. In a bend the two tests may differ: then the edge is on no
     /// side. Other edges have no side.
     double color_cost;
-    double facing_cost;  ///< v_ij, see facing_costs; 0 where w_v is 0 and no costs are learned
+    double facing_cost;  ///< v_ij, see facing_costs; 0 if w_v is 0 and no costs are learned
     /// w_s s_ij + w_p p_ij - w_b (29), with use_confidence - w_b times both cones' confidences instead, and
     /// of the extras w_color color_ij + w_v v_ij - w_n (z_i + z_j), and of learned costs its own and those of
     /// ends at i and at j.
@@ -39,7 +39,7 @@ struct ProblemEdge {
     bool along_heading;         ///< h_ij of (9)
     bool high_cost;             ///< s_ij > s_crit (27), and no gap: never chosen
     bool gap = false;           ///< s_ij > s_crit, and allowed over a gap by d_gap
-    double learned_cost = 0.0;  ///< of the edge alone; 0 where it is high_cost
+    double learned_cost = 0.0;  ///< of the edge alone; 0 if it is high_cost
 };
 
 /// Two edges that meet in a cone, {i, middle} and {middle, k} with i < k, as indices into `edges`.
@@ -48,10 +48,10 @@ struct ProblemTurn {
     std::size_t edge_k;
     std::size_t middle;
     double angle_cost;  ///< t_ijk (20), without weight
-    double unevenness;  ///< u_ijk, without weight; 0 where w_u is 0
+    double unevenness;  ///< u_ijk, without weight; 0 if w_u is 0
     double cost;     ///< w_t t_ijk, of the extras w_u u_ijk + 2 w_n z_j, and of learned costs; not negative
     bool high_cost;  ///< t_ijk > t_crit (28), or too sharp at an edge over a gap: never both chosen
-    double learned_cost = 0.0;  ///< of the turn alone, not negative; 0 where it or an edge is high_cost
+    double learned_cost = 0.0;  ///< of the turn alone, not negative; 0 if it or an edge is high_cost
 };
 
 /// Which edges a problem lists.
@@ -69,7 +69,7 @@ struct LaneGraphProblem {
     std::vector<ProblemTurn> turns;  ///< all pairs of listed edges that share a cone, by middle cone
     std::vector<std::pair<std::size_t, std::size_t>> conflicts;  ///< (6)-(8): edges too close, first < second
     std::vector<bool> near;                                      ///< r_i of (11)
-    /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 where a path ends, else 0. So
+    /// z_i, see near_end_fit; 0 for a far cone. m_i = A_i - 2 (turns at i) is 1 if a path ends, else 0. So
     /// - w_n sum_i z_i m_i is a cost of edges and turns, and solvers need no term for it.
     std::vector<double> near_end_fit;
     /// By cone: the learned cost if a path ends there, 0 or negative; it is a cost of edges and turns too.
@@ -79,7 +79,7 @@ struct LaneGraphProblem {
     std::vector<std::vector<std::size_t>> incident;              ///< edges at each cone, ascending
 };
 
-/// Throws InvalidInput where the scene or the parameters are not valid. No time or memory limit:
+/// Throws InvalidInput if the scene or the parameters are not valid. No time or memory limit:
 /// both grow with the fourth power of the cones where many lie within reach of each other.
 [[nodiscard]] LaneGraphProblem make_problem(const Scene& scene, const RldParameters& parameters,
                                             EdgeExtent extent = EdgeExtent::candidates);

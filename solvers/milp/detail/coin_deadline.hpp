@@ -11,13 +11,13 @@
 
 namespace conelane::detail {
 
-/// The only clock of a COIN solve. COIN's own limits are not used: inside of CBC, a relaxation that they cut
-/// short counts as infeasible, and the whole search as complete. Here every cut is recorded, so an uncut
-/// search is known to be a proof.
+/// The only clock of a COIN solve. COIN's own limits are not used: if one of them interrupts a relaxation,
+/// CBC treats the relaxation as infeasible and the search as complete. This watch records every interruption,
+/// so a search without one is known to be a proof.
 struct DeadlineWatch {
     Deadline deadline;
-    bool struck = false;  ///< some part of the solve was cut short
-    /// CBC's lower bound before any relaxation was cut short.
+    bool struck = false;  ///< a part of the solve was interrupted
+    /// CBC's lower bound before any relaxation was interrupted.
     double bound = -std::numeric_limits<double>::infinity();
 
     bool strikes() {

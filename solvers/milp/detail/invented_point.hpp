@@ -27,8 +27,8 @@ inline constexpr double kRowTolerance = 1e-4;
 
 enum class PointVerdict {
     kept,
-    dropped,      ///< time is up: the report says stopped, without a point
-    search_anew,  ///< nothing in the report is valid
+    dropped,      ///< the time is over: the report says stopped, without a point
+    search_anew,  ///< nothing in the report is valid; search again
 };
 
 /// CBC 2.10.8 sometimes returns points that violate rows. Drops such a point and everything reported with it.

@@ -19,7 +19,7 @@ double coin_upper(double bound) {
     return bound >= kInfinity ? COIN_DBL_MAX : bound;
 }
 
-/// Clp ends the program where it is handed a larger one.
+/// Clp ends the process if a cost is larger.
 constexpr double kClpMostCost = 1e25;
 
 }  // namespace
@@ -30,7 +30,7 @@ void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch) {
     lp.setLogLevel(0);
     const ClpDeadline handler(&watch);
     lp.passInEventHandler(&handler);
-    constexpr int kInterrupt = 2;  // 1: initialSolve installs no handler of SIGINT
+    constexpr int kInterrupt = 2;  // at 1, initialSolve would install a handler of SIGINT
     ClpSolve options;
     options.setSpecialOption(kInterrupt, 1);
     solver.setSolveOptions(options);

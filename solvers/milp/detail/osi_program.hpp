@@ -22,11 +22,11 @@ void with_std_errors(Work&& work) {
     }
 }
 
-/// Silences an empty solver and stops it by the watch, which must outlive it; keeps Clp from handling SIGINT.
+/// Makes an empty solver silent, stops it by the watch, which must outlive it, and keeps SIGINT from Clp.
 void prepare(OsiClpSolverInterface& solver, DeadlineWatch& watch);
 
 /// Loads columns, rows and integrality into an empty COIN solver. Returns the integer columns, ascending.
-/// Throws std::runtime_error for a cost of 1e25 or more, for which Clp would end the program.
+/// Throws std::runtime_error for a cost of 1e25 or more, because Clp would end the process.
 std::vector<int> load_into(OsiSolverInterface& solver, const BinaryProgram& program);
 
 void append_rows(OsiSolverInterface& solver, std::span<const ProgramRow> rows);

@@ -33,7 +33,7 @@ bool ArcFixing::drop(const PairRelaxation& relaxation, double limit, ResidualGra
     }
     if (10 * (order_.size() + kept) > 9 * (graph.arc.size() + graph.out_arc.size())) return false;
     spare_.filter(graph, order_, keep_successor_, index_);
-    graph = spare_;  // no swap: a node keeps its memory from search to search
+    graph = spare_;  // copied, not swapped: a node keeps its memory from search to search
     return true;
 }
 

@@ -10,8 +10,8 @@
 
 namespace conelane::path_pair {
 
-/// Finds cliques of incompatible edges that an averaged use x of the edges violates, sum of x > 1: greedily
-/// from each edge in use, largest x first, then extended to a maximal clique by edges of the residual graph.
+/// Finds cliques of incompatible edges whose averaged uses x add up to more than 1. A clique grows greedily
+/// from each edge in use, largest x first, then is extended to a maximal clique of the residual graph.
 class CliqueSeparation {
   public:
     /// Returns the number of cliques added to the pool, at most `most`; fewer if the clock expires.
@@ -21,7 +21,7 @@ class CliqueSeparation {
   private:
     std::vector<int> used_;
     std::vector<int> clique_;
-    std::vector<std::uint64_t> common_;  ///< edges incompatible with all of the clique
+    std::vector<std::uint64_t> common_;  ///< edges that are incompatible with all edges of the clique
     std::vector<char> covered_;
 };
 

@@ -59,7 +59,7 @@ bool LegBounds::forward(const ResidualGraph& graph, std::span<const double> redu
     return true;
 }
 
-/// The labels of the walks that `before` describes, each as far as its graph has it.
+/// The labels of the walks that `before` describes. A walk ends where the graph no longer has its arcs.
 void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double> reduced,
                               std::span<const double> start, std::vector<double>& label,
                               std::vector<int>& before) {
@@ -84,7 +84,7 @@ void LegBounds::begin_forward(const ResidualGraph& graph, std::span<const double
             color_[b] = known;
             label[b] = start[b] + reduced[b];
             const int a = std::exchange(before[b], -1);
-            if (a < 0 || color_[static_cast<std::size_t>(a)] != known) continue;  // a cycle is cut open
+            if (a < 0 || color_[static_cast<std::size_t>(a)] != known) continue;  // cuts a cycle open
             const auto* const first = graph.in_arc.data() + graph.in_start[b];
             const auto* const end = graph.in_arc.data() + graph.in_start[b + 1];
             const auto* const found = std::find(first, end, a);

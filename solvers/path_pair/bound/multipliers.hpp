@@ -27,7 +27,7 @@ class CliquePool {
 };
 
 /// Multipliers of the rows that couple the legs,
-///     visits of cone v <= 1 (= 1 where an edge at v is required)     cone[v] >= 0 (of any sign)
+///     visits of cone v <= 1 (= 1 if an edge at v is required)     cone[v] >= 0 (of any sign)
 ///     edges of clique q <= 1                                         clique[q] >= 0
 ///     edges along the heading >= 2                                   heading >= 0.
 /// With any such multipliers, min (cost of two legs + multiplier * violation) bounds every lane graph from

@@ -52,7 +52,7 @@ class DominatedEdges {
     Sets after_;
 };
 
-/// Intersects target with the union of given and own. True where that changes target.
+/// Intersects target with the union of given and own. True if that changes target.
 bool intersect_with_union(std::uint64_t* target, const std::uint64_t* given, const std::uint64_t* own,
                           std::size_t words);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double kGain = 1e-12;
 constexpr int kNotOpen = -2;
 constexpr std::size_t kFewSlots = 1024;
-/// To extend a frontier takes as long as to look at so many.
+/// Extending a frontier takes as long as looking at this many.
 constexpr std::size_t kFrontiersPerExtension = 4;
 constexpr std::size_t kWorkPerFrontier = 200;  ///< in steps of the clock
 /// Room is made for so many, and for steps, before the first one. Memory that is not written to costs
@@ -86,7 +86,7 @@ bool FrontierGraph::grow_table() {
     return true;
 }
 
-/// The frontier's number, a new one where it has none. Any number once the time is up: all are dropped then.
+/// The frontier's number, new or known. Any number once the time has ended: then all frontiers are dropped.
 int FrontierGraph::number(const Frontier& wanted) {
     if (2 * (now_.frontiers.size() + 1) > table_.size() && !grow_table()) return 0;
     // Fibonacci hashing: the upper half depends on all bits.
@@ -152,7 +152,7 @@ FrontierGraph::Frontier FrontierGraph::after(const Frontier& frontier, int arc, 
     return {frontier.waiting, arc, other, false};
 }
 
-/// All steps of a frontier, their next frontiers still open. None once the time is up.
+/// All steps of a frontier; their next frontiers are not extended yet. None once the time has ended.
 void FrontierGraph::add_steps(int f, double limit) {
     const ResidualGraph& r = *residual_;
     const Frontier here = frontier(f);
@@ -235,7 +235,7 @@ void FrontierGraph::open(int f) {
     again_ |= arc / 64 < to_index(moving_) / 64;
 }
 
-/// Every walk up to a frontier loses these edges: one more walk comes to `to`. True where the set shrinks.
+/// Every walk up to a frontier loses these edges: one more walk comes to `to`. True if the set shrinks.
 bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     if (edges_ == nullptr) return false;
     const std::size_t words = edges_->words();
@@ -243,7 +243,7 @@ bool FrontierGraph::narrow_dominated(int from, int to, int arc) {
     return intersect_with_union(dominated_.row(to_index(to)), dominated_.row(to_index(from)), own, words);
 }
 
-/// Lowers the forward costs of the frontiers after this one. False where there are too many.
+/// Lowers the forward costs of the frontiers after this one. False if there are too many.
 bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     const Frontier here = frontier(f);
     const int other = relaxation_->other(here.moving_kind);
@@ -275,8 +275,8 @@ bool FrontierGraph::extend(int f, double limit, std::size_t max_frontiers) {
     return true;
 }
 
-/// Renumbers the frontiers that have steps, or are last, in reversed finishing order of a depth-first search:
-/// nearly every step leads to a later frontier.
+/// Numbers the frontiers that have steps or are last again, in reversed finishing order of a depth-first
+/// search: nearly every step then leads to a later frontier.
 void FrontierGraph::order() {
     if (!order_frontiers()) return forget_frontiers();
     const ResidualGraph& r = *residual_;
@@ -326,7 +326,7 @@ bool FrontierGraph::order_frontiers() {
     return true;
 }
 
-/// Renumbers: what is not in `order`, and steps that keep_step_ does not mark, are dropped.
+/// Numbers the frontiers again: those not in `order` are dropped, and so are steps not marked in keep_step_.
 void FrontierGraph::keep(std::span<const int> order) {
     std::swap(now_, old_);
     now_.clear();

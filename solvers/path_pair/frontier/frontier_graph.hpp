@@ -36,7 +36,7 @@ class FrontierGraph {
     };
     struct Step {
         int to;       ///< the next frontier
-        int arc;      ///< by which; -1 where the moving leg ends
+        int arc;      ///< by which; -1 if the moving leg ends
         double turn;  ///< cost of the turn into it
     };
 
@@ -56,7 +56,7 @@ class FrontierGraph {
 
     /// onward(f) where it matters below the limit, and the bound, with offset, that it gives.
     double find_onward(double limit);
-    /// forward(f) anew, after steps were dropped.
+    /// forward(f) again, after steps were dropped.
     void find_forward();
     /// Precondition: forward and onward costs are found. They stay.
     void drop(double limit);
@@ -93,7 +93,7 @@ class FrontierGraph {
         void reserve(std::size_t count);  ///< Precondition: cleared.
     };
     static std::uint64_t key(const Frontier& frontier);
-    /// To be asked before so many frontiers are looked at.
+    /// Call it before this many frontiers are looked at.
     bool out_of_time(std::size_t frontiers = 1);
     /// For graph/timed_growth.hpp.
     template <typename T>
@@ -104,11 +104,11 @@ class FrontierGraph {
     bool make_room(std::vector<T>& values, std::size_t more) {
         return path_pair::make_room(values, more, *clock_);
     }
-    /// Where walks come from: what those up to a frontier have lost goes from frontier to frontier along the
-    /// steps, what those on from it exclude against them.
+    /// Whether walks up to a frontier or on from it are meant: sets of lost edges pass along the steps, sets
+    /// of excluded edges against them.
     enum class Walks { up_to, on_from };
     /// The dominated edges of every frontier by its walks up to it or on from it, and steps by one no longer
-    /// kept. False where the time is up.
+    /// kept. False if the time is up.
     template <Walks kWalks>
     bool drop_steps_by_dominated(const EdgeSets& edges);
     /// The same rows of the set of all edges.

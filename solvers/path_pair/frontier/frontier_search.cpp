@@ -133,8 +133,8 @@ bool FrontierSearch::detour_reaches_limit(int l, int most) const {
     }
 }
 
-/// By one that is kept, which costs no more. What completes this label below the limit uses no edge whose
-/// regret is above `most`.
+/// True if a kept label dominates this one: it costs no more, and has every edge that this label needs.
+/// Completions below the limit use no edge with a regret above `most`.
 bool FrontierSearch::dominated(const Label& label, const std::uint64_t* lost, int most) {
     const Quanta* regret = tables_->regrets(label.frontier);
     for (std::size_t w = 0; w < words_; ++w, regret += 64) {

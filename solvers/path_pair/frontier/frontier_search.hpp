@@ -17,12 +17,12 @@ namespace conelane::path_pair {
 
 /// Pairs of legs by labels on the frontiers. A label is the beginnings of both legs up to a frontier, with
 /// the edges that they have lost. Frontier by frontier, cheapest first; a label is dropped where
-///   - its reduced cost and the cheapest walk on reach the cutoff, also where the walk must do without the
+///   - its reduced cost and the cheapest walk on reach the cutoff, also if the walk must do without the
 ///     edges that one of its arcs has lost, or
-///   - another label of the frontier dominates it: that one costs no more (true costs, without multipliers),
-///   has
-///     as many edges along the heading, and has lost no edge that this one still has and that a walk on below
-///     the cutoff uses.
+///   - another label of the frontier dominates it: that one costs no more (true costs, without
+///     multipliers), has
+///     as many edges along the heading, and has lost no edge that this one still has and that a walk on
+///     below the cutoff uses.
 /// Edges far behind soon make no difference, so beginnings merge and pairs are searched almost like walks.
 class FrontierSearch {
   public:
@@ -48,7 +48,7 @@ class FrontierSearch {
   private:
     struct Label {
         int before;  ///< the label that it continues, -1 for the first of a chain
-        int arc;     ///< by which; -1 where a leg ended
+        int arc;     ///< by which; -1 if a leg ended
         int frontier;
         int along_heading;  ///< edges, at most 2
         int next;           ///< of the labels that wait at the frontier
@@ -59,7 +59,7 @@ class FrontierSearch {
     void begin();
     void take(int arc, Label& label, std::uint64_t* lost) const;
     void wait(Label label);
-    /// To be asked before so many sets of edges are looked at.
+    /// Call it before this many sets of edges are looked at.
     [[nodiscard]] bool out_of_time(std::size_t sets);
     void settle(int f);
     [[nodiscard]] bool detour_reaches_limit(int label, int most) const;

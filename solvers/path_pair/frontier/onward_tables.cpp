@@ -32,7 +32,7 @@ bool OnwardTables::out_of_time(std::size_t bytes) {
     return clock_->tick(bytes / kBytesPerStep);
 }
 
-/// So many times kTooMany; false, and fewer, where the time is up.
+/// `count` times kTooMany; false, and fewer, if the time has ended.
 bool OnwardTables::fill(std::vector<Quanta>& table, std::size_t count) {
     table.clear();
     table.reserve(count);
@@ -109,7 +109,7 @@ void OnwardTables::find_regrets() {
     }
 }
 
-/// Columns for the arcs that frontiers have; what is left of the graph are mostly few.
+/// Columns only for the arcs that frontiers have: a small part of the graph's arcs.
 void OnwardTables::number_arcs() {
     constexpr std::size_t kNone = ~std::size_t{0};
     column_.assign(frontiers_->residual().arc.size(), kNone);

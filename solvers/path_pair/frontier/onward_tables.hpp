@@ -47,7 +47,7 @@ class OnwardTables {
   private:
     [[nodiscard]] Quanta more(int frontier, const FrontierGraph::Step& step) const;
     [[nodiscard]] Quanta to_quanta(double cost) const;
-    /// To be asked before so many bytes of rows are written.
+    /// Call it before this many bytes of rows are written.
     bool out_of_time(std::size_t bytes);
     bool fill(std::vector<Quanta>& table, std::size_t count);
     void find_regrets();

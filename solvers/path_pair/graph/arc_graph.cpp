@@ -7,7 +7,7 @@ namespace conelane::path_pair {
 
 namespace {
 
-/// Calls `visit(k)` for k below `count`, until the clock strikes; false then. `work`: of one of them.
+/// Calls `visit(k)` for k below `count`; false if the time ends before. `work`: steps of one visit.
 template <typename Visit>
 bool for_each(std::size_t count, std::size_t work, SearchClock& clock, const Visit& visit) {
     constexpr std::size_t kBlock = 512;
@@ -52,7 +52,7 @@ void ArcGraph::add_edges(const LaneGraphProblem& problem) {
     }
 }
 
-/// Problem edges that no lane graph holds both of.
+/// Marks two problem edges that no lane graph holds together.
 void ArcGraph::exclude(std::size_t first, std::size_t second) {
     const int a = edge_of_problem_[first];
     const int b = edge_of_problem_[second];

@@ -28,7 +28,7 @@ void EdgeSets::assign(const ArcGraph& graph, const ResidualGraph& residual, Sear
         insert(at_cone_, to_index(graph.tail(2 * edges_[number])), number);
         insert(at_cone_, to_index(graph.head(2 * edges_[number])), number);
     }
-    // Rows are made one by one: megabytes that are first written at once take milliseconds without a look at
+    // Rows are made one by one: the first write to megabytes of memory takes milliseconds without a check of
     // the clock.
     excluded_.clear();
     excluded_.reserve(edges_.size() * words_);

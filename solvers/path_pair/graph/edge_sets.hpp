@@ -38,7 +38,7 @@ class EdgeSets {
   private:
     std::size_t words_ = 0;
     std::vector<int> number_;          ///< by arc
-    std::vector<int> number_of_edge_;  ///< -1 where the edge is not in the residual graph
+    std::vector<int> number_of_edge_;  ///< -1 if the edge is not in the residual graph
     std::vector<int> edges_;           ///< by number
     std::vector<std::uint64_t> at_cone_;
     std::vector<std::uint64_t> excluded_;  ///< by number, the edges incompatible with it

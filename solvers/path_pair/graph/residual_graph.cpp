@@ -88,7 +88,7 @@ void ResidualGraph::filter(const ResidualGraph& source, std::span<const int> ord
     index_predecessors();
 }
 
-/// False where there is a clock and it struck.
+/// False if there is a clock and its time has ended.
 bool ResidualGraph::index_predecessors(SearchClock* clock) {
     in_start.assign(arc.size() + 2, 0);
     for (const int next : out_arc) ++in_start[static_cast<std::size_t>(next) + 2];

@@ -9,7 +9,7 @@
 
 namespace conelane::path_pair {
 
-// Vectors of up to millions of values, written or copied piece by piece with looks at the clock between: a
+// Vectors of up to millions of values, written or copied piece by piece, with checks of the clock between: a
 // vector that grows by itself copies all of them in one go, which takes milliseconds.
 
 namespace timed_growth {
@@ -17,7 +17,7 @@ inline constexpr std::size_t kValuesAtOnce = 16384;
 inline constexpr std::size_t kWorkPerValue = 3;  ///< in steps of the clock
 }  // namespace timed_growth
 
-/// So many times the value, in place of what was there. False, and fewer, where the time is up.
+/// Replaces the content by `count` copies of the value. False, with fewer copies, if the time ends before.
 template <typename T>
 [[nodiscard]] bool fill(std::vector<T>& values, std::size_t count, T value, SearchClock& clock) {
     values.clear();
@@ -30,8 +30,8 @@ template <typename T>
     return true;
 }
 
-/// Room for so many more values; the capacity doubles where it grows. False, and nothing changed, where the
-/// time is up.
+/// Makes room for `count` more values; the capacity doubles when it grows. Returns false, with the vector
+/// unchanged, if the time ends before.
 template <typename T>
 [[nodiscard]] bool make_room(std::vector<T>& values, std::size_t more, SearchClock& clock) {
     if (values.size() + more <= values.capacity()) return true;

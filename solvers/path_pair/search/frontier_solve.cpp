@@ -34,8 +34,8 @@ Verdict FrontierSolve::search_by_target(const ResidualGraph& graph, const Target
     return Verdict::closed;
 }
 
-/// All pairs of the node that cost less than the target, which is not above the incumbent. Where there is
-/// none the target is the node's bound; a pair that is found is the incumbent from then on.
+/// Finds all pairs of the node that cost less than the target, which is not above the incumbent. A pair that
+/// is found becomes the incumbent; without one, the target is the node's bound.
 Verdict FrontierSolve::search_below(const ResidualGraph& graph, double target, std::size_t max_frontiers,
                                     double& bound) {
     const double incumbent = incumbent_.cutoff();
@@ -56,7 +56,7 @@ Verdict FrontierSolve::search(const ResidualGraph& graph, const Limits& limits) 
         std::min(limits.labels, tuning().max_label_words / std::max<std::size_t>(1, edge_sets_.words())));
 }
 
-/// The frontiers, less what can be dropped. A verdict where none of them has to be searched, or none can.
+/// Builds the frontiers and drops what it can. Returns a verdict if no frontier needs, or allows, a search.
 std::optional<Verdict> FrontierSolve::build(const ResidualGraph& graph, const Limits& limits) {
     const bool drop_dominated = options_.drop_dominated_edges;
     edge_sets_.assign(graph_, graph, *clock_);
@@ -81,7 +81,7 @@ std::optional<Verdict> FrontierSolve::build(const ResidualGraph& graph, const Li
     return std::nullopt;
 }
 
-/// Labels on the frontiers. On many of them first a few at each: an incumbent drops many frontiers.
+/// Labels on the frontiers. If there are many, a narrow search comes first: an incumbent drops many.
 Verdict FrontierSolve::search_built(std::size_t max_labels) {
     const bool is_wide = frontiers_.size() >= tuning().wide_frontiers;
     find_tables();

@@ -48,7 +48,7 @@ void IncumbentImprover::look_at_incumbent() {
     new_window_arcs_ = tuning().new_pair_arcs;
 }
 
-/// At once for huge graphs; then a share of the work on bounds, which grows with the gap.
+/// At once for huge graphs; otherwise a share of the work on bounds, which grows with the gap.
 bool IncumbentImprover::may_work(double gap, std::int64_t own_work) const {
     const WindowTuning& t = tuning();
     const auto other = static_cast<double>(clock_->total_work() - own_work);
@@ -102,7 +102,7 @@ void IncumbentImprover::begin_phase() {
     has_pair_ = true;
 }
 
-/// False where the pair has no window left that might improve it.
+/// False if no window is left that might improve the pair.
 bool IncumbentImprover::search_window() {
     if (!window_.next(pair_.legs(), order_)) return false;
     clock_->out_of_time(whole_.arc.size() + whole_.out_arc.size() / 8);

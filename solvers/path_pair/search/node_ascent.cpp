@@ -149,8 +149,8 @@ void NodeAscent::move_multipliers(const Node& node, const Aim& aim) {
     ascent_.restart(multipliers_);
 }
 
-/// With steps up to an incumbent from windows, which is nearer than one that the ascent finds, it takes
-/// nearly twice as many.
+/// Aiming at an incumbent from windows, which is nearer than one that the ascent finds, would take nearly
+/// twice as many steps.
 double NodeAscent::step_gap(const Aim& aim) const {
     const double gap = incumbent_.cutoff() - state_.value;
     if (incumbent_.cutoff() < aim.known_cost) return gap;

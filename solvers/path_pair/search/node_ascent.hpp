@@ -78,7 +78,7 @@ class NodeAscent {
         double failed_gap = kUnreachable;  ///< the gap at which the frontiers were too many
     };
 
-    /// Minus infinity where the clock struck.
+    /// Minus infinity if the time has ended.
     double evaluate(const ResidualGraph& graph);
     /// The node's best multipliers so far, with 0 for cliques that came later.
     void take_best_multipliers(const Node& node);

@@ -1,4 +1,4 @@
-// What `make_detector` adds to a detector: a lane that is found can be driven, and says how far to trust it.
+// `make_detector` adds to a detector: a lane that is found can be driven, and has a trusted length.
 
 #include "detectors/drivable/drivable_answers.hpp"
 
@@ -39,7 +39,7 @@ LaneAnswer answered(const LaneAnswer& said, const Scene& scene) {
     return answer_drivable_lanes(std::make_unique<Says>(said))->detect(scene, tests::kNoTimeLimit);
 }
 
-/// A lane whose left boundary is said to be the right one.
+/// A lane with its boundaries exchanged.
 Course swapped() {
     Course course = tests::straight(tests::range(0.0, 20.0, 4.0), tests::range(0.0, 20.0, 4.0));
     std::swap(course.lane.left, course.lane.right);
@@ -69,11 +69,11 @@ TEST(DrivableAnswers, ALaneBeyondWhatCanBeDrivenAtAllIsNotFound) {
     EXPECT_EQ(answered(found(course.lane), course.scene).status, LaneStatus::stopped);
 }
 
-/// Frame 176 of the run fsg_19_2_laps, whose map lacks cones at a bend: the left boundary goes on along the
+/// Frame 176 of the run fsg_19_2_laps. Its map lacks cones at a bend: the left boundary continues along the
 /// other one, once around the course and back to the car.
-TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapWhereItCannotBeDrivenElse) {
+TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapIfItCannotBeDriven) {
     Course course = tests::course_of({{2.0, 1.75}, {6.0, 1.75}, {10.0, 1.75}, {18.0, -1.75}}, {});
-    // Back beside the car, from the cone behind the gap.
+    // The part beside the car, from the cone behind the gap on.
     for (const double x : tests::range(-18.0, 0.0, 3.0)) course.add({-x, -1.75}, true);
     ASSERT_TRUE(course.driven().points.empty());
     const LaneAnswer answer = answered(found(course.lane), course.scene);
@@ -83,7 +83,7 @@ TEST(DrivableAnswers, ABoundarySeenAloneIsCutBeforeItsFirstGapWhereItCannotBeDri
     EXPECT_NEAR(answer.trusted_m.value_or(-1.0), 8.0, 0.05);
 }
 
-TEST(DrivableAnswers, WhatIsNotFoundStaysAsItIs) {
+TEST(DrivableAnswers, OtherAnswersStayUnchanged) {
     LaneAnswer said;
     said.status = LaneStatus::none;
     EXPECT_EQ(answered(said, swapped().scene).status, LaneStatus::none);
@@ -101,7 +101,7 @@ TEST(DrivableAnswers, TrustIsKeptWhereItIsKnown) {
     }
 }
 
-TEST(DrivableAnswers, ElseALaneIsTrustedForTenMetresAsFarAsItWasSeenWithoutAGap) {
+TEST(DrivableAnswers, WithoutAProbabilityTrustEndsAtAGapOrAfterTenMetres) {
     const auto trusted_m = [](const std::vector<double>& left_x, const std::vector<double>& right_x) {
         const Course course = tests::straight(left_x, right_x);
         const LaneAnswer answer = answered(found(course.lane), course.scene);

@@ -1,4 +1,4 @@
-// Where a centre line may run at all: too narrow places, corners that it would cut, and lanes that turn back.
+// Limits of a centre line: too narrow places, corners that it would cut, and lanes that turn back.
 
 #include "conelane/drivable_lane.hpp"
 #include "conelane/invalid_input.hpp"
@@ -13,7 +13,7 @@
 namespace conelane {
 namespace {
 
-/// Boundaries as a scene; the car stands at the origin and looks along +x.
+/// Boundaries as a scene; the car is at the origin and looks along +x.
 struct Boundaries {
     Lane lane;
     Scene scene;
@@ -35,7 +35,7 @@ Boundaries about_the_axis(const std::vector<Point>& left) {
     return {left, right};
 }
 
-TEST(DrivableLaneLimits, ALaneOfLessThanEightyCentimetresIsNone) {
+TEST(DrivableLaneLimits, ALaneBelowEightyCentimetresIsUnusable) {
     const Boundaries wide = about_the_axis({{0, 0.45}, {4, 0.45}, {8, 0.45}});
     EXPECT_NEAR(drivable(wide.lane, wide.scene).length_m, 8.0, 1e-6);
     const Boundaries narrow = about_the_axis({{0, 0.35}, {4, 0.35}, {8, 0.35}});
@@ -46,7 +46,7 @@ TEST(DrivableLaneLimits, ALaneOfLessThanEightyCentimetresIsNone) {
 
 /// 0.6 m wide up to x = 2, then wider by 0.6 m each metre. Rungs are 0.25 m apart, and 0.4 m from the middle
 /// to either boundary are reached at x = 2.39, between two of them.
-TEST(DrivableLaneLimits, ALaneThatIsNoneAtTheCarIsNoneWhatComesNext) {
+TEST(DrivableLaneLimits, ALaneThatIsUnusableAtTheCarHasNoPoints) {
     Boundaries funnel = about_the_axis({{0, 0.3}, {2, 0.3}, {6, 1.5}, {24, 1.5}});
     funnel.scene.pose.position.x() = 2.3;
     const DrivableLane none = drivable(funnel.lane, funnel.scene);
@@ -56,8 +56,8 @@ TEST(DrivableLaneLimits, ALaneThatIsNoneAtTheCarIsNoneWhatComesNext) {
     EXPECT_NEAR(drivable(funnel.lane, funnel.scene).length_m, 24.0 - 2.6, 0.01);
 }
 
-/// A right angle of a lane 2.4 m wide, whose middle may be missed by 0.95 m. So much smoothing would miss it
-/// by more.
+/// A right angle of a lane 2.4 m wide: the line may be up to 0.95 m from the middle. This smoothing alone
+/// would move it farther.
 TEST(DrivableLaneLimits, SmoothingCutsNoCornerOfTheLane) {
     const Boundaries corner({{0, 1.2}, {5, 1.2}, {10, 1.2}, {10, 6}, {10, 11}, {10, 16}},
                             {{0, -1.2}, {6, -1.2}, {12.4, -1.2}, {12.4, 5}, {12.4, 10}, {12.4, 16}});
@@ -79,8 +79,8 @@ TEST(DrivableLaneLimits, AConeThatIsInTheLaneTwiceIsNamedAsThat) {
     }
 }
 
-/// Both boundaries go back for a stretch before they go on. With steps of 100 m no point of the centre line
-/// says so but the first.
+/// Both boundaries turn back for a stretch before they continue. With steps of 100 m, only the first point of
+/// the centre line shows it.
 TEST(DrivableLaneLimits, ALaneEndsWhereItTurnsBack) {
     for (const double back_m : {1.0, 1.5, 2.0, 3.0}) {
         for (const double turn_at_m : {10.0, 10.1, 10.2}) {

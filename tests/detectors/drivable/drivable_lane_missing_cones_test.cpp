@@ -37,8 +37,8 @@ TEST(DrivableLane, KeepsItsWidthWhereOneBoundaryEndsFirst) {
 }
 
 TEST(DrivableLane, DoesNotFollowABoundaryRoundABendThatTheOtherDoesNotShow) {
-    // The outer boundary ends in the hairpin, the inner one comes back: seen from its end, the way back is
-    // outside of the lane.
+    // The outer boundary ends in the hairpin, and the inner one comes back. Seen from the end of the outer
+    // one, the way back is not part of the lane.
     Course course;
     const double inner_m = 1.5;
     for (double x = 0.0; x < 20.0; x += 2.0) {

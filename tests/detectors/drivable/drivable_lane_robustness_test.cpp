@@ -80,7 +80,7 @@ TEST(DrivableLane, EndsWhereItsBoundariesMeet) {
         EXPECT_GT(point.width_right_m, 0.2);
         EXPECT_LT(point.position.x(), 15.0);
     }
-    // A closed lane with a narrow place is open, from the car to there.
+    // A closed lane with a narrow place is open: it runs from the car to that place.
     Course closed = circle(12.0, 1.0, 2.0, 2.0 * kPi, true);
     Cone& inner = closed.scene.cones[closed.lane.left.size() / 2];
     inner.position = Point(0.0, 12.0) + (inner.position - Point(0.0, 12.0)) * 13.4 / 10.4;
@@ -99,7 +99,7 @@ void expect_refused(const Course& course, const std::string& key, const Drivable
     }
 }
 
-TEST(DrivableLane, RefusesWhatIsNoLaneOfTheScene) {
+TEST(DrivableLane, RefusesInvalidLanes) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     const Course good = straight(range(0.0, 20.0, 4.0), range(0.0, 20.0, 4.0));
@@ -128,7 +128,9 @@ TEST(DrivableLane, RefusesWhatIsNoLaneOfTheScene) {
     }
     for (const double smoothing : {0.2, 5.1, nan})
         expect_refused(good, "smoothing_m", {.smoothing_m = smoothing});
-    for (const double gap : {0.0, nan}) expect_refused(good, "longest_gap_m", {.max_gap_m = gap});
+    for (const double width : {0.9, 6.6, nan})
+        expect_refused(good, "default_width_m", {.default_width_m = width});
+    for (const double gap : {0.0, nan}) expect_refused(good, "max_gap_m", {.max_gap_m = gap});
 }
 
 TEST(DrivableLane, AnyLaneGivesFiniteNumbers) {

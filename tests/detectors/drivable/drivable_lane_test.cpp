@@ -74,7 +74,7 @@ TEST(DrivableLane, KnowsTheCurvatureOfClothoids) {
             expect_drivable(course, lane);
             EXPECT_NEAR(lane.length_m, 30.0, 0.8);
             for (const DrivablePoint& point : lane.points) {
-                // The ends of an open line go on as a circle over some metres.
+                // Near its ends, an open line continues as a circle for some metres.
                 const bool at_end = point.s_m < 3.5 || point.s_m > lane.length_m - 3.5;
                 EXPECT_NEAR(point.curvature_1pm, curvature(point.s_m), at_end ? 0.03 : 0.008) << point.s_m;
             }
@@ -169,7 +169,8 @@ TEST(DrivableLane, MovesWithItsConesAndTheCar) {
 }
 
 TEST(DrivableLane, StartsOnTheLegOfAHairpinThatRunsTheCarsWay) {
-    // Out along y = 0, back along y = 4.4: the car is nearer to the way back, but heads out.
+    // The lane runs out along y = 0 and back along y = 4.4. The car is nearer to the way back, but its
+    // heading is that of the way out.
     const Course leg =
         beside_path([](double s) { return s > 20.0 && s < 20.0 + 2.2 * kPi ? 1.0 / 2.2 : 0.0; },
                     40.0 + 2.2 * kPi, 1.0, 1.5);
@@ -198,7 +199,7 @@ TEST(DrivableLane, TakesAnyStep) {
 
 TEST(DrivableLane, WidthsEndAtTheBoundaries) {
     Course course = circle(9.0, -1.0, 3.5, 2.0 * kPi, true);
-    for (std::size_t i = 0; i < course.scene.cones.size(); i += 3) {  // wider here and there
+    for (std::size_t i = 0; i < course.scene.cones.size(); i += 3) {  // wider at some places
         course.scene.cones[i].position += 0.04 * (course.scene.cones[i].position - Point(0.0, -9.0));
     }
     const DrivableLane lane = course.driven();

@@ -33,11 +33,11 @@ Course whole(const Track& track) {
     return course;
 }
 
-/// What holds for the scenes of a course.
+/// Expected properties of the scenes of a course.
 struct DrivableBounds {
     double sharpest_1pm = 0.5;
-    std::size_t short_lanes = 0;  ///< that end long before the scene's boundaries do
-    std::size_t one_sided = 0;    ///< scenes left out, whose runs end far from each other
+    std::size_t short_lanes = 0;  ///< lanes that end long before the scene's boundaries do
+    std::size_t one_sided = 0;    ///< scenes left out, because their runs end far from each other
 };
 
 /// The whole course and the ground truth of scenes along it.
@@ -62,8 +62,8 @@ void expect_drivable_track(const Track& track, const DrivableBounds& bounds = {}
     for (const AnnotatedScene& scene : generate_scenes(track, options)) {
         SCOPED_TRACE(scene.scene.id);
         const Course seen{scene.ground_truth.value(), scene.scene};
-        // Where another leg is near, the evening of the far ends leaves a run that goes on there alone: no
-        // lane.
+        // If another leg is near, evening the far ends may leave a run that continues there alone: this is
+        // not a lane.
         if (bounds.one_sided > 0 && (seen.left().back() - seen.right().back()).norm() > kEndsApart_m) {
             ++one_sided;
             continue;
@@ -82,7 +82,7 @@ void expect_drivable_track(const Track& track, const DrivableBounds& bounds = {}
 
 TEST(DrivableLane, DrivesEveryGeneratedTrack) {
     for (const std::string& name : generated_track_names()) {
-        // The walls between its legs are narrower than a lane may be wide.
+        // The walls between its legs are narrower than the widest lane.
         const DrivableBounds bounds{0.5, 0, name == "tight_hairpins" ? 23U : 0U};
         for (const std::uint64_t seed : {0U, 1U}) expect_drivable_track(generate_track(name, seed), bounds);
     }
@@ -91,9 +91,9 @@ TEST(DrivableLane, DrivesEveryGeneratedTrack) {
 TEST(DrivableLane, DrivesEveryRecordedTrack) {
     CONELANE_RECORDED_TRACKS_OR_SKIP(tracks);
     const std::map<std::string, DrivableBounds> peculiar{
-        // Hairpins around a wall of 3 m that ends in a single cone: radii below 2 m.
+        // Hairpins around a wall of 3 m that ends in a single cone, so the radii are below 2 m.
         {"eufs_comp_2021", {0.6, 0, 14}},
-        // The first right cone of one pose lies behind the tightest place of a bend.
+        // In one pose, the first right cone is behind the narrowest place of a bend.
         {"eufs_FSI", {0.5, 2, 0}},
     };
     for (const Track& track : tracks) {

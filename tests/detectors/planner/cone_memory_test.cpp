@@ -1,4 +1,4 @@
-// The memory of cones, on instances that can be followed by hand.
+// The memory of cones, on small examples that can be followed by hand.
 
 #include "detectors/planner/cone_memory.hpp"
 
@@ -136,7 +136,7 @@ TEST(ConeMemory, AConeThatVanishesInViewIsForgottenAndOneOutOfViewIsNot) {
     for (int i = 0; i < 30; ++i) (void)memory.observe(frame(knocked_over));
     EXPECT_EQ(near(memory, {8.0, 1.75}), nullptr);
     EXPECT_EQ(memory.cones().size(), 7U);
-    // The car is past all of them, and sees others.
+    // The car has passed all of them, and sees others.
     std::vector<Cone> others = lane({40.0, 0.0});
     for (Cone& c : others) c.id += 100;
     for (int i = 0; i < 30; ++i) (void)memory.observe(frame(others, {40.0, 0.0}));
@@ -185,7 +185,7 @@ TEST(ConeMemory, OneConeThatMovesIsNoShift) {
     EXPECT_FALSE(memory.observe(frame(moved)));
 }
 
-TEST(ConeMemory, TheOrderOfAFrameDecidesNothing) {
+TEST(ConeMemory, TheOrderOfAFrameHasNoEffect) {
     ConeMemory one;
     ConeMemory other;
     std::mt19937 random(2);

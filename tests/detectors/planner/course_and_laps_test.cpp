@@ -1,4 +1,4 @@
-// The course that is known after a lap, and the lines that count laps.
+// The course that is known after a lap, and the lines at which laps count.
 
 #include "detectors/planner/course_memory.hpp"
 #include "detectors/planner/lap_counter.hpp"
@@ -53,7 +53,7 @@ TEST_F(RecordedCourse, IsClosedWhereTheLaneComesRound) {
     ASSERT_TRUE(course);
     EXPECT_TRUE(course->closed);
     EXPECT_NEAR(course->length_m, course_.lap_m, 0.5);
-    // Points at equal steps all around; the last one stands a step before the first.
+    // Points at equal steps around the course; the last one is one step before the first.
     const auto count = course->points.size();
     for (std::size_t i = 0; i < count; ++i) {
         const DrivablePoint& next = course->points[(i + 1) % count];
@@ -82,7 +82,7 @@ TEST_F(RecordedCourse, KnowsWhatIsAheadOfTheCar) {
 }
 
 TEST_F(RecordedCourse, AParallelLegOrTheWayBackClosesNothing) {
-    // The upper straight runs back 16 m beside the lower one; and a course that is cut short runs nowhere
+    // The upper straight runs back 16 m beside the lower one, and a course that ends early is not
     // near.
     drive(0.0, 0.75 * course_.lap_m);
     EXPECT_FALSE(memory_.closed());
@@ -121,7 +121,7 @@ TEST_F(RecordedCourse, MovesWithTheMapAndIsForgotten) {
 
 class Laps : public testing::Test {
   protected:
-    /// Returns where laps counted.
+    /// Returns the places at which laps counted.
     std::vector<double> drive(const DrivenCourse& course, double from_m, double to_m,
                               bool with_color = false) {
         std::vector<double> counted;

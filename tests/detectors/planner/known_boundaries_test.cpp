@@ -1,4 +1,4 @@
-// The geometry of acceleration and skidpad, against numbers computed by hand from the rules.
+// The geometry of acceleration and skidpad, compared with numbers computed by hand from the rules.
 
 #include "detectors/planner/known_course.hpp"
 #include "tests/detectors/planner/known_event.hpp"
@@ -37,8 +37,8 @@ TEST(KnownCourse, ConesOfTheRulesStandOnTheBoundaries) {
 }
 
 TEST(KnownCourse, TheMiddleOfTheLaneTouchesNoBoundaryOfItsOwn) {
-    // 1.5 m to either side of the route is boundary; within 1.4 m is none, but for the inner circles where
-    // both lanes cross the entry.
+    // The boundaries are 1.5 m to either side of the route; there is none within 1.4 m, except the inner
+    // circles where both lanes cross the entry.
     const KnownCourse skidpad = known_course(Mission::skidpad);
     for (double s_m = -15.0; s_m < 4.0 * kCircle_m + 20.0; s_m += 0.5) {
         const Point place = skidpad.at(s_m).position;

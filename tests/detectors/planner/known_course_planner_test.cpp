@@ -1,5 +1,5 @@
-// Acceleration and skidpad through the planner: what it says from the start to the stop, and where the cones
-// say nothing.
+// Acceleration and skidpad through the planner: its plans from the start to the stop, and in frames whose
+// cones say nothing.
 
 #include "detectors/planner/known_course_planner.hpp"
 
@@ -55,7 +55,7 @@ class Car {
         return frame;
     }
     [[nodiscard]] Pose pose() const { return is_skidpad_ ? skidpad_route(at_m_) : acceleration_route(at_m_); }
-    /// Of the last frame.
+    /// In the last frame.
     [[nodiscard]] double s_m() const { return last_s_m_; }
     [[nodiscard]] Pose route(double s_m) const {
         return is_skidpad_ ? skidpad_route(s_m) : acceleration_route(s_m);
@@ -69,7 +69,7 @@ class Car {
     Sight sight_;
 };
 
-/// How far the first 10 m of a lane lie from the route ahead.
+/// The largest distance of the first 10 m of a lane from the route ahead.
 double error_of(const DrivableLane& lane, const Car& car, const Pose& course) {
     double worst_m = 0.0;
     for (const DrivablePoint& point : lane.points) {
@@ -153,7 +153,7 @@ TEST(KnownCoursePlanner, RowsAcrossTheExitShortenWhatIsLeft) {
     }
 }
 
-TEST(KnownCoursePlanner, IsLostWhereTheConesStopToSpeakForTheRegistration) {
+TEST(KnownCoursePlanner, IsLostIfTheConesStopSupportingTheRegistration) {
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 1);
@@ -199,12 +199,12 @@ TEST(KnownCoursePlanner, WithoutConesItGoesOnForAWhileAndComesBack) {
 }
 
 TEST(KnownCoursePlanner, ComesBackAfterTheMapHasJumped) {
-    // 2 m and 9 degrees at once, cones and pose alike.
+    // A jump by 2 m and 9 degrees at once, of the cones and the pose.
     for (const Mission mission : {Mission::acceleration, Mission::skidpad}) {
         const auto planner = planner_of(mission);
         Car car(mission, 3);
         for (int i = 0; i < 40; ++i) static_cast<void>(planner->update(car.next(), kNoLimit));
-        // About the car, as a correction of a map is.
+        // Around the car, like a correction of a map.
         const Pose before = in_map(kCourse, car.pose());
         Pose course = kCourse;
         course.yaw_rad += 0.15;
@@ -252,7 +252,7 @@ TEST(KnownCoursePlanner, FramesTwiceAndOutOfOrderChangeNothing) {
 }
 
 TEST(KnownCoursePlanner, KeepsTheTimeLimitOfASearch) {
-    // Without time nothing is found; the first frame with time is enough.
+    // Without time, nothing is found; the first frame with time is enough.
     const auto planner = planner_of(Mission::skidpad);
     Sight sight(known_event::skidpad_cones(), 0.1, 0.0, 6);
     for (int i = 0; i < 5; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// The cones of acceleration and skidpad, set up from the numbers of the rules and not by the planner's code.
+// The cones of acceleration and skidpad, placed by the numbers of the rules, independently of the planner's
+// code.
 
 #include "conelane/planner.hpp"
 
@@ -43,7 +44,7 @@ inline std::vector<Point> acceleration_cones(double half_m) {
     return cones;
 }
 
-/// Where a map has the course: `course` is the pose of its origin and x axis.
+/// Placement of the course in a map: `course` is the pose of its origin and x axis.
 inline Pose in_map(const Pose& course, const Pose& pose) {
     const double c = std::cos(course.yaw_rad);
     const double s = std::sin(course.yaw_rad);
@@ -52,7 +53,7 @@ inline Pose in_map(const Pose& course, const Pose& pose) {
             std::remainder(course.yaw_rad + pose.yaw_rad, 2.0 * kPi)};
 }
 
-/// The middle of the lane at `s` after the line, as the rules have it: right twice, left twice, straight on.
+/// The middle of the lane at `s` after the line, by the rules: right twice, left twice, straight on.
 inline Pose skidpad_route(double s_m) {
     if (s_m <= 0.0) return {{s_m, 0.0}, 0.0};
     if (s_m >= 4.0 * kCircle_m) return {{s_m - 4.0 * kCircle_m, 0.0}, 0.0};
@@ -79,7 +80,7 @@ class Sight {
         }
         return frame;
     }
-    /// Cones of no course, evenly over the square of this half side around a place.
+    /// Cones that belong to no course, evenly in a square around a place; `half_m` is half its side.
     static std::vector<Point> strewn(int count, const Point& about, double half_m, unsigned seed) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<double> any_m(-half_m, half_m);

@@ -1,5 +1,5 @@
-// The registration of a known course: against a search of its own over all poses, among false positives, and
-// where there is nothing to register to.
+// The registration of a known course: compared with a search of the test's own over all poses, with false
+// positives, and without a course.
 
 #include "detectors/planner/known_registration.hpp"
 
@@ -41,7 +41,7 @@ std::vector<Point> with_false(std::vector<Point> cones, int count, const Point& 
     return cones;
 }
 
-/// How far a registration puts the car from where it is in the course, and how far it turns it.
+/// The error of a registration: distance of the car from its true place in the course, and rotation.
 std::pair<double, double> error_of(const Registration& registration, const Pose& pose, const Pose& course) {
     const Pose car = in_map(course, pose);
     return {(registration.to_course(car.position) - pose.position).norm(),
@@ -88,12 +88,12 @@ TEST(KnownRegistration, FindsTheLaneOfAnAccelerationOfAnyWidth) {
         EXPECT_NEAR(registration.widening_m, half_m - 1.5, 0.15) << i;
         EXPECT_NEAR(registration.to_course(in_map(course, pose).position).y(), pose.position.y(), 0.3) << i;
         EXPECT_LT(error_of(registration, pose, course).second, 0.03) << i;
-        // The place along the lane is what was expected.
+        // Along the lane, the place is the expected one.
         EXPECT_NEAR(registration.to_course(in_map(course, pose).position).x(), known.course().start_x_m, 0.6);
     }
 }
 
-/// The distance of a place to the boundaries of a skidpad, straight from the rules.
+/// The distance of a place from the boundaries of a skidpad, directly from the rules.
 double distance_to_skidpad_m(const Point& place) {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (const double side : {-1.0, 1.0}) {
@@ -119,7 +119,7 @@ TEST(KnownRegistration, NoPoseOfAFineGridExplainsFewConesMuchBetter) {
         return sum;
     };
     for (unsigned seed = 0; seed < 6; ++seed) {
-        // A third of the cones are missing, as many again are false.
+        // A third of the cones are missing, and as many are false.
         std::vector<Point> cones = known_event::skidpad_cones();
         std::mt19937 random(seed);
         std::ranges::shuffle(cones, random);
@@ -183,8 +183,8 @@ TEST(KnownRegistration, RefiningComesBackFromHalfAMeterAndAFewDegrees) {
     }
 }
 
-/// An acceleration as a car sees it that drives along the lane; the registration has the start line `off_m`
-/// too far back.
+/// An acceleration, seen by a car that drives along the lane; the registration has the start line `off_m` too
+/// far back.
 GateEvidence driven(const std::vector<Point>& cones, double off_m, double from_x_m, double to_x_m,
                     unsigned seed, ConeColor gate_color = ConeColor::unknown) {
     GateEvidence gates(75.0);

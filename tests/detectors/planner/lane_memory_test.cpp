@@ -1,5 +1,5 @@
-// What a planner keeps of lanes from frame to frame: stretches, what is left of the last path, and when a new
-// lane takes its place.
+// What a planner keeps from frame to frame: stretches of lanes, the rest of the last path, and when a new
+// lane replaces it.
 
 #include "detectors/planner/lane_choice.hpp"
 #include "detectors/planner/lane_stretch.hpp"
@@ -137,8 +137,8 @@ TEST_F(RememberedPath, IsNoneWhereItIsOldOrTheCarIsOffItOrAtItsEnd) {
 }
 
 TEST_F(RememberedPath, TheOtherLegMayBeNearer) {
-    // Out along y = 0, back along y = 6: 2.9 m beside the first leg the second one is 3.1 m away; at 2.4 m
-    // along the way the car can not be on it.
+    // The lane runs out along y = 0 and back along y = 6. The car is 2.9 m beside the first leg and 3.1 m
+    // from the second; from the place at 2.4 m along the lane, it can only be on the first.
     DrivableLane lane =
         tests::beside_path([](double s) { return s > 8.0 && s < 8.0 + 3.0 * tests::kPi ? 1.0 / 3.0 : 0.0; },
                            30.0, 1.0, 1.5)
@@ -182,7 +182,7 @@ TEST(LaneChoice, AWrongLaneIsLeftAfterAsManyFramesAsSpokeForItAndNoMore) {
     EXPECT_TRUE(choice.take(right, right));
 }
 
-TEST(LaneChoice, WhatIsNearlyAtItsEndHoldsNothingBack) {
+TEST(LaneChoice, ALaneNearItsEndDoesNotResist) {
     LaneChoice choice{LaneChoiceSettings{}};
     const DrivableLane lane = straight_line({0.0, 0.0}, 0.0, 20.0);
     for (int i = 0; i < 5; ++i) (void)choice.take(lane, i == 0 ? DrivableLane{} : lane);

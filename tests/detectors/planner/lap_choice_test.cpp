@@ -1,5 +1,5 @@
-// The choice between the lane driven by and one that jumps away from it; noise from frame to frame; frames
-// whose time stands still.
+// The choice between the lane driven so far and one that jumps away from it; noise from frame to frame;
+// frames without progress of time.
 
 #include "conelane/planner.hpp"
 #include "detectors/planner/lane_choice.hpp"
@@ -25,14 +25,14 @@ DrivableLane line(double heading_rad) {
     return lane;
 }
 
-/// A choice that drives by a lane of which many frames were sure.
+/// A choice whose lane is supported by many certain frames.
 class SureChoice : public testing::Test {
   protected:
     SureChoice() {
         EXPECT_TRUE(choice_.take(lane_, DrivableLane{}, 0.95));
         for (int i = 0; i < 30; ++i) EXPECT_TRUE(choice_.take(lane_, lane_, 0.95));
     }
-    /// Frames until `other` is driven by; 1000 where it never is.
+    /// The number of frames until `other` is driven; 1000 if it never is.
     int frames_until_left(const DrivableLane& other, double weight, double kept_weight) {
         int frames = 1;
         while (frames < 1000 && !choice_.take(other, lane_, weight, kept_weight)) ++frames;
@@ -45,11 +45,11 @@ class SureChoice : public testing::Test {
     DrivableLane other_ = line(0.5);
 };
 
-TEST_F(SureChoice, IsHeldAgainstFramesThatAreLittleSure) {
+TEST_F(SureChoice, IsKeptAgainstUncertainFrames) {
     EXPECT_GT(frames_until_left(other_, 0.3, 0.0), 10);
 }
 
-TEST_F(SureChoice, IsLeftForFramesThatAreSure) {
+TEST_F(SureChoice, IsLeftForCertainFrames) {
     const int frames = frames_until_left(other_, 0.95, 0.0);
     EXPECT_GT(frames, 1);
     EXPECT_LE(frames, static_cast<int>(std::ceil(settings_.max_support / 0.95)));
@@ -93,7 +93,7 @@ DrivableLane bent(double bend_m, double heading_rad) {
 }
 
 TEST(LaneChoice, AStretchHasNoSupportFromFramesThatDidNotSeeIt) {
-    // Sure frames saw 5 m only; then one unsure frame went on to the left.
+    // Certain frames saw only 5 m; then one uncertain frame continued to the left.
     const auto frames_until_right = [&](double unsure_left_m) {
         LaneChoice choice{LaneChoiceSettings{}};
         DrivableLane seen = line(0.0);
@@ -162,7 +162,7 @@ Frame straight_frame(double time_s, double x_m, double from_x_m, double to_x_m) 
 }
 
 TEST(LapPlanner, AShortLaneDoesNotEndThePath) {
-    // The map forgets the far cones at once: their ids change, and only the near ones are seen.
+    // The map forgets the far cones at once: their ids change, and only near cones are seen.
     const auto planner = make_planner({.detector = "front"});
     Plan plan;
     for (int i = 0; i < 8; ++i) {

@@ -1,5 +1,5 @@
-// What a planner promises (see planner.hpp), for every mission by every detector of the library. A new
-// detector is tested here by being listed.
+// The contract of a planner (see planner.hpp), for every mission with every detector of the library. A new
+// detector is tested here as soon as it is listed.
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
@@ -120,7 +120,7 @@ TEST_P(PlannerContract, AnInvalidFrameIsRefusedAndChangesNothing) {
 TEST_P(PlannerContract, ThePlansDependOnTheFramesAlone) {
     const std::vector<Plan> expected = drive(*make());
     const auto planner = make();
-    // Another run before, and not its end.
+    // After another run that was not driven to its end.
     for (int i = 0; i < 8; ++i) {
         (void)planner->update(frame_at(course_, 20.0 + kDriven_m * i, 50.0 + kFrame_s * i), kNoTimeLimit);
     }
@@ -151,7 +151,7 @@ TEST_P(PlannerContract, TheOrderOfConesAndWhereTimeBeginsChangeNothing) {
     }
 }
 
-TEST_P(PlannerContract, WithoutConesItBridgesAndIsLostThen) {
+TEST_P(PlannerContract, WithoutConesItBridgesAndIsThenLost) {
     const auto planner = make();
     Frame none;
     none.pose = course_.pose(0.0);

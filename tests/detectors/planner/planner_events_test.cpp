@@ -1,4 +1,4 @@
-// Whole events by the planner: laps, phases, the last line, the stop; drawn ones, and recorded runs.
+// Whole events with the planner: laps, phases, the last line, the stop; generated events and recorded runs.
 
 #include "conelane/invalid_input.hpp"
 #include "conelane/planner.hpp"
@@ -33,15 +33,15 @@ using tests::frame_at;
 using tests::kNoTimeLimit;
 using tests::Sight;
 
-/// What was told along a drive at constant speed.
+/// The states, phases and laps of a drive at constant speed.
 struct Told {
     std::vector<PlanState> states;         ///< without repetitions
     std::vector<std::string_view> phases;  ///< without repetitions
-    std::optional<double> stop_m;          ///< where a stop was said first
-    std::vector<double> laps_m;            ///< where the lap counted
+    std::optional<double> stop_m;          ///< first place with a stop
+    std::vector<double> laps_m;            ///< places at which laps counted
     int frames = 0;
     int without_path = 0;
-    double farthest_m = 0.0;  ///< of the first metres of a path from the middle
+    double farthest_m = 0.0;  ///< largest distance of the first metres of a path from the middle
     Plan last;
 };
 
@@ -98,7 +98,7 @@ TEST(PlannerEvent, LapsAreCountedAtTheLineAndTheLastOneEndsTheRun) {
     EXPECT_LT(*told.stop_m, course.finish_m + 5.0);
     EXPECT_EQ(told.last.state, PlanState::finished);
     EXPECT_EQ(told.last.lap, 2);
-    // What is left to come to rest on ends within 30 m behind the line.
+    // The rest of the path ends within 30 m behind the line.
     EXPECT_GT(told.last.lane.length_m, 5.0);
     EXPECT_LE(told.last.lane.length_m, 30.0 - 5.0);
 }
@@ -145,7 +145,7 @@ TEST(PlannerEvent, NoiseWithoutIdsLeavesTheLapsAsTheyAre) {
 
 TEST(PlannerEvent, ALapIsAsLongAsItIsWhereverTheRunBegins) {
     const DrivenCourse course = tests::oval(1);
-    // 8 m before the gate of orange cones: crossing it is the start.
+    // 8 m before the gate of orange cones: the start counts when the car crosses it.
     const auto planner = make_planner({.mission = Mission::autocross});
     const Told told = drive(*planner, course, course.finish_m + 5.0, {.with_color = true}, -8.0);
     ASSERT_TRUE(told.stop_m);
@@ -198,7 +198,7 @@ TEST(PlannerEvent, AtRestAtTheEndNothingIsLeftToDrive) {
     }
 }
 
-/// Resident memory of this process [KiB]; 0 where it is not known.
+/// Resident memory of this process [KiB]; 0 if unknown.
 long resident_kib() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -207,7 +207,7 @@ long resident_kib() {
     return 0;
 }
 
-// False positives that are new in each frame, for as long as an hour of driving in circles.
+// New false positives in each frame, for as long as an hour of driving in circles.
 TEST(PlannerHour, MemoryIsBounded) {
     const DrivenCourse course = tests::oval(100000, 4.0);
     const auto planner = make_planner({.mission = Mission::trackdrive, .laps = 100000});
@@ -226,7 +226,7 @@ TEST(PlannerHour, MemoryIsBounded) {
     EXPECT_LT(resident_kib() - warm_kib, 4096);
 }
 
-/// Frames of a run of ft-fsd, ten a second, without ids; none where the data are not there.
+/// Frames of a run of ft-fsd, ten a second, without ids; none if the data are missing.
 std::vector<Frame> recorded_frames(const std::string& name) {
     const std::filesystem::path file = recorded_data() / "ft_fsd" / (name + ".json");
     std::vector<Frame> frames;
@@ -244,8 +244,8 @@ class RecordedEvent : public testing::Test {
     std::vector<Frame> frames_;
 };
 
-/// Two laps of FSG 2019. The recording ends 1 m before its start, 7 m before the gate: the poses of the first
-/// crossing, among the cones of the last map, complete the second lap.
+/// Two laps of FSG 2019. The recording ends 1 m before its start, 7 m before the gate. The poses of the first
+/// crossing, with the cones of the last map, complete the second lap.
 class RecordedLaps : public RecordedEvent {
   protected:
     void SetUp() override {
@@ -287,10 +287,10 @@ Segment nearest_segment(const std::vector<Point>& boundary, const Point& place) 
     return nearest;
 }
 
-// The right boundary of the map lacks the cones of 15 m on the inside of a bend. The straight line across
-// this gap is no boundary: the middle between it and the left boundary is up to 1.3 m beside that of a lane
-// as wide as the rest of the course. Beside the gap the course has to be the middle of such a lane, along the
-// left boundary; everywhere else it is the middle of the map.
+// In the map, the right boundary lacks 15 m of cones on the inside of a bend. A straight line across this gap
+// is not a boundary: the middle between it and the left boundary is up to 1.3 m off the middle of a lane of
+// the usual width. Beside the gap, the course must be that middle, along the left boundary; elsewhere it must
+// be the middle of the map.
 TEST_F(RecordedLaps, GiveTheMiddleOfTheMapAsCourseAndConsistentPlans) {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
         SCOPED_TRACE(i);

@@ -1,4 +1,4 @@
-// A movement of the whole map, told from noise, from drift and from cones that moved alone.
+// A movement of the whole map is distinguished from noise, drift and cones that moved alone.
 
 #include "detectors/planner/rigid_shift.hpp"
 

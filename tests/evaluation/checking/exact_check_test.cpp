@@ -1,4 +1,4 @@
-// Programs and lane graphs recomputed in rational arithmetic: by hand, on solved scenes, and forged.
+// Programs and lane graphs recomputed in rational arithmetic: small ones by hand, solved scenes, forged ones.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -38,7 +38,7 @@ BinaryProgram program_of(double c_0, double c_1, double lower, double upper) {
 
 // 0.1 and 0.2 are the fractions 3602879701896397 / 2^55 and 3602879701896397 / 2^54. Their sum is
 // 10808639105689191 / 2^55; the nearest double is 10808639105689192 / 2^55 = 0.30000000000000004.
-TEST(ExactProgram, DoublesAreTheFractionsThatTheyStandFor) {
+TEST(ExactProgram, ReadsDoublesAsExactFractions) {
     const ExactProgramReport report =
         recompute_exactly(program_of(0.1, 0.2, 0.0, 0.3), std::vector{1.0, 1.0});
     const Rational unit = Rational(1) / Rational(boost::multiprecision::cpp_int(1) << 55);
@@ -74,7 +74,7 @@ TEST(ExactProgram, AColumnWithoutMeaningIsRefused) {
     EXPECT_THROW((void)point_of(program_of(1.0, 1.0, 0.0, 1.0), {}, {}), std::invalid_argument);
 }
 
-/// The optimum of a scene that has one.
+/// The optimum of a scene, which must have one.
 struct Solved {
     Scene scene;
     RldParameters parameters;
@@ -97,9 +97,10 @@ std::vector<Solved> solved_scenes(bool shape_costs) {
     return all;
 }
 
-// The objective of the program at the solver's answer, exactly, is what the solver says and what the checker
-// computes from the scene in extended precision; every row holds to the tolerance of the limits.
-TEST(ExactLaneGraph, AnswersAreFeasibleAndCostWhatIsStated) {
+// The exact objective of the program at the solver's answer equals the solver's objective and the one that
+// the checker computes from the scene in extended precision. Every row holds within the tolerance of the
+// limits.
+TEST(ExactLaneGraph, AnswersAreFeasibleAndHaveTheStatedCost) {
     for (const bool shape_costs : {false, true}) {
         const std::vector<Solved> all = solved_scenes(shape_costs);
         ASSERT_GT(all.size(), 10U);
@@ -120,7 +121,7 @@ TEST(ExactLaneGraph, AnswersAreFeasibleAndCostWhatIsStated) {
     }
 }
 
-/// Of a lane graph with one edge fewer or one edge more the rows say so, in either formulation.
+/// With one edge fewer or one edge more, a lane graph violates rows of either formulation.
 TEST(ExactLaneGraph, ForgeriesViolateARow) {
     std::vector<Solved> some = solved_scenes(false);
     some.resize(8);
@@ -150,7 +151,7 @@ TEST(ExactLaneGraph, ForgeriesViolateARow) {
     }
 }
 
-/// A pair of boundaries and beside it a circle of cones, which rows on demand alone forbid.
+/// A pair of boundaries and a circle of cones beside it, which only rows on demand forbid.
 TEST(ExactLaneGraph, ACycleViolatesTheRowsOnDemand) {
     Scene scene;
     for (const double y : {1.75, -1.75}) {
@@ -160,7 +161,7 @@ TEST(ExactLaneGraph, ACycleViolatesTheRowsOnDemand) {
     for (const auto& [x, y] : {std::pair{2.0, 12.0}, {5.2, 12.0}, {5.2, 15.2}, {2.0, 15.2}})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), {x, y}});
     RldParameters parameters;
-    parameters.theta_t = 1.5;  // right angles are allowed
+    parameters.theta_t = 1.5;  // allows right angles
     const LaneGraph lane{{{0, 1}, {1, 2}, {3, 4}, {4, 5}}};
     EXPECT_EQ(recompute_exactly(scene, parameters, Formulation::tight, lane)->violation, 0.0);
     LaneGraph with_cycle = lane;
@@ -189,8 +190,8 @@ TEST(ExactLaneGraph, AnEdgeThatTheProgramDoesNotHaveIsRefused) {
 
 using CheckExactly = ProgramFixture;
 
-// An objective that is off by less than the checker allows doubles, yet by more than they round.
-TEST_F(CheckExactly, TheCommandSeesWhatTheCheckerLetsPass) {
+// An objective whose error is below the checker's tolerance, but above the rounding of doubles.
+TEST_F(CheckExactly, TheCommandFindsErrorsBelowTheCheckersTolerance) {
     ASSERT_EQ(run("scenes --tracks generated:kidney --every 60 --out s.scenes.jsonl").exit_code, 0);
     ASSERT_EQ(run("solve --nearest 12 --scenes s.scenes.jsonl --out s.solutions.jsonl").exit_code, 0);
     const std::string check = "check --scenes s.scenes.jsonl --solutions ";

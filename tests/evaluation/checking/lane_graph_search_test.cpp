@@ -62,7 +62,7 @@ TEST(LaneGraphSearch, WithThePairingOfThePaperAPathOfFarConesMayComeFirst) {
     for (const Point& position : {Point(11.0, -1.75), Point(14.2, -1.75), Point(1.0, 1.75), Point(4.2, 1.75)})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
     RldParameters parameters;
-    parameters.d_h = 20.0;  // all edges are along the heading
+    parameters.d_h = 20.0;  // so all edges are along the heading
     EXPECT_FALSE(search_lane_graph(scene, parameters, kNoLimit).witness);
     parameters.pairing = Pairing::paper;
     const LaneGraphSearchResult result = search_lane_graph(scene, parameters, kNoLimit);
@@ -70,18 +70,18 @@ TEST(LaneGraphSearch, WithThePairingOfThePaperAPathOfFarConesMayComeFirst) {
     EXPECT_EQ(result.witness->edges, (std::vector<Edge>{{0, 1}, {2, 3}}));
 }
 
-TEST(LaneGraphSearch, SaysWhereTheTimeRanOut) {
+TEST(LaneGraphSearch, ReportsThatTheTimeRanOut) {
     const LaneGraphSearchResult result = search_lane_graph(tests::random_scene(3, 60), {}, 0.0);
     EXPECT_FALSE(result.complete);
     EXPECT_FALSE(result.witness);
 
-    // Few enough edges that the time runs out among the paths only. None of them ends at a far cone.
+    // So few edges that the time ends only among the paths. None of them ends at a far cone.
     Scene grid;
     for (int i = 0; i < 16; ++i) grid.cones.push_back({i, {3.2 * (i / 4), 3.2 * (i % 4)}});
     RldParameters parameters;
     parameters.d_near = 100.0;
     parameters.d_h = 100.0;
-    parameters.s_crit = 0.1;  // no diagonals, but turns by a right angle
+    parameters.s_crit = 0.1;  // allows no diagonals, but turns by a right angle
     parameters.t_crit = 10.0;
     EXPECT_TRUE(search_lane_graph(grid, parameters, kNoLimit).complete);
     const LaneGraphSearchResult stopped = search_lane_graph(grid, parameters, 0.0);
@@ -89,7 +89,7 @@ TEST(LaneGraphSearch, SaysWhereTheTimeRanOut) {
     EXPECT_FALSE(stopped.witness);
 }
 
-/// Beyond the lane there is no near endpoint.
+/// The near endpoints are in the lane only.
 TEST(Infeasibility, IsJudgedWithoutTheClaimant) {
     using Kind = InfeasibilityVerdict::Kind;
     const Scene straight = straight_scene().scene;
@@ -106,7 +106,7 @@ TEST(Infeasibility, IsJudgedWithoutTheClaimant) {
     EXPECT_EQ(judge_infeasible(straight, {}, "cbc", 0.0).kind, Kind::open);
 }
 
-/// Without time neither the own search nor multipliers decide, so another solver is asked.
+/// Without time, neither the checker's search nor multipliers decide, so another solver is asked.
 TEST(Infeasibility, AsksAnotherSolverThanTheClaimant) {
     const Scene scene = tests::random_scene(3, 60);
     EXPECT_EQ(judge_infeasible(scene, {}, "cbc", 0.0).by, "path-pair");

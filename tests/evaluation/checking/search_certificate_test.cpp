@@ -1,5 +1,5 @@
-// Certificates of whole searches: a proof that can be followed by hand, the proofs of path-pair, and what the
-// verifier refuses.
+// Certificates of whole searches: a proof that can be followed by hand, proofs of path-pair, and certificates
+// that the verifier rejects.
 
 #include "conelane/check.hpp"
 #include "conelane/lane_graph_problem.hpp"
@@ -34,7 +34,7 @@ using testing::HasSubstr;
 constexpr std::int64_t kManySteps = 1'000'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Two straight boundaries of three cones, 3.2 m apart along them, which is expected, and 3.5 m across:
+/// Two straight boundaries of three cones, with the expected spacing of 3.2 m, and 3.5 m across:
 ///     0 ----- 1 ----- 2
 /// car >
 ///     3 ----- 4 ----- 5        2 and 5 are far
@@ -94,8 +94,8 @@ TEST(SearchCertificate, OfLearnedCostsIsVerified) {
     EXPECT_GT(verified, 5);
 }
 
-/// With the weight 1/2 on each heading edge beyond the second the relaxation is 1 lower, which the
-/// enumeration has to make good: of the frontiers, only those of the two boundaries are left.
+/// The weight 1/2 on each heading edge beyond the second lowers the relaxation by 1, so the enumeration has
+/// to prove the rest: only the frontiers of the two boundaries are left.
 TEST(SearchCertificate, IsEnumeratedWhereTheMultipliersAreWeak) {
     SearchCertificate certificate = straight_proof();
     certificate.parts[0].stages[0].heading = SearchCertificate::Units{1}
@@ -118,7 +118,7 @@ SearchCertificate priced_proof(std::size_t cones, const std::vector<std::size_t>
     return certificate;
 }
 
-/// All cones are passed once by the cheapest walks, which pay for it what the multiplier gives back.
+/// The cheapest walks pass every cone once, and pay for it exactly what the multiplier gives back.
 TEST(SearchCertificate, AMultiplierOfAConeThatIsPassedOnceChangesNoBound) {
     for (std::size_t cone = 0; cone < 6; ++cone) {
         SCOPED_TRACE(cone);
@@ -128,8 +128,8 @@ TEST(SearchCertificate, AMultiplierOfAConeThatIsPassedOnceChangesNoBound) {
     }
 }
 
-/// Two edges along the heading are asked for. Where the cheapest walks have just two, a multiplier on them
-/// gives back what it takes.
+/// At least two edges along the heading are required. If the cheapest walks have exactly two, a multiplier on
+/// them changes nothing.
 TEST(SearchCertificate, AMultiplierOfTheHeadingIsForTwoEdges) {
     Scene scene = straight_lane();
     std::erase_if(scene.cones, [](const Cone& cone) { return cone.position.x() > 5.0; });
@@ -143,7 +143,7 @@ TEST(SearchCertificate, AMultiplierOfTheHeadingIsForTwoEdges) {
     EXPECT_EQ(verdict.steps, 0);
 }
 
-/// The left boundary goes on for a cone 6, which is 4.4 m from the far end of the right one.
+/// The left boundary continues to cone 6, which is 4.4 m from the far end of the right boundary.
 TEST(SearchCertificate, TheBoundIsOfWalksWhoseEndsMayGoTogether) {
     Scene scene = straight_lane(1.5);
     scene.cones.push_back({6, {10.6, 1.5}});
@@ -173,7 +173,7 @@ TEST(SearchCertificate, AWalkThatGainsWithEachRoundProvesNothing) {
     EXPECT_EQ(priced.kind, Kind::verified) << priced.reason;
 }
 
-/// Both ways ahead lead through the cone 2, and only one leg may.
+/// Both ways ahead lead through cone 2, which only one leg may use.
 ///      0       3
 /// car >    2
 ///      1       4
@@ -190,8 +190,8 @@ TEST(SearchCertificate, LegsDoNotMeetAtACone) {
     EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
 }
 
-/// One leg joins the near cones 2 and 3, the other one the far cones 0 and 1. The multipliers are 0, so all
-/// is left to the enumeration of the second part.
+/// One leg joins the near cones 2 and 3, the other one the far cones 0 and 1. All multipliers are 0, so the
+/// enumeration of the second part has to prove everything.
 ///     2 ----- 3
 /// car >                        0 ----- 1
 TEST(SearchCertificate, WithThePairingOfThePaperALegMayJoinFarCones) {
@@ -199,7 +199,7 @@ TEST(SearchCertificate, WithThePairingOfThePaperALegMayJoinFarCones) {
     for (const Point& position : {Point(11.0, -1.75), Point(14.2, -1.75), Point(1.0, 1.75), Point(4.2, 1.75)})
         scene.cones.push_back({static_cast<ConeId>(scene.cones.size()), position});
     RldParameters parameters;
-    parameters.d_h = 20.0;  // all edges are along the heading
+    parameters.d_h = 20.0;  // so all edges are along the heading
     parameters.pairing = Pairing::paper;
     SearchCertificate certificate = priced_proof(4, {}, 0, -2.0);
     certificate.parts.push_back(certificate.parts.front());
@@ -211,7 +211,7 @@ TEST(SearchCertificate, WithThePairingOfThePaperALegMayJoinFarCones) {
     EXPECT_THAT(verify(certificate, scene, parameters).reason, HasSubstr("missing"));
 }
 
-/// Costs are whole numbers of 2^-60, at most two units below.
+/// Costs are multiples of 2^-60, at most two units too low.
 TEST(SearchCertificate, RestsOnCostsThatAreRoundedDown) {
     const ExactScene exact = make_exact_scene(straight_lane(), {});
     const auto edge = exact.find({0, 1});
@@ -322,7 +322,7 @@ TEST(SearchCertificate, CannotBeForged) {
     }
 }
 
-/// A proof is of one scene and one set of parameters.
+/// A proof holds for one scene and one set of parameters only.
 TEST(SearchCertificate, IsOfItsSceneAndParameters) {
     Scene moved = straight_lane();
     moved.cones[1].position.y() += 0.3;
@@ -358,9 +358,9 @@ Scene colored(Scene scene, std::uint64_t seed) {
     return scene;
 }
 
-/// Whatever is done to the multipliers, what is verified stays true; of a lane graph that is not the best, or
-/// of none where there is one, nothing is.
-TEST(SearchCertificate, OfPathPairIsVerifiedAndNothingElseIs) {
+/// Whatever is changed in the multipliers, a verified bound is true. A lane graph that is not the best, or a
+/// claim of no lane graph where there is one, is never verified.
+TEST(SearchCertificate, OnlyTrueClaimsAreVerified) {
     int optima = 0;
     int infeasible = 0;
     int worse = 0;
@@ -408,8 +408,8 @@ TEST(SearchCertificate, OfPathPairIsVerifiedAndNothingElseIs) {
     EXPECT_GT(worse, 20);
 }
 
-/// The multiplier 1/2 on each cone leaves most of the proof to the enumeration. It finds the best lane graph
-/// below any bound that is too high, and none below one that is not.
+/// With the multiplier 1/2 on each cone, the enumeration has to do most of the proof. It finds the best lane
+/// graph below any bound that is too high, and no lane graph below a valid bound.
 TEST(SearchCertificate, TheEnumerationProvesWhatWeakMultipliersDoNot) {
     int enumerated = 0;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -454,7 +454,7 @@ TEST(SearchCertificate, OfCostsUpToTheLargestBound) {
         const SearchVerdict verdict = verify(certificate, scene, parameters);
         EXPECT_EQ(verdict.kind, Kind::verified) << verdict.reason;
         EXPECT_TRUE(verdict.is_optimum);
-        // No lane graph at all: that has to be proven against the cost of every pair of edges.
+        // There is no lane graph at all: the bound to prove is the cost of every pair of edges.
         scene.cones.pop_back();
         const SearchCertificate none = certify_search(make_problem(scene, parameters));
         EXPECT_EQ(none.bound, kInfinity);
@@ -472,8 +472,8 @@ TEST(SearchCertificate, ClaimsNothingOfCostsBeyondTheLargestBound) {
     EXPECT_EQ(verify(certificate, scene, parameters).reason, "nothing is claimed");
 }
 
-/// A search that is stopped has proven a bound, and its certificate claims no more.
-TEST(SearchCertificate, OfAStoppedSearchIsOfItsBound) {
+/// A search that is stopped has proven a bound, and its certificate claims exactly this bound.
+TEST(SearchCertificate, OfAStoppedSearchProvesItsBound) {
     const SearchCertificate nothing = certify_search(make_problem(straight_lane(), {}), 0.0);
     EXPECT_EQ(verify(nothing, straight_lane()).kind, Kind::refused);
     SearchCertificate certificate = straight_proof();
@@ -513,7 +513,7 @@ TEST_F(SearchCertificateFile, IsReadAsItWasWritten) {
     EXPECT_EQ(missing, 4711);
 }
 
-TEST_F(SearchCertificateFile, NamesTheLineAndKeyOfWhatIsWrong) {
+TEST_F(SearchCertificateFile, NamesTheLineAndKeyOfAnError) {
     const auto refusal = [&](const std::string& line) {
         const std::filesystem::path file = file_with("\n" + line + "\n", "bad.jsonl");
         try {

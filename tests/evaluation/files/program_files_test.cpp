@@ -1,4 +1,4 @@
-// Programs as MPS and LP files: what other people's programs make of them is what our backends find.
+// Programs as MPS and LP files: other solvers find the same results in them as our backends.
 
 #include "evaluation/files/program_files.hpp"
 
@@ -92,7 +92,7 @@ End
 )");
 }
 
-TEST(ProgramFiles, NamesMustTellColumnsApart) {
+TEST(ProgramFiles, NamesMustBeUnique) {
     BinaryProgram program = small_program();
     program.add_column({"y", {1}}, 0.0, true);
     std::ostringstream out;
@@ -123,7 +123,7 @@ TEST(SolutionFiles, ByGlpsol) {
     EXPECT_EQ(read("s mip 2 3 n 0\ne o f\n").status, SolutionFile::Status::infeasible);
 }
 
-/// What follows such a head is the relaxation's point, no incumbent.
+/// The values below such a first line belong to the relaxation: they are not an incumbent.
 TEST(SolutionFiles, ByCbcWithoutAnIncumbent) {
     const SolutionFile solution =
         read("Stopped on time (no integer solution - continuous used) - objective value -2.5\n 0 x 0.5 1\n");
@@ -183,8 +183,8 @@ TEST(SolutionFiles, OfMiplibAndGurobi) {
     EXPECT_EQ(gurobi.point, miplib.point);
 }
 
-/// What a format cannot say stands in lines of any format, also behind its end.
-TEST(SolutionFiles, RemarksTellTheRest) {
+/// Values that a format does not have may be in lines =KEY= of any format, also after its last line.
+TEST(SolutionFiles, RemarksGiveValuesThatAFormatLacks) {
     const SolutionFile gurobi = read(
         "# Objective value = -2\ny_1 1\nz_1_2 0.5\n=status= optimal\n=bound= -2.25\n"
         "=nodes= 12\n=ms= 3.5\n=solver= Gurobi 11.0\n");
@@ -232,9 +232,9 @@ TEST(SolutionFiles, BadOnesNameTheirLine) {
 }
 
 struct RoundTrip {
-    std::string program;  ///< that must be installed
+    std::string program;  ///< the program that must be installed
     std::string ending;
-    std::string command;  ///< IN and OUT stand for the files
+    std::string command;  ///< IN and OUT are replaced by the files
     friend void PrintTo(const RoundTrip& trip, std::ostream* out) { *out << trip.program << trip.ending; }
 };
 
@@ -248,7 +248,7 @@ void replace(std::string& text, const std::string& what, const std::string& by) 
     text.replace(text.find(what), what.size(), by);
 }
 
-/// Rows added on demand are not in a file, so what is compared are programs, not lanes.
+/// Rows that are added on demand are not in a file, so programs are compared, not lanes.
 TEST_P(RoundTrips, OtherProgramsFindTheSameOptimum) {
     if (!is_installed(GetParam().program)) GTEST_SKIP() << GetParam().program << " is not installed";
     const std::filesystem::path stem =

@@ -115,7 +115,7 @@ TEST_F(LaneFileTest, NamesBadRecords) {
     EXPECT_TRUE(read_lanes(file_with("")).empty());
 }
 
-/// Version 0.1 knew one limit.
+/// Version 0.1 had one limit only.
 TEST_F(LaneFileTest, ReadsTheOldNameOfAStop) {
     const std::vector<LaneRecord> read =
         read_lanes(file_with(lane("time_limit", "[]") + lane("stopped", "[]", R"(, "nearest": 6)") +
@@ -177,7 +177,7 @@ TEST_F(SolutionFileTest, RoundTrip) {
     EXPECT_EQ(read[2].nearest, 12U);
 }
 
-/// Up to version 0.5 the word was that of the most frequent limit, also where it was the memory.
+/// Up to version 0.5, the word was that of the most frequent limit, even if the memory was the limit.
 TEST_F(SolutionFileTest, ReadsTheOldNameOfAStop) {
     std::string by_memory = solution("time_limit", "[]");
     by_memory.replace(by_memory.find("\"tight\""), 7, "\"paper\", \"stopped_by\": \"memory\"");
@@ -203,8 +203,8 @@ TEST_F(SolutionFileTest, NamesBadRecords) {
 
 class ParameterTagTest : public FileTest {};
 
-/// A name is for people: values tell parameters apart, and a file may be written anew under its name.
-TEST_F(ParameterTagTest, TellsParametersApartByTheirValues) {
+/// A name is for people. Values distinguish parameters, and a file may be replaced under its name.
+TEST_F(ParameterTagTest, DistinguishesParametersByTheirValues) {
     RldParameters parameters;
     const ParameterTag made = tag_of("folder/own.json", parameters);
     EXPECT_EQ(made.name, "own.json");
@@ -229,7 +229,7 @@ TEST_F(ParameterTagTest, TellsParametersApartByTheirValues) {
               "f:3: parameters: made by other values than 'own.json' has now");
 }
 
-TEST_F(ParameterTagTest, WhatIsNotSaidIsNoDifference) {
+TEST_F(ParameterTagTest, AMissingValueIsNoDifference) {
     const ParameterTag now = tag_of("", {});
     EXPECT_NO_THROW(require_same_basis({{}, {}}, {now, 12U}, "f", 1)) << "a file of an earlier version";
     EXPECT_NO_THROW(require_same_basis({now, 12U}, {now, {}}, "f", 1));
@@ -250,7 +250,7 @@ TEST_F(ParameterFileTest, RoundTripAndDefaultPairing) {
     RldParameters parameters;
     double step = 0.001;
     for (const RldParameterField& field : rld_parameter_fields()) {
-        parameters.*field.value -= step += 0.001;  // distinct, so that no key can stand for another
+        parameters.*field.value -= step += 0.001;  // different values, so that exchanged keys are noticed
     }
     parameters.pairing = Pairing::paper;
     write_rld_parameters(path("p"), parameters);
@@ -266,7 +266,7 @@ TEST_F(ParameterFileTest, RoundTripAndDefaultPairing) {
     EXPECT_EQ(read_rld_parameters(file_with(text.substr(0, pairing) + "}")).pairing, Pairing::near_far);
 }
 
-/// A file speaks of extras where they are on; one that does not has them off.
+/// A file contains the extras that are on; missing extras are off.
 TEST_F(ParameterFileTest, ExtrasAreOptional) {
     write_rld_parameters(path("p"), RldParameters{});
     for (const RldParameterField& field : rld_extra_fields()) {

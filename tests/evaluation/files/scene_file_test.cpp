@@ -127,7 +127,7 @@ TEST_F(SceneFileTest, NamesBadProbabilitiesOfColors) {
               "s.jsonl:1: cones[0].color_probabilities[1]: must be a number");
 }
 
-TEST_F(SceneFileTest, ConditionAndMissedConesAreThereWhereASceneHasThem) {
+TEST_F(SceneFileTest, ConditionAndMissedConesAreWrittenIfPresent) {
     AnnotatedScene made;
     made.scene = {"a", {{0, 0}, 0}, {{7, {1, 2}}}};
     made.condition = "car";
@@ -178,7 +178,7 @@ TEST_F(SceneFileTest, RandomDoublesAndIdsSurviveARoundTripBitByBit) {
     }
 }
 
-TEST_F(SceneFileTest, NamesFileLineAndKeyOfWhatIsNoScene) {
+TEST_F(SceneFileTest, NamesFileLineAndKeyOfAnInvalidScene) {
     const std::string good = scene(cone("1"));
     EXPECT_EQ(error_in(""), "s.jsonl: holds no scene");
     EXPECT_EQ(error_in("\n  \n"), "s.jsonl: holds no scene");
@@ -249,7 +249,7 @@ TEST_F(SceneFileTest, NamesBadProvenance) {
     EXPECT_EQ(error_in(with(R"("seed": 1.5)")), "s.jsonl:1: seed: must be a non-negative integer of 64 bits");
 }
 
-TEST_F(SceneFileTest, NamesLineAndLastKeyOfWhatIsNoJson) {
+TEST_F(SceneFileTest, NamesLineAndLastKeyOfInvalidJson) {
     const std::string good = scene(cone("1"));
     EXPECT_EQ(error_in(good + R"({"pose": {"x": NaN, "y": 0})"), "s.jsonl:2: x: must be a finite number");
     EXPECT_EQ(error_in(good + R"({"pose": {"x": 0, "y": nan})"), "s.jsonl:2: y: must be a finite number");
@@ -274,7 +274,7 @@ TEST_F(SceneFileTest, NamesFilesThatCannotBeRead) {
               "folder: is a folder, not a file");
 }
 
-TEST_F(SceneFileTest, RefusesToWriteWhatItCouldNotRead) {
+TEST_F(SceneFileTest, RefusesToWriteScenesThatItCouldNotRead) {
     const fs::path file = file_with("old");
     AnnotatedScene scene;
     scene.scene = {"a", {}, {{1, {0.0, kInfinity}}}};

@@ -1,7 +1,7 @@
-// A program from outside for the tests: `outside_child SHAPE [FAULT K MARKER]`. It answers as `clc` does, in
-// a shape: cone ids, points on the cones, points beside them, a centre line. At the K-th scene it commits the
-// fault, once: not where the file MARKER is there, which it makes. What it reads goes to the file that
-// OUTSIDE_LOG names, its process number to OUTSIDE_PID.
+// A program from outside for the tests: `outside_child SHAPE [FAULT K MARKER]`. It answers like `clc`, in a
+// shape: cone ids, points on the cones, points beside them, or a centre line. At the K-th scene it commits
+// the fault, but only if the file MARKER does not exist, which it then creates. It writes its input to the
+// file named by OUTSIDE_LOG, and its process number to OUTSIDE_PID.
 
 #include "tests/evaluation/outside/process_faults.hpp"
 
@@ -69,7 +69,7 @@ void say(const std::string& line) {
     std::cout << line << std::endl;
 }
 
-/// Commits the fault; what it says, if it goes on.
+/// Commits the fault. Returns the answer, if the program continues.
 void commit(const std::string& fault, const json& right, const conelane::Scene& scene) {
     json wrong = right;
     commit_process_fault(fault, R"({"scene": ")");
@@ -81,7 +81,7 @@ void commit(const std::string& fault, const json& right, const conelane::Scene& 
         ::close(STDOUT_FILENO);
         sleep_on();
     }
-    if (fault == "forked") {  // the child keeps the streams, and the parent goes
+    if (fault == "forked") {  // the child keeps the streams, and the parent ends
         if (::fork() == 0) sleep_on();
         std::_Exit(0);
     }

@@ -1,5 +1,5 @@
-// The parts behind detectors from outside, without the program: how long they wait, what they give up, which
-// cone a point stands for.
+// The parts that detectors from outside use, without the program `conelane`: how long they wait, when they
+// give up, and which cone a point represents.
 
 #include "evaluation/outside/outside_program.hpp"
 
@@ -84,7 +84,8 @@ TEST(PointSnapping, OfTwoConesTheNearerOneIsMeant) {
     EXPECT_THAT(record.answer.lane.left, ElementsAre(5));
 }
 
-/// What is said of any scene: the points of cones are these cones, and no id that is not there comes out.
+/// Answers to any scene: points on cones become these cones, and every id in the result is a cone of the
+/// scene.
 TEST(PointSnapping, OfRandomScenesEveryConeIsFoundAgain) {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
         SCOPED_TRACE(seed);
@@ -101,8 +102,8 @@ TEST(PointSnapping, OfRandomScenesEveryConeIsFoundAgain) {
     }
 }
 
-/// A spiral is long, a star through its own middle is a tangle.
-TEST(Tangles, AreToldFromLongLanes) {
+/// A spiral is only long, but a star through its own middle is a tangle.
+TEST(Tangles, AreDistinguishedFromLongLanes) {
     std::vector<Point> spiral;
     std::vector<Point> star;
     for (int i = 0; i < 100; ++i) {
@@ -113,8 +114,8 @@ TEST(Tangles, AreToldFromLongLanes) {
     EXPECT_THAT(tangle_of(record_of(spiral, star), three_pairs()), HasSubstr("cross more than 500 times"));
 }
 
-/// What a program may answer without being refused can be scored, however little sense it makes.
-TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
+/// Every answer of a program that is not refused can be scored, even if it makes no sense.
+TEST(ForeignLanes, EveryAcceptedAnswerCanBeScored) {
     SceneOptions options;
     options.false_positive_rates = {0.3};
     options.ranges_m = {30.0};
@@ -170,7 +171,7 @@ TEST(ForeignLanes, AnythingThatIsLetThroughCanBeScored) {
 
 class OutsideProgramTest : public FileTest {
   protected:
-    /// A shell program that answers each scene by the text, in which $id is the scene's.
+    /// A shell program that answers each scene with the text; $id in it is the scene's id.
     [[nodiscard]] std::string shell(const std::string& on_scene) const {
         file_with(
             "while read -r line; do\n  case $line in *reset*) continue;; esac\n"
@@ -182,7 +183,7 @@ class OutsideProgramTest : public FileTest {
     static constexpr const char* kNone = R"(echo '{"scene":"'$id'","status":"none"}')";
     static constexpr OutsideLimits kShort{
         .answer_ms = 400.0, .start_ms = 10000.0, .end_ms = 400.0, .failures = 3, .lost_ms = 20000.0};
-    /// How often the program was started.
+    /// The number of times that the program was started.
     [[nodiscard]] std::size_t starts() const {
         const std::string text = text_of(path("starts"));
         return static_cast<std::size_t>(std::ranges::count(text, '\n'));
@@ -192,7 +193,7 @@ class OutsideProgramTest : public FileTest {
     }
 };
 
-TEST_F(OutsideProgramTest, AnswersAndGoesWithItsInput) {
+TEST_F(OutsideProgramTest, AnswersAndEndsWithItsInput) {
     OutsideProgram program("shell", shell(kNone), kShort);
     for (int i = 0; i < 3; ++i) {
         const LaneRecord record = program.answer(three_pairs());
@@ -217,7 +218,7 @@ TEST_F(OutsideProgramTest, OneThatNeverAnswersIsNotAskedForEver) {
     EXPECT_EQ(starts(), 3U);
 }
 
-/// It answers after each start once, which is not counted, and hangs on what follows.
+/// After each start it answers once (this answer is not counted), then hangs.
 TEST_F(OutsideProgramTest, OneThatFailsAgainAndAgainIsTriedOnEverFewerLaps) {
     const std::string once = std::string(kNone) + "; exec sleep 1000";
     OutsideProgram program("hanging", counting(shell(once)), kShort);
@@ -242,7 +243,7 @@ TEST_F(OutsideProgramTest, OneThatRecoversIsAskedAsBefore) {
     for (int i = 0; i < 5; ++i) EXPECT_EQ(program.answer(three_pairs()).answer.status, LaneStatus::none);
 }
 
-/// More than a pipe holds goes both ways.
+/// More data than a pipe holds, in both directions.
 TEST_F(OutsideProgramTest, LargeScenesAndAnswersPass) {
     Scene large{"large", {{0.0, 0.0}, 0.0}, {}};
     for (int i = 0; i < 4000; ++i) large.cones.push_back({i, {0.01 * i, 1.0}});
@@ -254,7 +255,7 @@ TEST_F(OutsideProgramTest, LargeScenesAndAnswersPass) {
     EXPECT_EQ(record.answer.message.size(), 500000U);
 }
 
-/// Writing to a program that reads no more must not end this one, whatever SIGPIPE does here.
+/// Writing to a program that no longer reads must not end this one, whatever SIGPIPE does here.
 TEST_F(OutsideProgramTest, OneThatReadsNoMoreDoesNoHarm) {
     ASSERT_EQ(std::signal(SIGPIPE, SIG_DFL), SIG_DFL);
     Scene large{"large", {{0.0, 0.0}, 0.0}, {}};

@@ -1,5 +1,5 @@
-// Solvers from outside: that right answers come through, that whole and permuted programs have the same
-// optimum, and that nothing which a program does or claims passes or hurts.
+// Solvers from outside: right answers are passed on, whole and permuted programs have the same optimum, and
+// no fault or false claim of a program is accepted or does harm.
 
 #include "evaluation/outside/outside_solver.hpp"
 
@@ -42,7 +42,8 @@ OutsideDetector detector(const std::string& command) {
 constexpr SolverPatience kShort{
     .late_ms = 400.0, .start_ms = 10000.0, .end_ms = 400.0, .failures = 4, .lost_ms = 60000.0};
 
-/// Tests that run beside this one have temporary folders, too: this program has a place of its own for them.
+/// Tests that run at the same time have temporary folders too, so this program has a folder of its own for
+/// them.
 class OwnTemporaryPlace : public testing::Environment {
   public:
     void SetUp() override {
@@ -67,7 +68,7 @@ std::size_t folders_left() {
     return count;
 }
 
-/// The optimum by the search that knows no program, absent where there is no lane graph.
+/// The optimum by path-pair, which uses no program; absent if there is no lane graph.
 std::optional<double> exact(const LaneGraphProblem& problem) {
     const RldReport report = make_path_pair_solver()->solve(problem, {});
     EXPECT_TRUE(report.status == SolveStatus::optimal || report.status == SolveStatus::infeasible);
@@ -87,7 +88,7 @@ LaneGraphProblem problem_of(const Scene& scene, Formulation formulation, Pairing
     return make_problem(scene, parameters, parts(formulation).extent);
 }
 
-/// Where edges are worth much and turns cost little, cycles and paths between near ends pay.
+/// With a high benefit of edges and low costs of turns, cycles and paths between near ends pay.
 RldParameters tempting() {
     RldParameters parameters;
     parameters.w_b = 3.0;
@@ -98,14 +99,14 @@ RldParameters tempting() {
     return parameters;
 }
 
-/// The flow stands for the rows that are added on demand: one optimum. What it is for has to happen: a
-/// program without it whose optimum is no lane graph.
+/// The flow replaces the rows that are added on demand: the optimum is the same. The test must include the
+/// relevant case: a program without the flow whose optimum is not a lane graph.
 TEST(ConnectingFlow, MakesAProgramWhole) {
     int cut_off = 0;
     int feasible = 0;
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         for (const Formulation formulation : {Formulation::tight, Formulation::paper}) {
-            if (formulation == Formulation::paper && seed >= 10) continue;  // takes 0.1 s
+            if (formulation == Formulation::paper && seed >= 10) continue;  // each takes 0.1 s
             for (const Pairing pairing : {Pairing::near_far, Pairing::paper}) {
                 SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << to_string(formulation));
                 const LaneGraphProblem problem =
@@ -181,7 +182,7 @@ TEST_P(RightAnswers, AreOptima) {
                 EXPECT_EQ(solver.version(), "child 1.2");
                 EXPECT_NEAR(solver.engine_ms().value(), 0.5 * report.rounds, 1e-9);
                 EXPECT_EQ(report.nodes, 3 * report.rounds);
-                // From a start: the optimum, from which nothing better is found.
+                // The start is the optimum, so nothing better is found.
                 expect_optimum(solver.solve(problem, {}, &*report.lane_graph), optimum);
             }
             solver.end();
@@ -203,7 +204,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, RightAnswers,
 struct Fault {
     const char* name;
     const char* message;
-    bool in_one_shot = true;  ///< it is one of a program that is run once, too
+    bool in_one_shot = true;  ///< the fault also exists for a program that is run once
 };
 
 class Faults : public FileTest, public testing::WithParamInterface<Fault> {
@@ -262,10 +263,10 @@ class Claims : public FileTest {
     const LaneGraphProblem problem_ = tests::straight_lane_problem();
 };
 
-/// A lane graph is at hand that refutes it; without one nothing here can.
-TEST_F(Claims, ThatThereIsNoneIsRefutedByAStart) {
+/// A known lane graph refutes the claim; without one, it cannot be refuted here.
+TEST_F(Claims, InfeasibilityIsRefutedByAStart) {
     const LaneGraph lane = *make_path_pair_solver()->solve(problem_, {}).lane_graph;
-    // A cutoff was told: that nothing is below it is true of an optimum.
+    // With a cutoff, the claim that nothing is below it is true of an optimum.
     OutsideSolver conversation(detector(child("claims-none 1 always")), {});
     EXPECT_EQ(conversation.solve(problem_, {}, &lane).status, SolveStatus::optimal);
     OutsideSolver alone(detector(child("claims-none 1 always")), {});
@@ -305,7 +306,7 @@ TEST_F(Claims, AStartIsKeptWhateverHappens) {
     EXPECT_FALSE(report.bound);
 }
 
-/// It is told what it may take, and what was asked for.
+/// The program gets its limits and the requested options.
 TEST_F(Claims, TheQuestionNamesLimitGapThreadsAndSeed) {
     OutsideSolver solver(detector("SOLVER_LOG=" + path("log").string() + " " + child()), {.threads = 3});
     solver.set_seed(41);

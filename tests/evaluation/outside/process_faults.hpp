@@ -9,14 +9,14 @@
 
 namespace conelane::tests {
 
-/// Ignores the request to end and waits until it is killed.
+/// Ignores the request to end, and waits until it is killed.
 [[noreturn]] inline void sleep_on() {
     std::signal(SIGTERM, SIG_IGN);
     for (;;) ::pause();
 }
 
-/// Commits a fault that any program from outside may have; returns where `fault` names none of them.
-/// `half_a_line` is the beginning of an answer.
+/// Commits a fault that any program from outside may have; returns if `fault` names none of them.
+/// `half_a_line`: the beginning of an answer.
 inline void commit_process_fault(const std::string& fault, const std::string& half_a_line) {
     if (fault == "crash") {
         std::cerr << "what went wrong\n" << std::flush;

@@ -3,8 +3,8 @@
 //     solver_child [FAULT K MARKER]                    a conversation
 //     solver_child once PROGRAM SOLUTION [FAULT MARKER]
 //
-// At the K-th program it commits the fault, once: not where the file MARKER is there, which it makes. A
-// marker "always" stands for none. What it is asked goes to the file that SOLVER_LOG names.
+// At the K-th program it commits the fault, but only if the file MARKER does not exist, which it then
+// creates. The marker "always" never exists. It writes its input to the file named by SOLVER_LOG.
 
 #include "model/binary_program.hpp"
 #include "solvers/milp/cbc_solver.hpp"
@@ -34,7 +34,7 @@ struct NamedProgram {
     std::vector<std::string> columns;
 };
 
-/// Free MPS as conelane writes it.
+/// Reads free MPS as conelane writes it.
 NamedProgram read_mps(const std::string& file) {
     NamedProgram read;
     std::ifstream in(file);
@@ -93,7 +93,7 @@ struct Solved {
     NamedProgram read;
 };
 
-/// Writes the solution file, MIPLIB's format; with a fault, what is wrong about it.
+/// Writes the solution file in MIPLIB's format; a fault changes its content.
 void write(const Solved& solved, const std::string& file, const std::string& fault) {
     if (fault == "no-file") return;
     std::ofstream out(file);
@@ -128,7 +128,7 @@ void write(const Solved& solved, const std::string& file, const std::string& fau
     if (fault == "column-twice") out << solved.read.columns[0] << " 1\n" << solved.read.columns[0] << " 0\n";
 }
 
-/// Faults of a process, before it answers.
+/// Faults of a process before it answers.
 void misbehave(const std::string& fault) {
     commit_process_fault(fault, R"({"status": ")");
     if (fault == "endless-lines") {

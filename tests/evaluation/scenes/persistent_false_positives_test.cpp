@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::Ge;
 using testing::Lt;
 
-/// The false positives of a scene: what is no cone of the track.
+/// The false positives of a scene: its cones that are not cones of the track.
 std::vector<Cone> false_positives(const AnnotatedScene& scene, const Track& track) {
     std::vector<Cone> result;
     for (const Cone& cone : scene.scene.cones) {
@@ -46,7 +46,7 @@ TEST(PersistentFalsePositives, KeepIdAndPlaceAlongALap) {
             EXPECT_EQ(first->second.color, cone.color);
             ++views[cone.id];
         }
-        // Whatever of them is in view is seen.
+        // All of them that are in view are seen.
         for (const auto& [id, cone] : known) {
             const bool in_view = scene.scene.pose.ahead_m(cone.position) >= 0.0 &&
                                  (cone.position - scene.scene.pose.position).norm() <= 15.0;
@@ -86,7 +86,7 @@ TEST(PersistentFalsePositives, BytesDependNeitherOnThreadsNorOnOtherScenes) {
     const auto scenes = generate_scenes(track, wanted);
     wanted.threads = 2;
     EXPECT_EQ(bytes(generate_scenes(track, wanted)), bytes(scenes));
-    // One pose alone, of one lap.
+    // A single pose of one lap.
     wanted.conditions = {"harsh"};
     wanted.ranges_m = {20.0};
     wanted.every_m = 2.2;
@@ -97,7 +97,7 @@ TEST(PersistentFalsePositives, BytesDependNeitherOnThreadsNorOnOtherScenes) {
     EXPECT_EQ(bytes({alone.front()}), bytes({*same}));
 }
 
-TEST(PersistentFalsePositives, MoreThanThereAreIdsAreRefused) {
+TEST(PersistentFalsePositives, MoreThanTheNumberOfIdsAreRefused) {
     SceneOptions wanted = options({0.99}, {30.0});
     wanted.persistent = true;
     try {

@@ -71,8 +71,8 @@ TEST(SceneConditions, AnOptionReplacesItsPartAndTheNameSaysSo) {
     EXPECT_THAT(scenes[0].missed, IsEmpty());
 }
 
-/// The standard deviations and the share of missed cones that metrics.md states.
-TEST(SceneConditions, CarAndHarshDisturbAsMuchAsTheySay) {
+/// The standard deviations and the share of missed cones are those in measures.md.
+TEST(SceneConditions, CarAndHarshHaveTheirDocumentedDisturbances) {
     struct Expected {
         const char* name;
         double noise_m;
@@ -94,7 +94,7 @@ TEST(SceneConditions, CarAndHarshDisturbAsMuchAsTheySay) {
         double seen = 0.0;
         double missed = 0.0;
         const auto scenes = generate(track, poses, wanted);
-        ASSERT_GT(scenes.size(), 3990u);  // a few miss all but one cone of a side
+        ASSERT_GT(scenes.size(), 3990u);  // a few scenes miss all but one cone of a side
         for (const auto& scene : scenes) {
             lateral_m2 += std::pow(scene.scene.pose.position.y(), 2);
             yaw_rad2 += std::pow(scene.scene.pose.yaw_rad, 2);

@@ -1,4 +1,4 @@
-// What a scene shows that is not so: false positives, noise, wrong colors, confidences.
+// Disturbances of a scene: false positives, noise, wrong colors, confidences.
 
 #include "evaluation/scenes/scene_generation.hpp"
 #include "tests/support/toy_track_scenes.hpp"
@@ -67,7 +67,7 @@ TEST(SceneGeneration, FalsePositivesFillTheHalfDiscAndOnlyIt) {
     EXPECT_GE(scenes_made, 10);
 }
 
-TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
+TEST(SceneGeneration, DisturbancesHaveTheRequestedSpread) {
     const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
     SceneOptions wanted = options({0.0}, {15.0});
     wanted.pose_noise_lateral_m = 0.3;
@@ -104,7 +104,7 @@ TEST(SceneGeneration, DisturbancesHaveTheSpreadAskedFor) {
 TEST(SceneGeneration, ColorsShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem) {
     Track track = straight();
     track.cones[track.left[2]].color = ConeColor::orange;
-    track.cones[track.left[3]].color = ConeColor::yellow;  // the recording was wrong
+    track.cones[track.left[3]].color = ConeColor::yellow;  // a wrong color in the recording
     SceneOptions wanted = options({0.9}, {15.0});
     const auto colorless = generate(track, {{{7.0, 0.0}, 0.0}}, wanted);
     for (const Cone& cone : colorless[0].scene.cones) {
@@ -142,7 +142,8 @@ TEST(SceneGeneration, UnknownColorsAreThoseOfTheCourseAlone) {
         for (const Cone& cone : scenes[i].scene.cones) {
             const ConeColor before = cone_of(seen[i], cone.id).color;
             if (cone.color != ConeColor::unknown || !on_lane.contains(cone.id)) {
-                // What is seen, and false positives, are as without: the stray point of the map is unknown.
+                // Seen points and false positives are the same as without colors; the stray point of the map
+                // is unknown.
                 EXPECT_EQ(cone.color, before);
             }
             if (!on_lane.contains(cone.id)) continue;
@@ -173,7 +174,7 @@ TEST(SceneGeneration, ColorErrorsPaintConesOfABoundaryLikeTheOtherOne) {
         };
         count(scenes[i].ground_truth->left, ConeColor::blue, ConeColor::yellow);
         count(scenes[i].ground_truth->right, ConeColor::yellow, ConeColor::blue);
-        // Nothing else has moved: the same false positives in the same order.
+        // Everything else is unchanged: the same false positives in the same order.
         ASSERT_EQ(scenes[i].scene.cones.size(), right[i].scene.cones.size());
         for (std::size_t c = 0; c < right[i].scene.cones.size(); ++c) {
             EXPECT_EQ(scenes[i].scene.cones[c].position, right[i].scene.cones[c].position);
@@ -182,8 +183,8 @@ TEST(SceneGeneration, ColorErrorsPaintConesOfABoundaryLikeTheOtherOne) {
     EXPECT_NEAR(wrong / 6000.0, 0.2, 0.02);  // three cones a side in each scene
 }
 
-/// Means and spreads of the two distributions by the Beta's formulas, and the share of pairs in which the
-/// real cone has the higher confidence.
+/// Means and spreads of the two distributions by the formulas of Beta distributions, and the share of pairs
+/// in which the real cone has the higher confidence.
 TEST(SceneGeneration, ConfidencesOfConesAndFalsePositivesOverlap) {
     const std::vector<Pose> poses(1000, Pose{{7.0, 0.0}, 0.0});
     SceneOptions wanted = options({0.5}, {15.0});

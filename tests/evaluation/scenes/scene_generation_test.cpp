@@ -66,7 +66,7 @@ TEST(SceneGeneration, IdsShowRateRangeAndDisturbances) {
                          "toy/pose_0000/fp_0.125/range_12.5" + rest));
 }
 
-TEST(SceneGeneration, IdsAndOrderTellNothing) {
+TEST(SceneGeneration, IdsAndOrderRevealNothing) {
     std::vector<Pose> poses;
     for (double x = 3.0; x < 60.0; x += 1.1) poses.push_back({{x, 0.0}, 0.0});
     SceneOptions wanted = options({0.0, 0.5}, {30.0});
@@ -88,7 +88,7 @@ TEST(SceneGeneration, IdsAndOrderTellNothing) {
         }
     }
     EXPECT_EQ(ids_of_track.size(), id_at.size());
-    // Neither ids nor order follow the boundary.
+    // Neither ids nor order depend on the boundary.
     const auto& scene = scenes.front();
     EXPECT_FALSE(std::ranges::is_sorted(scene.ground_truth->left));
     EXPECT_FALSE(std::ranges::is_sorted(scene.scene.cones, {}, [](const Cone& c) { return c.position.x(); }));
@@ -115,7 +115,7 @@ TEST(SceneGeneration, BytesDependNeitherOnThreadsNorOnOtherScenes) {
         wanted.threads = 4;
         EXPECT_EQ(bytes(generate(straight(), poses, wanted)), bytes(scenes));
 
-        // One lap alone, and of it the first poses alone.
+        // One lap alone, and its first poses alone.
         wanted.false_positive_rates = {0.3};
         wanted.ranges_m = {50.0};
         const std::vector<AnnotatedScene> last_lap(scenes.end() - static_cast<std::ptrdiff_t>(poses.size()),
@@ -130,7 +130,7 @@ TEST(SceneGeneration, BytesDependNeitherOnThreadsNorOnOtherScenes) {
 }
 
 TEST(SceneGeneration, BytesAreTheSameOnEveryMachine) {
-    // A change of the generator, of a distribution or of the order of draws shows here.
+    // Fails after any change of the generator, of a distribution or of the order of draws.
     SceneOptions wanted = options({0.3}, {15.0});
     wanted.seed = 7;
     const auto scenes = generate(straight(), {{{7.0, 0.0}, 0.0}}, wanted);

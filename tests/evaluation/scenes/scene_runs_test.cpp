@@ -22,7 +22,7 @@ using testing::IsEmpty;
 using testing::Lt;
 using testing::SizeIs;
 
-/// The place in its boundary of each cone of a run.
+/// The index in its boundary of each cone of a run.
 std::vector<std::size_t> places(const AnnotatedScene& scene, const std::vector<ConeId>& run,
                                 const Track& track, const std::vector<std::size_t>& side) {
     std::vector<std::size_t> result;
@@ -106,7 +106,8 @@ TEST(SceneGeneration, RunsWrapOnAClosedCourse) {
 
 TEST(SceneGeneration, TheLaneIsClosedWhereBothRunsAreTheWholeBoundary) {
     const Track track = circle();
-    // From (0, -20), looking along +y, all is ahead; the foot points lie at place 9, angle -90 degrees.
+    // From (0, -20), looking along +y, everything is ahead; the foot points are at place 9, angle -90
+    // degrees.
     const std::vector<Pose> poses{{{0.0, -20.0}, std::numbers::pi / 2}};
     SceneOptions wanted = options({0.0}, {40.0, 29.0, 25.0});
     const auto scenes = generate(track, poses, wanted);
@@ -115,12 +116,12 @@ TEST(SceneGeneration, TheLaneIsClosedWhereBothRunsAreTheWholeBoundary) {
     EXPECT_TRUE(scenes[0].ground_truth->closed);
     EXPECT_EQ(places(scenes[0], scenes[0].ground_truth->left, track, track.left), all);
     EXPECT_EQ(places(scenes[0], scenes[0].ground_truth->right, track, track.right), all);
-    // At 29 m the far side of the outer boundary is out of view and the inner one is whole: all round against
-    // a third, which is degenerate. At 25 m both end.
+    // At 29 m, the far side of the outer boundary is out of view and the inner boundary is whole: one side
+    // goes all round, the other a third, which is degenerate. At 25 m both end.
     EXPECT_EQ(scenes[1].range_m, 25.0);
     EXPECT_FALSE(scenes[1].ground_truth->closed);
 
-    // Missed cones do not open it: the boundary is whole without them.
+    // Missed cones do not make it open: the boundary is whole without them.
     wanted.miss_rate = 0.3;
     const auto missed = generate(track, poses, wanted);
     ASSERT_THAT(missed, SizeIs(2));
@@ -129,7 +130,7 @@ TEST(SceneGeneration, TheLaneIsClosedWhereBothRunsAreTheWholeBoundary) {
     EXPECT_EQ(missed[0].ground_truth->left.size() + missed[0].ground_truth->right.size(),
               missed[0].scene.cones.size());
 
-    // A set of the nearest cones does.
+    // A set of the nearest cones makes it open.
     wanted.miss_rate = 0.0;
     wanted.nearest = 14;
     const auto nearest = generate(track, poses, wanted);

@@ -48,7 +48,7 @@ TEST(SceneSet, SaysHowManyLapsAreMade) {
 }
 
 TEST(SceneSet, ShardsHoldEveryCountThLap) {
-    // Nobody sees two cones of both sides within 2 m: six of the eighteen laps have no scene.
+    // At a range of 2 m, no pose sees two cones of both sides: six of the eighteen laps have no scene.
     const SceneOptions options = options_of({20.0, 2.0, 40.0});
     const SceneSet whole = make_scene_set(kTracks, options);
     const std::vector<std::size_t> starts = lap_starts(whole.scenes);
@@ -110,7 +110,7 @@ std::vector<Point> ring(double radius_m, double from_rad, double to_rad, int con
     return all;
 }
 
-TEST(DegenerateTruth, LanesOfAnyShapeAreNone) {
+TEST(DegenerateTruth, LanesOfAnyShapeAreNotDegenerate) {
     constexpr double kTurn = 2.0 * std::numbers::pi;
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}}));
     EXPECT_FALSE(degenerate({{0, 2}, {5, 2}}, {{0, -2}, {5, -2}, {10, -2}})) << "one ends earlier";
@@ -121,8 +121,8 @@ TEST(DegenerateTruth, LanesOfAnyShapeAreNone) {
         << "the other way";
 }
 
-TEST(DegenerateTruth, ABoundaryThatGoesOnBesideAnotherLegIsOne) {
-    // The left boundary ends after 15 m; the right one turns about it and comes back on its other side.
+TEST(DegenerateTruth, ABoundaryThatContinuesBesideAnotherLegIsDegenerate) {
+    // The left boundary ends after 15 m; the right one turns around its end and comes back on its other side.
     const std::vector<Point> left{{0, 0}, {5, 0}, {10, 0}, {15, 0}};
     std::vector<Point> right{{0, -3}, {5, -3}, {10, -3}, {15, -3}, {20, -3}, {22, 0}, {20, 3}};
     EXPECT_FALSE(degenerate(left, {right.begin(), right.begin() + 4}));
@@ -132,7 +132,7 @@ TEST(DegenerateTruth, ABoundaryThatGoesOnBesideAnotherLegIsOne) {
     EXPECT_TRUE(degenerate({{0, -2}, {5, -2}}, {{0, 2}, {5, 2}})) << "sides swapped";
 }
 
-/// Ids go by the pose, and every other scene keeps its own.
+/// Ids contain the pose, and every other scene keeps its own id.
 TEST(SceneSet, OnlyScenesWithADegenerateTruthAreLeftOut) {
     SceneOptions options = options_of({30.0});
     options.every_m = 22.0;

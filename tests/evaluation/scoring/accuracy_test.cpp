@@ -12,7 +12,7 @@ namespace {
 
 TEST(Accuracy, NoTwoEdgesCross) {
     const AnnotatedScene scene = straight_scene();
-    Lane changed_over = *scene.ground_truth;  // the sides change places from the fourth cone on
+    Lane changed_over = *scene.ground_truth;  // the sides are exchanged from the fourth cone on
     for (std::size_t i = 3; i < changed_over.left.size(); ++i) {
         std::swap(changed_over.left[i], changed_over.right[i]);
     }

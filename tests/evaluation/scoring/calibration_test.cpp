@@ -1,4 +1,4 @@
-// What a detector says of its own lanes, held against what they are.
+// Statements of a detector about its own lanes, compared with the truth.
 
 #include "evaluation/scoring/calibration.hpp"
 
@@ -18,7 +18,7 @@ TEST(Calibration, KnowsNothingWithoutLanes) {
 
 TEST(Calibration, ErrorIsWeighedOverTheBins) {
     Calibration calibration;
-    // Three of four are usable where 0.95 are said to be, one of two where 0.25 are.
+    // With a confidence of 0.95, three of four lanes are usable; with 0.25, one of two.
     for (const bool usable : {true, true, true, false}) calibration.add(0.95, usable);
     for (const bool usable : {true, false}) calibration.add(0.25, usable);
     EXPECT_EQ(calibration.bins()[9].lanes, 4U);
@@ -54,13 +54,13 @@ TEST(Calibration, SureIsFrom99PercentOn) {
 
 TEST(Calibration, TrustHoldsUpToTheDivergence) {
     Calibration calibration;
-    calibration.add_trust(18.0, 20.0, std::nullopt);  // never wrong
-    calibration.add_trust(18.0, 20.0, 18.0);          // wrong beyond
+    calibration.add_trust(18.0, 20.0, std::nullopt);  // never off the boundaries
+    calibration.add_trust(18.0, 20.0, 18.0);          // off after the trusted length
     calibration.add_trust(18.0, 20.0, 18.1);
-    calibration.add_trust(18.0, 20.0, 17.9);  // wrong within
+    calibration.add_trust(18.0, 20.0, 17.9);  // off within the trusted length
     EXPECT_DOUBLE_EQ(*calibration.right_where_trusted(), 0.75);
     EXPECT_DOUBLE_EQ(*calibration.trusted_share(), 0.9);
-    // No more than the lane is trusted.
+    // Only the trusted length of the lane counts.
     calibration.add_trust(100.0, 20.0, std::nullopt);
     EXPECT_DOUBLE_EQ(*calibration.trusted_share(), (4 * 18.0 + 20.0) / 100.0);
 }

@@ -82,7 +82,7 @@ TEST(LaneFailure, FalseCone) {
     add_cone(scene, 50, {10, 4});  // 2.25 m left of the left boundary
     Lane lane = with_inserted(scene, 3, 50);
     EXPECT_EQ(failure_of(scene, lane), LaneFailure::false_cone);
-    lane.left.resize(4);  // whether the lane comes back does not matter
+    lane.left.resize(4);  // whether the lane comes back has no effect
     EXPECT_EQ(failure_of(scene, lane), LaneFailure::false_cone);
 }
 
@@ -107,10 +107,10 @@ TEST(LaneFailure, TheFirstPlaceOfBothSidesDecides) {
 
 TEST(LaneFailure, WrongLegOfAHairpin) {
     const Hairpin hairpin;
-    // From the left cone at x = 8 over to the way back, 3 m away.
+    // From the left cone at x = 8 to the way back, 3 m away.
     const Lane over{{1, 2, 3, 12, 13}, {101, 102, 103, 104, 105}, false};
     EXPECT_EQ(failure_of(hairpin.scene, over, &hairpin.track), LaneFailure::wrong_leg);
-    // From the right boundary to the left one of the way back, behind the end of what is the truth there.
+    // From the right boundary to the left one of the way back, behind the end of the ground truth there.
     AnnotatedScene cut = hairpin.scene;
     cut.ground_truth->left.resize(6);
     cut.ground_truth->right.resize(6);
@@ -133,7 +133,7 @@ TEST(LaneFailure, ConeSkippedWhereTheBoundaryTakesADetour) {
     scene.ground_truth->left = {1, 2, 3, 60, 61, 4, 5, 6, 7, 8, 9, 10};
     TrackBoundaries track = kTrack;
     track.left = {{-20, 1.75}, {8, 1.75}, {8, 11.75}, {12, 11.75}, {12, 1.75}, {80, 1.75}};
-    // Not by way of the cone at x = 12: that is the corner itself, where the boundary still comes back.
+    // Without the cone at x = 12: it is the corner itself, where the boundary still comes back.
     const Lane past_the_corner{{1, 2, 3, 5, 6, 7}, {101, 102, 103, 104, 105, 106, 107}, false};
     EXPECT_EQ(failure_of(scene, past_the_corner, &track), LaneFailure::cone_skipped);
 }
@@ -168,7 +168,7 @@ TEST(LaneFailure, AShortLaneThatCutsTheInsideSkipsCones) {
     for (int i = 0; i < 5; ++i) add_cone(scene, 1 + i, track.left[static_cast<std::size_t>(i)]);
     add_cone(scene, 101, {0, -1.75});
     add_cone(scene, 102, {8, -1.75});
-    // Past the teeth each foot moves by 10.8 m, which is no leap: at most 2 * 4 m + 3 m.
+    // After the teeth, each foot moves by 10.8 m, which is not a leap: at most 2 * 4 m + 3 m.
     const Lane straight_on{{1, 3, 5}, {101, 102}, false};
     EXPECT_EQ(failure_of(scene, straight_on, &track), LaneFailure::cone_skipped);
 }
@@ -195,7 +195,7 @@ TEST(LaneFailure, ACentreLineAloneDoesNotTellWhy) {
               LaneFailure::stopped_early);
 }
 
-TEST(LaneFailure, EachHasANameOfItsOwn) {
+TEST(LaneFailure, AllHaveDifferentNames) {
     std::set<std::string> names;
     for (std::size_t i = 0; i < kLaneFailureCount; ++i) names.emplace(to_string(static_cast<LaneFailure>(i)));
     EXPECT_EQ(names.size(), kLaneFailureCount);

@@ -42,7 +42,7 @@ TEST(LaneArea, IsThatBetweenTheBoundaries) {
     EXPECT_DOUBLE_EQ(lane_length_m({{{0, 0}, {4, 0}}, {{0, -3}, {8, -3}}}), 6.0);
 }
 
-TEST(LaneArea, IsNoneWithSwappedSides) {
+TEST(LaneArea, IsZeroWithSwappedSides) {
     EXPECT_DOUBLE_EQ(lane_area_m2(with_swapped_sides(straight(10))), 0.0);
 }
 
@@ -221,7 +221,7 @@ TEST(IntersectionOverUnionOfSimple, IsThatOfAnyLanes) {
     }
 }
 
-/// Turns of closed loops about a point, counter-clockwise positive.
+/// Winding number of closed loops around a point, counter-clockwise positive.
 int winding(const std::vector<Point>& loop, const Point& about) {
     int turns = 0;
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -241,7 +241,8 @@ TEST(LaneAreaProperty, OfAnyRectilinearOutlineIsTheNumberOfCellsWithClockwiseTur
         Random random(seed);
         boost::random::uniform_int_distribution<int> coordinate(0, kCells);
         boost::random::uniform_int_distribution<int> count(1, 6);
-        // Corners in x and y by turns; the loop closes with the last corner in line with the first one.
+        // Corners alternate between x and y; the last corner is in line with the first one, so the loop
+        // closes.
         std::vector<Point> loop{Point(coordinate(random), coordinate(random))};
         const int corners = count(random);
         for (int i = 0; i < corners; ++i) {

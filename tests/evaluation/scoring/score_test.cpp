@@ -318,7 +318,7 @@ TEST(Score, OnlyScenesWithTwoConesOnEachSideCount) {
     EXPECT_THROW((void)scored(scene, {{1, 2}, {101, 102}}), InvalidInput);
 }
 
-TEST(Score, DegenerateLanesAreScoredAsTheyStand) {
+TEST(Score, DegenerateLanesAreScoredAsTheyAre) {
     const AnnotatedScene scene = straight_scene();
     for (const Lane& lane : std::vector<Lane>{{{1}, {101}},
                                               {{1, 2, 3}, {}},
@@ -371,8 +371,8 @@ TEST(Summary, KeepsFailuresInEveryMean) {
     EXPECT_DOUBLE_EQ(summary.latency.share_within_budget, 0.75);
 }
 
-/// Twenty scenes: 5 points of the centre line in each, off by 1 cm more from one to the next, and a heading
-/// that is off by 1 mrad more from scene to scene.
+/// Twenty scenes with 5 points of the centre line each. The offset grows by 1 cm from point to point, and the
+/// heading error by 1 mrad from scene to scene.
 TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
     std::vector<SceneScore> scores(20);
     for (int i = 0; i < 20; ++i) {
@@ -390,7 +390,7 @@ TEST(Summary, OfCentreLinesIsOverAllTheirPoints) {
     EXPECT_NEAR(summary.unsteady_share.value(), 4.0 / 19.0, 1e-12);
 }
 
-TEST(Summary, LeavesOutWhatNoDetectorStates) {
+TEST(Summary, LeavesOutMeasuresThatNoDetectorStates) {
     const AnnotatedScene scene = straight_scene();
     const std::vector<SceneScore> scores{score(scene, found(*scene.ground_truth), 1.0, 3, &kTrack)};
     const ScoreSummary summary = summarise(scores);

@@ -1,4 +1,4 @@
-// Measures of solvers, against values worked out by hand and by scipy.
+// Measures of solvers, compared with values computed by hand and by scipy.
 
 #include "evaluation/scoring/solver_measures.hpp"
 
@@ -22,8 +22,8 @@ using testing::ElementsAre;
 
 constexpr double kLimit_ms = 100.0;
 
-/// Three solvers on four runs. The first is steady, the second fast or lost, the third solves the last alone;
-/// nobody solves the third run.
+/// Three solvers on four runs. The first is steady, the second is fast or fails, the third is the only one
+/// that solves the last run; nobody solves the third run.
 std::vector<std::vector<SolverRun>> three_solvers() {
     const SolverRun lost{kLimit_ms, false};
     return {{{8.0, true}, {8.0, true}, lost, lost},
@@ -77,7 +77,8 @@ TEST(SolverMeasures, DistancesAreBetweenZeroAndOne) {
     EXPECT_DOUBLE_EQ(relative_distance({}, 2.0), 1.0);
 }
 
-/// Nothing for 10 ms, then half as good, then right; the bound starts at 2.5 times and is closed at 60 ms.
+/// Nothing for 10 ms, then half as good, then the optimum; the bound starts at 2.5 times and is closed at 60
+/// ms.
 TEST(SolverMeasures, IntegralsAreAreasBelowTheGap) {
     const std::vector<Knowledge> steps{
         {10.0, -2.0, -10.0}, {30.0, -4.0, {}}, {60.0, -4.0, -4.0}, {120.0, -4.0, -4.0}};
@@ -147,7 +148,7 @@ TEST(Wilcoxon, NothingDiffers) {
     EXPECT_THROW((void)signed_rank_test(same, endless), InvalidInput);
 }
 
-/// The p-values times 3, 2 and 1, never falling.
+/// The p-values times 3, 2 and 1, made non-decreasing.
 TEST(Wilcoxon, HolmStepsDown) {
     EXPECT_THAT(holm_corrected(std::vector<double>{0.01, 0.04, 0.03}),
                 ElementsAre(DoubleNear(0.03, 1e-15), DoubleNear(0.06, 1e-15), DoubleNear(0.06, 1e-15)));

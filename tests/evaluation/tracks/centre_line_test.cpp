@@ -97,8 +97,8 @@ TEST(CentreLine, RefusesWhatIsNoLane) {
     EXPECT_EQ(key_of({{{0, 0}, {1e7, 0}}, straight.right, false}, 1), "left");
 }
 
-/// Every pose between its boundaries, heading along them, at constant spacing, once round the lap. `bend_rad`
-/// bounds the turn from pose to pose.
+/// Expects every pose between its boundaries, with a heading along them, at constant spacing, once round the
+/// lap. `bend_rad` limits the turn from pose to pose.
 void expect_driven_lane(const Track& track, double bend_rad = 0.5) {
     SCOPED_TRACE(track.name);
     const TrackBoundaries both = boundaries(track);
@@ -119,7 +119,7 @@ void expect_driven_lane(const Track& track, double bend_rad = 0.5) {
             return Point((boundary[(segment + 1) % boundary.size()] - boundary[segment]).normalized());
         };
         const Point lane_direction = along(both.left, left.segment) + along(both.right, right.segment);
-        // Beside a corner, or a cone that stands out of line, the two boundaries do not run the same way.
+        // Near a corner, or a cone that is out of line, the two boundaries have different directions.
         if (lane_direction.norm() > 2.0 * std::cos(20.0 / 180.0 * kPi)) {
             EXPECT_LT(std::abs(turning_angle(lane_direction, pose.heading())),
                       35.0 / 180.0 * kPi + bend_rad - 0.5);

@@ -20,7 +20,7 @@ using ::testing::Contains;
 
 constexpr std::uint64_t kSeeds = 5;
 
-/// What holds for the tracks of a layout; the fixed ones keep to the rules of Formula Student.
+/// Expected properties of the tracks of a layout; the fixed layouts keep to the rules of Formula Student.
 struct Limits {
     double shortest_gap_m = 1.0;  ///< between cones of one boundary
     double max_gap_m = 5.0;

@@ -99,7 +99,7 @@ class RunLog : public FileTest {
     }
 };
 
-/// The map grows and drifts: three frames of a straight.
+/// A map that grows and drifts: three frames of a straight.
 TEST_F(RunLog, ThreeFramesGiveOneTrackAndItsCones) {
     LogMap drifted = straight(10.0);
     for (Point& point : drifted.blue) point += Point(0.3, 0.1);
@@ -224,7 +224,7 @@ TEST_F(RunLog, ARunThatComesBackIsAClosedCourse) {
     EXPECT_THAT(scenes, SizeIs(AllOf(testing::Gt(100u), testing::Lt(125u)))) << "both laps";
 }
 
-/// Two loops that cross, as on a skidpad, are no single lane.
+/// Two loops that cross, as on a skidpad, are not a single lane.
 TEST_F(RunLog, APathThatCrossesItselfBoundsNoLane) {
     LogMap map = straight(30.0);
     std::vector<std::string> frames;

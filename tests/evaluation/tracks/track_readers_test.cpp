@@ -254,8 +254,8 @@ TEST_P(EufsRings, AreOrderedFromTheStartInDrivingDirection) {
 }
 INSTANTIATE_TEST_SUITE_P(BothDirections, EufsRings, ::testing::Bool());
 
-/// A circuit written as an EUFS file forgets its order; reading finds it again, though sections pass each
-/// other.
+/// A circuit written as an EUFS file loses its order; the reader finds it again, although sections of the
+/// course are close together.
 TEST_F(TrackFiles, EufsOrderIsThatOfTheCircuitWritten) {
     for (const std::string& name : generated_track_names()) {
         const Track circuit = generate_track(name, 0);
@@ -482,7 +482,7 @@ TEST_F(TrackFiles, SpecFaultsNameTheSpec) {
 // --- Recorded tracks
 // -----------------------------------------------------------------------------------------
 
-/// What sets a recorded course apart from most.
+/// Properties that distinguish a recorded course from most others.
 struct Peculiar {
     bool closed = true;
     double widest_m = 6.5;

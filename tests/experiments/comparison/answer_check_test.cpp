@@ -1,4 +1,4 @@
-// What the independent checker makes of the answers of RLD detectors.
+// Verdicts of the independent checker on the answers of RLD detectors.
 
 #include "experiments/comparison/answer_check.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 using testing::ElementsAre;
 using testing::StartsWith;
 
-/// What rld-pair answers on the straight lane, unchecked.
+/// The answer of rld-pair on the straight lane, unchecked.
 LaneRecord answer_on(const AnnotatedScene& scene) {
     LaneRecord record{scene.scene.id, "rld-pair", {}, 1.0, {}};
     record.answer = make_detector(find_detector("rld-pair"))->detect(scene.scene, tests::kNoTimeLimit);
@@ -69,11 +69,11 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
     cheaper.answer.optimality->bound -= 1.0;
     expect_rejected(cheaper, scene);
 
-    LaneRecord unproven = right;  // optimal, and yet the bound is far below
+    LaneRecord unproven = right;  // called optimal, but the bound is far below
     unproven.answer.optimality->bound -= 1.0;
     expect_rejected(unproven, scene);
 
-    LaneRecord leaping = right;  // a cone left out: a segment of 8 m
+    LaneRecord leaping = right;  // a cone is left out: a segment of 8 m
     leaping.answer.lane.left.erase(leaping.answer.lane.left.begin() + 2);
     leaping.answer.optimality.reset();
     expect_rejected(leaping, scene);
@@ -83,7 +83,7 @@ TEST(CheckAnswer, TurnsFalseClaimsIntoErrors) {
     expect_rejected(unseen, scene);
 }
 
-TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
+TEST(CheckAnswer, ChecksTheUncutLaneOfALaneWithContext) {
     const AnnotatedScene scene = straight_scene();
     const KnownDetector& detector = find_detector("rld-context");
     LaneRecord right{scene.scene.id, "rld-context",
@@ -94,7 +94,7 @@ TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     check_answer(record, cone_set(detector, {}).seen(scene.scene), {});
     EXPECT_TRUE(record.checked) << record.answer.message;
 
-    LaneRecord longer = right;  // not what the cut leaves
+    LaneRecord longer = right;  // not the result of the cut
     longer.answer.lane = longer.answer.uncut->lane;
     expect_rejected(longer, scene);
 
@@ -103,13 +103,13 @@ TEST(CheckAnswer, HoldsALaneWithContextAgainstTheLaneBeforeTheCut) {
     cheaper.answer.uncut->optimality->bound -= 1.0;
     expect_rejected(cheaper, scene);
 
-    LaneRecord leaping = right;  // a cone left out beyond the cut, so the cut leaves the same
+    LaneRecord leaping = right;  // a cone is left out beyond the cut, so the cut gives the same lane
     leaping.answer.uncut->lane.left.erase(leaping.answer.uncut->lane.left.begin() + 8);
     leaping.answer.uncut->optimality.reset();
     expect_rejected(leaping, scene);
 }
 
-TEST(CheckAnswer, LeavesWhatHasNoLane) {
+TEST(CheckAnswer, LeavesRecordsWithoutALane) {
     const AnnotatedScene scene = straight_scene();
     LaneRecord none{"a", "rld-pair", {}, 1.0, {}};
     none.answer.status = LaneStatus::none;
@@ -118,7 +118,7 @@ TEST(CheckAnswer, LeavesWhatHasNoLane) {
     EXPECT_FALSE(none.checked);
 }
 
-TEST(Run, HoldsRldAnswersAgainstTheCheckerOnTheirOwnConeSet) {
+TEST(Run, ChecksRldAnswersOnTheirOwnConeSet) {
     SceneOptions options;
     options.false_positive_rates = {0.3};
     options.ranges_m = {30.0};

@@ -85,7 +85,7 @@ TEST_F(Summaries, SayUsableLanesByConditionAndRateLatencyAndWhatWentWrong) {
             }
         }
     }
-    scored_.front().failure = LaneFailure::nothing_found;  // of the clean paper scenes one
+    scored_.front().failure = LaneFailure::nothing_found;  // of `paper`, without false positives
     scored_.front().score.category = Category::none;
     EXPECT_THAT(
         lines(text()),
@@ -98,7 +98,7 @@ TEST_F(Summaries, SayUsableLanesByConditionAndRateLatencyAndWhatWentWrong) {
                     "worse    31.2  wrong leg 25.0, nothing found 6.2", ""));
 }
 
-TEST_F(Summaries, WhatIsUnknownIsNoShareAndStandsLast) {
+TEST_F(Summaries, UnknownMeasuresHaveNoShareAndAreLast) {
     add_unknown("unknown");
     add("bad", {}, LaneFailure::error);
     const std::vector<std::string> all = lines(text());
@@ -169,7 +169,7 @@ TEST_F(Summaries, FitWhateverIsCompared) {
     }
 }
 
-TEST_F(Summaries, WhatHasNoRoomIsCounted) {
+TEST_F(Summaries, EntriesWithoutRoomAreCounted) {
     for (int method = 0; method < 20; ++method) {
         for (int rate = 0; rate < 40; ++rate) add("m" + std::to_string(method), {"", 0.01 * rate}, {});
     }

@@ -1,4 +1,5 @@
-// All exact solvers on drawn cases: that they agree, and that a wrong one is found, shrunk and written down.
+// All exact solvers on generated cases: they agree, and a wrong solver is found, and its case shrunk and
+// stored.
 
 #include "experiments/cross_check/cross_check.hpp"
 
@@ -58,7 +59,7 @@ RldReport by_path_pair(const Scene& scene, const RldParameters& parameters) {
 
 using Falsify = std::function<void(RldReport&, const Scene&, double time_limit_ms)>;
 
-/// path-pair and a solver that says something else about what path-pair answers.
+/// path-pair, and a solver that changes path-pair's answers.
 std::vector<CheckedSolver> with_a_wrong_one(const Falsify& falsify) {
     return {{"right", [](const Scene& scene, const RldParameters& parameters,
                          double) { return by_path_pair(scene, parameters); }},
@@ -83,7 +84,7 @@ TEST(CrossCheckJudge, RightAnswersAgree) {
     EXPECT_EQ(verdict.tight_proofs, 2U);
 }
 
-/// Who can start is asked from the answer that the first gave a metre behind, whatever that is, too.
+/// A solver with starts also gets the answer of the first solver from 1 m behind, whatever that is.
 TEST(CrossCheckJudge, TheAnswerOfThePreviousFrameIsAStart) {
     const LaneGraph of_previous_frame{{{0, 2}, {3, 5}}};
     std::vector<LaneGraph> starts;
@@ -115,7 +116,7 @@ TEST(CrossCheckJudge, NoLaneGraphIsAgreedOnAndCertified) {
     EXPECT_TRUE(verdict.certified);
 }
 
-/// Each is one thing that a solver may get wrong, and what is said of it.
+/// Each entry is an error that a solver may have, and the finding about it.
 TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
     const std::map<std::string, Falsify> lies{
         {"objective -5.000000 is claimed", [](RldReport& r, const Scene&, double) { *r.objective = -5.0; }},
@@ -140,14 +141,14 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
              r = {};
              r.status = SolveStatus::infeasible;
          }},
-        // A bound without a lane graph, which nothing contradicts but the other's answer.
+        // A bound without a lane graph, which only the other solver's answer contradicts.
         {"wrong within 1000 ms: stopped, bound -3.9; but right within",
          [](RldReport& r, const Scene&, double) {
              r = {};
              r.status = SolveStatus::stopped;
              r.bound = -3.9;
          }},
-        // Wrong under the tight limit alone.
+        // Wrong with the tight limit only.
         {"wrong within 1 ms: infeasible, bound inf; but wrong within 1000 ms: optimal",
          [](RldReport& r, const Scene&, double limit_ms) {
              if (limit_ms > 1.0) return;
@@ -162,8 +163,8 @@ TEST(CrossCheckJudge, EveryWrongClaimIsFound) {
     }
 }
 
-/// A lane graph that is one, at its true cost, and called optimal: only the other's better one tells.
-TEST(CrossCheckJudge, AnOptimumThatIsNoneIsFound) {
+/// A lane graph at its true cost, called optimal: only the other solver's better one refutes it.
+TEST(CrossCheckJudge, AFalseOptimumIsFound) {
     const CrossCheckVerdict verdict = judge_with([](RldReport& report, const Scene& scene, double) {
         Scene fewer = scene;
         std::erase_if(fewer.cones, [](const Cone& cone) { return cone.id == 2 || cone.id == 5; });
@@ -176,8 +177,8 @@ TEST(CrossCheckJudge, AnOptimumThatIsNoneIsFound) {
     EXPECT_EQ(verdict.outcome, CrossCheckOutcome::differ);
 }
 
-/// An answer without a proof contradicts nothing, but the case is not decided.
-TEST(CrossCheckJudge, WhatClaimsNothingIsUndecided) {
+/// An answer without a proof contradicts nothing, but the case stays undecided.
+TEST(CrossCheckJudge, AnswersWithoutAProofAreUndecided) {
     const CrossCheckVerdict verdict = judge_with([](RldReport& report, const Scene&, double) {
         report.status = SolveStatus::feasible;
         report.bound = -100.0;
@@ -207,12 +208,12 @@ TEST(Shrinking, KeepsTheConesAndTheParametersThatMatter) {
     EXPECT_LT(asked, 200);
 }
 
-TEST(Shrinking, EndsWhereTheTrialsDo) {
+TEST(Shrinking, EndsWithItsTrials) {
     CrossCheckCase drawn;
     drawn.scene = tests::random_scene(5, 24);
     int asked = 0;
     const auto always = [&](const CrossCheckCase&) { return ++asked > 0; };
-    // Half of them goes three times.
+    // Half of the cones are removed three times.
     EXPECT_EQ(shrink(drawn, always, 3).scene.cones.size(), 3U);
     EXPECT_EQ(asked, 3);
 }
@@ -251,7 +252,7 @@ class CrossCheckRun : public ProgramFixture {
     }
 };
 
-// The slice of every build; `conelane cross-check --cases 100000` is the whole.
+// The part that runs in every build; `conelane cross-check --cases 100000` runs all.
 TEST_F(CrossCheckRun, AllExactSolversAgree) {
     const CrossCheckSummary summary = cross_check(options(120), path("cases"));
     EXPECT_EQ(summary.cases, 120U);
@@ -275,7 +276,7 @@ TEST_F(CrossCheckRun, GivenScenesAreDrawnFromToo) {
     EXPECT_THAT(lines("cases"), HasSubstr("\"kind\":\"given\""));
 }
 
-/// Solvers that never hit the limit here: the lines depend on the cases alone.
+/// Solvers that never reach the limit here, so the lines depend only on the cases.
 TEST_F(CrossCheckRun, SameBytesOnAnyNumberOfThreadsInPartsAndResumed) {
     CrossCheckOptions one = options(70);
     one.solvers = {"path-pair", "exhaustive"};
@@ -285,7 +286,7 @@ TEST_F(CrossCheckRun, SameBytesOnAnyNumberOfThreadsInPartsAndResumed) {
     ASSERT_EQ(cross_check(two, path("two")).cases, 70U);
     EXPECT_EQ(lines("two"), lines("one"));
 
-    // Killed in the middle of a line.
+    // As if the program was killed in the middle of a line.
     std::filesystem::copy(path("one"), path("killed"));
     file_with(lines("one").substr(0, lines("one").size() / 2), "killed/cases.jsonl");
     const CrossCheckSummary resumed = cross_check(one, path("killed"));
@@ -294,7 +295,7 @@ TEST_F(CrossCheckRun, SameBytesOnAnyNumberOfThreadsInPartsAndResumed) {
     EXPECT_LT(resumed.added, 50U);
     EXPECT_GT(resumed.added, 20U);
 
-    // More are asked for later, and the last ones alone.
+    // A later run adds cases, or judges the last cases alone.
     one.cases = 80;
     ASSERT_EQ(cross_check(one, path("one")).added, 10U);
     CrossCheckOptions last = one;
@@ -314,14 +315,14 @@ TEST_F(CrossCheckRun, AnotherRunInTheFolderIsRefusedAndStays) {
     const std::string before = lines("cases");
     some.seed = 4;
     EXPECT_EQ(error_of([&] { (void)cross_check(some, path("cases")); }),
-              "cases/cases.jsonl:1: holds a run of other options or another program");
+              "cases/cases.jsonl:1: holds a run with other options or of another program");
     EXPECT_EQ(lines("cases"), before);
     some.solvers = {"lp-rounding"};
     EXPECT_THROW((void)cross_check(some, path("other")), InvalidInput);
     EXPECT_FALSE(std::filesystem::exists(path("other")));
 }
 
-/// Blind to cone 3: it proves the optimum of what is left. Where that matters, the two differ.
+/// It ignores cone 3 and proves the optimum of the rest. If the cone matters, the two solvers differ.
 std::vector<CheckedSolver> with_a_blind_one(Formulation /*formulation*/) {
     std::vector<CheckedSolver> both = with_a_wrong_one([](RldReport&, const Scene&, double) {});
     both[1].solve = [](const Scene& scene, const RldParameters& parameters, double) {
@@ -337,7 +338,7 @@ std::vector<CheckedSolver> with_a_blind_one(Formulation /*formulation*/) {
 TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
     CrossCheckOptions some = options(40);
     some.make_solvers = with_a_blind_one;
-    some.solvers = {"path-pair", "cbc"};  // who is asked again in a replay
+    some.solvers = {"path-pair", "cbc"};  // the solvers of a replay
     const CrossCheckSummary summary = cross_check(some, path("cases"));
     ASSERT_TRUE(summary.outcomes.contains(CrossCheckOutcome::differ));
     std::size_t stored = 0;
@@ -358,7 +359,7 @@ TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
         }
         const std::string name = entry.path().string().substr(0, entry.path().string().size() - 10);
         EXPECT_THAT(text_of(name + ".mps"), HasSubstr("ENDATA"));
-        // The blind one is not asked in a replay: all is well.
+        // A replay without that solver finds no difference.
         const Outcome replayed = run("cross-check --replay " + entry.path().string());
         EXPECT_EQ(replayed.exit_code, 0) << replayed.errors;
         EXPECT_EQ(replayed.output, "same optimum\n");
@@ -368,7 +369,7 @@ TEST_F(CrossCheckRun, AWrongSolverIsFoundShrunkAndWrittenToBeReplayed) {
         EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".tmp")));
 }
 
-/// A third solver fails on fewer than five cones: that is no reason to shrink the blind one's case to them.
+/// A third solver fails with fewer than five cones. The other solver's case must not be shrunk to these.
 TEST_F(CrossCheckRun, AnotherDifferenceDoesNotReplaceTheOneThatWasFound) {
     CrossCheckOptions some = options(40);
     some.make_solvers = [](Formulation formulation) {

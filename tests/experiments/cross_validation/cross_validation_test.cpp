@@ -19,7 +19,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two families of a course each, and one that is always learned from; as little work as shows the way.
+/// Two families of one course each, and a course that is always learned from, with as little work as
+/// possible.
 const std::string kFolds =
     "cross-validate --family a=generated:circle --family b=generated:curvy --always generated:straight "
     "--learn-condition paper --learn-every 60 --variants 0 --evaluations 2 --condition paper --fp 0.3 "
@@ -46,7 +47,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
                 testing::UnorderedElementsAre("curvy", "straight"));
     EXPECT_THAT(outcome.output, Not(HasSubstr("learned from"))) << "nothing in the table was learned from";
 
-    // Each course is driven by the weights of the fold that holds it out, and by no others.
+    // Each course is driven with the weights of the fold that holds it out, and with no others.
     const std::vector<AnnotatedScene> scenes = read_scenes(path("cv/scenes.scenes.jsonl"));
     RunOptions options;
     options.limits.time_limit_ms = 400.0;
@@ -62,7 +63,7 @@ TEST_F(CrossValidation, AFoldHasNotSeenTheFamilyThatItIsScoredOn) {
     }
 }
 
-TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
+TEST_F(CrossValidation, ResumesAfterAStop) {
     ASSERT_EQ(run(kFolds + "clc-paper,delaunay-beam").exit_code, 0);
     const std::string net = text_of(path("cv/folds/a/rank_net_paper.json"));
     const std::string lanes = text_of(path("cv/delaunay-beam.lanes.jsonl"));
@@ -86,7 +87,7 @@ TEST_F(CrossValidation, GoesOnWhereItWasStopped) {
     EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
 }
 
-TEST_F(CrossValidation, RefusesFoldsThatAreNone) {
+TEST_F(CrossValidation, RefusesInvalidFolds) {
     const auto errors = [&](const std::string& options) {
         const Outcome outcome = run("cross-validate --every 40 --methods rld-pair --out cv " + options);
         EXPECT_EQ(outcome.exit_code, 2) << options;

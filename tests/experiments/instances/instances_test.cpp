@@ -1,4 +1,4 @@
-// `conelane instances`: files that other solvers read, and optima that do not come from one engine alone.
+// `conelane instances`: files that other solvers can read, and optima that two engines have proved.
 
 #include "conelane/solve_scene.hpp"
 #include "experiments/instances/instance_library.hpp"
@@ -72,8 +72,8 @@ std::string unpacked(const std::filesystem::path& file) {
 
 const std::filesystem::path kStored = source_directory() / "tests/experiments/instances/library";
 
-/// The options that tests/experiments/instances/library/ were made with, see README.md there, but for the
-/// slice of it.
+/// The options that made tests/experiments/instances/library/ (see README.md there), apart from its selection
+/// of scenes.
 InstanceOptions slice_of_stored() {
     InstanceOptions options;
     options.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
@@ -108,7 +108,7 @@ TEST_F(Instances, ASliceOfTheStoredLibraryIsTheSameAgain) {
     }
 }
 
-/// What is stored as open cannot be beaten by a bound: no search may prove that there is nothing so good.
+/// For a stored open instance, no search may prove that its best objective is impossible.
 TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
     InstanceOptions options;
     options.tracks = {"generated:legs", "generated:infield"};
@@ -171,7 +171,7 @@ Scene lane_and_ring() {
     return scene;
 }
 
-// Without the rows of (5) the program of a scene earns the ring's edges as well, which are no lane.
+// Without the rows of (5), the program of a scene also takes the ring's edges, which are not in a lane.
 TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     const std::optional<Instance> instance =
         make_instance(lane_and_ring(), "ring", Formulation::tight, InstanceOptions{});
@@ -190,7 +190,7 @@ TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     EXPECT_LT(*relaxed.bound, *instance->optimum.best - 1.0);
 }
 
-TEST_F(Instances, WhatNoEngineCanFinishIsOpen) {
+TEST_F(Instances, AnUnfinishedProgramIsOpen) {
     InstanceOptions options = slice_of_stored();
     options.time_limit_ms = 1e-6;
     std::vector<InstanceScene> scenes = instance_scenes(options);

@@ -45,7 +45,7 @@ TEST_F(RaceCommand, MissionsNeedNoTracks) {
     }
 }
 
-// Weights of zeros find other lanes than the shipped ones: where they are used shows in what was driven.
+// Weights of zeros give other lanes than the shipped ones, so the driven path shows which were used.
 TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     std::filesystem::create_directories(path("folds") / "a");
     std::filesystem::create_directories(path("folds") / "b");
@@ -72,7 +72,7 @@ TEST_F(RaceCommand, AFamilyIsDrivenByTheWeightsOfItsFold) {
     }
 }
 
-TEST_F(RaceCommand, WeightsThatNobodyTakesOrThatAreNoneAreRefused) {
+TEST_F(RaceCommand, UnusedOrInvalidWeightsAreRefused) {
     file_with(front_weights_json(shipped_front_options().weights, "{}"), "front.json");
     file_with("{}", "wrong.json");
     const std::string kidney = "race --tracks generated:kidney --out out ";
@@ -103,7 +103,7 @@ TEST_F(RaceCommand, BadInputIsRefusedInOneLine) {
     expect_refused("race --tracks generated:kidney --methods truth --out taken", {"taken"});
 }
 
-TEST_F(RaceCommand, WhereOneFileCannotBeWrittenNoneIs) {
+TEST_F(RaceCommand, IfOneFileCannotBeWrittenNoneIs) {
     std::filesystem::create_directories(path("out") / "table.txt");
     const Outcome outcome = run("race --tracks generated:kidney --methods truth --out out");
     EXPECT_EQ(outcome.exit_code, 2);

@@ -1,4 +1,4 @@
-// The car, its controller and the world of a race; and whole races by the true centre line.
+// The car, its controller and the world of a race, and whole races with the true centre line.
 
 #include "experiments/race/race.hpp"
 
@@ -100,7 +100,7 @@ TEST(MapFrame, GoesToTheMapAndBack) {
     const MapFrame map = MapFrame{0.3, {1.0, -2.0}}.turned(0.5, {4.0, 5.0}, {0.1, 0.2});
     const Point world(7.0, -3.0);
     EXPECT_NEAR((map.to_world(map.to_map(world)) - world).norm(), 0.0, 1e-12);
-    // The point turned about is moved only.
+    // The centre of the rotation is only moved.
     EXPECT_NEAR(
         (map.to_map(Point(4.0, 5.0)) - MapFrame{0.3, {1.0, -2.0}}.to_map(Point(4.0, 5.0)) - Point(0.1, 0.2))
             .norm(),
@@ -173,7 +173,7 @@ TEST(World, FreshFalsePositivesGetNewIdsFromTheRangeOfTheOthers) {
     std::vector<ConeId> fresh;
     for (const Cone& cone : second.cones) (ids.contains(cone.id) ? kept : fresh).push_back(cone.id);
     EXPECT_EQ(kept.size(), fresh.size());  // half of them are false
-    // Neither all above nor all below the others.
+    // They are not all before or all after the others.
     EXPECT_LT(std::ranges::min(fresh), std::ranges::max(kept));
     EXPECT_LT(std::ranges::min(kept), std::ranges::max(fresh));
 }
@@ -278,7 +278,7 @@ TEST(Race, ThroughAGapTheCarDepartsToo) {
 }
 
 TEST(Race, TheControllerKnowsOnlyTheBelievedPose) {
-    // The path is a straight line in the map; the map drifts aside, and the car with it.
+    // The path is a straight line in the map. The map drifts sideways, and the car follows it.
     RaceOptions options = options_of("paper");
     options.drift_m = 40.0;
     const RaceResult drifting = race(kidney(), options, truth_driver(kidney(), 1));
@@ -320,7 +320,7 @@ TEST(Race, PathsThatAPlannerCallsOldAreOldPaths) {
             if (frame.time_s > 3.0 && frame.time_s < 4.0) drive.age_s = frame.time_s - 3.0;
             return drive;
         });
-    // From the frame at 3.2 s, two after the last one told, to the arrival of that at 4 s.
+    // From the frame at 3.2 s, two frames after the last delivered one, until the next delivery at 4 s.
     EXPECT_NEAR(result.old_path_s, 0.85, 0.011);
 }
 
@@ -362,7 +362,7 @@ TEST(Race, ARefusedFrameChangesNothing) {
     EXPECT_EQ(result.frames_without_path, 0);
 }
 
-/// What the frames of a race are like.
+/// Properties of the frames of a race.
 struct Seen {
     std::vector<double> times_s;
     std::vector<std::size_t> cones;
@@ -557,7 +557,7 @@ TEST(Drivers, ADetectorDrivesAGeneratedCourseWithAndWithoutIds) {
     }
 }
 
-TEST(Drivers, NamesThatAreNoneAreRefused) {
+TEST(Drivers, UnknownNamesAreRefused) {
     EXPECT_THROW(static_cast<void>(race_detectors({"nobody"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(race_detectors({"front,front"}, WithPlanner::no)), InvalidInput);
     EXPECT_THROW(static_cast<void>(race_detectors({"lanes:a=b.jsonl"}, WithPlanner::no)), InvalidInput);

@@ -1,4 +1,4 @@
-// Acceleration and skidpad as events may set them up, and whole races over them through the planner.
+// Acceleration and skidpad in the variants that events may set up, and whole races with the planner on them.
 
 #include "conelane/planner.hpp"
 #include "evaluation/scenes/condition.hpp"
@@ -64,8 +64,8 @@ TEST_P(VariedMissions, TheTrueLineDrivesThem) {
 
 TEST_P(VariedMissions, ThePlannerDrivesThemAndStopsBehindTheLine) {
     const std::vector<RaceDetector> detectors = race_detectors({"front-warm"}, WithPlanner::only);
-    // 1004: five inner cones in a row are missing. 18: the turn about the right circle is told by false
-    // positives alone. 47: at the start two registrations are as likely.
+    // 1004: five inner cones in a row are missing. 18: only false positives determine the rotation about the
+    // right circle. 47: at the start, two registrations are equally likely.
     for (const std::uint64_t seed : {18U, 47U, 1004U, 3U, 4U}) {
         const RaceCourse course = varied_mission_course(GetParam(), seed);
         for (const double rate : {0.3, 0.5}) {

@@ -1,4 +1,4 @@
-// What the study of backends makes of its rows: refuted claims, permutations, measures, features, ASlib.
+// The evaluation of rows in the study of backends: refuted claims, permutations, measures, features, ASlib.
 
 #include "experiments/studies/backend_measures.hpp"
 
@@ -123,7 +123,7 @@ SceneSet some_scenes() {
     return make_scene_set({"generated:kidney", "generated:straight"}, options);
 }
 
-/// Every order has the optimum of the scene as it stands, whoever solves it.
+/// Every order has the optimum of the original scene, for every solver.
 TEST(Permutations, DoNotChangeAnOptimum) {
     const SceneSet set = some_scenes();
     BackendOptions options;

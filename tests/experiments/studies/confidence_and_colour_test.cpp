@@ -1,4 +1,4 @@
-// RLD with simulated confidences and colors: measured on held-out tracks, each by its fold's parameters.
+// RLD with simulated confidences and colors, measured on held-out tracks with the parameters of their folds.
 
 #include "experiments/studies/confidence_and_colour.hpp"
 
@@ -50,12 +50,13 @@ TEST(ConfidenceAndColor, ConfidencesAndRightColorsGainAndWrongOnesAreNotTrusted)
     EXPECT_THAT(rows[1].weights, Each(AnyOf(1.0, 2.0)));
     EXPECT_GT(rows[2].accurate, geometry.accurate);  // right colors
     EXPECT_THAT(rows[2].weights, ElementsAre(1.0, 1.0));
-    EXPECT_EQ(rows[3].knowledge.color_error, 1.0);  // every color wrong: each fold keeps to geometry
+    EXPECT_EQ(rows[3].knowledge.color_error, 1.0);  // every color is wrong, so each fold uses geometry only
     EXPECT_THAT(rows[3].weights, ElementsAre(0.0, 0.0));
     EXPECT_EQ(rows[3].accurate, geometry.accurate);
 }
 
-/// A fold whose parameters find no lane loses the tracks that it holds out, and no others.
+/// A fold whose parameters find no lane has no accurate lane on its held-out tracks; other folds are
+/// unaffected.
 TEST(ConfidenceAndColor, AFoldAnswersForItsHeldOutTracksAlone) {
     ConfidenceColorOptions options = two_folds();
     options.color_errors.clear();

@@ -30,7 +30,7 @@ TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
     const SceneSet set = kidney(0.4);
     const auto rows = front_beam_rows(set, widths({1, 15}));
     ASSERT_THAT(rows, testing::SizeIs(3));
-    // No row has to have all: fronts are merged though their lanes differ.
+    // No row has to find all lanes: states with the same front are merged although their lanes differ.
     EXPECT_GE(rows[0].best_score + rows[1].best_score + rows[2].best_score, 1.0);
     EXPECT_LT(rows[0].best_score, rows[1].best_score);
     EXPECT_LE(rows[1].best_score, rows[2].best_score);
@@ -46,7 +46,7 @@ TEST(FrontBeam, AWiderBeamMeetsTheBestLaneAtLeastAsOften) {
     EXPECT_GT(rows[1].iou, 0.8);
 }
 
-// Eight cones have few lanes, so a search that leaves nothing out ends; in a millionth of a second none does.
+// Eight cones have few lanes, so a complete search ends; within a millionth of a second, no search ends.
 TEST(FrontBeam, AProofTakesASearchThatLeavesNothingOut) {
     SceneOptions options;
     options.false_positive_rates = {0.0};

@@ -1,4 +1,4 @@
-// The studies of overruns and of memory: what they count, and that the detectors keep what they promise.
+// The studies of overruns and of memory: their counts, and that the detectors stay within their limits.
 
 #include "conelane/invalid_input.hpp"
 #include "evaluation/scenes/scene_set.hpp"
@@ -71,7 +71,7 @@ TEST(Deadlines, RefuseWhatIsNotThere) {
     EXPECT_EQ(timed_calls(std::vector<std::string>{"front", "path-pair"}).size(), 2U);
 }
 
-/// A call of the memory study that keeps what it should not.
+/// A call of the memory study that leaks memory.
 TEST(Memory, ThatGrowsIsSeen) {
     const std::vector<AnnotatedScene> scenes{straight_scene()};
     std::vector<std::vector<char>> kept;
@@ -106,8 +106,8 @@ TEST(Memory, DoesNotGrowWithTheCallsOfADetector) {
     const auto calls = timed_calls(std::vector<std::string>{"front", "clc", "path-pair"});
     for (const MemoryRow& row : memory_rows(set.scenes, calls, options)) {
         SCOPED_TRACE(row.detector);
-        // The smallest block kept by every fourth call would be more than the blocks that the allocator holds
-        // back, which come and go.
+        // Even the smallest leak in every fourth call would exceed the blocks that the allocator holds back,
+        // which vary.
         EXPECT_LT(row.end.heap_bytes, row.middle.heap_bytes + 8 * (row.end.calls - row.middle.calls));
     }
 }

@@ -44,7 +44,7 @@ TEST(OptimalityRow, GapIsRelativeToTheOptimumButNotToLessThanOne) {
     row.optimum->objective = 0.5;
     row.candidate->objective = 0.75;
     EXPECT_DOUBLE_EQ(*row.gap(), 0.25);
-    row.candidate->objective = 0.5 - 1e-9;  // rounding makes nothing better than the optimum
+    row.candidate->objective = 0.5 - 1e-9;  // a difference within rounding is not better than the optimum
     EXPECT_DOUBLE_EQ(*row.gap(), 0.0);
     EXPECT_TRUE(row.is_optimal(row.candidate));
 }

@@ -73,7 +73,7 @@ TEST(Relaxations, LeavesOutSizesThatNoSceneHasAndKeepsToTheLimit) {
     for (const RelaxationRow& row : rows) {
         EXPECT_EQ(row.cones, 8u);
         EXPECT_EQ(row.scenes, 2u);
-        // Other heuristics may miss even this lane.
+        // Other heuristics may not find even this lane.
         if (row.solver == "path-pair" ||
             std::ranges::count(relaxation_solvers(), row.solver, &RldSolverEntry::name) > 0) {
             EXPECT_EQ(row.accurate, 1.0) << row.solver;

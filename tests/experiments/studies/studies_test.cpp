@@ -108,7 +108,7 @@ TEST(Backends, SolveOnlyTheSizesThatTheyTake) {
     EXPECT_THAT(statuses, Each(SolveStatus::optimal));
 }
 
-/// What `conelane study` ends by 1 for: a backend that answers none of the scenes of a size.
+/// `conelane study` ends with 1 if a backend answers none of the scenes of a size.
 TEST(Backends, OneThatAnswersNoSceneOfASizeIsNamed) {
     const AnnotatedScene scene = straight_scene();
     std::vector<BackendRow> rows(4);
@@ -229,7 +229,7 @@ TEST(Differential, FindsNoDifference) {
     }
     EXPECT_THAT(differential_outcome(rows, options),
                 testing::AllOf(testing::HasSubstr("40 cases of seed 1"), testing::HasSubstr("0 differ")));
-    options.reference = "exhaustive";  // takes 9 cones only
+    options.reference = "exhaustive";  // it takes at most 9 cones
     EXPECT_THROW((void)differential_rows(set.scenes, options), InvalidInput);
     EXPECT_THROW((void)differential_rows({}, {}), InvalidInput);
 }
@@ -243,7 +243,7 @@ TEST(Anytime, GapIsFromTheBoundToTheBestLaneGraphKnown) {
     row.proven = true;
     EXPECT_EQ(proven_gap(row), 0.0);
     row.proven = false;
-    row.best_known = -0.5;  // small costs are not divided by
+    row.best_known = -0.5;  // the gap is not divided by small costs
     row.bound = -1.0;
     EXPECT_DOUBLE_EQ(proven_gap(row).value(), 0.5);
     row.bound.reset();

@@ -71,7 +71,7 @@ TEST(FrontGradient, AgreesWithFiniteDifferences) {
     }();
     FrontNetworkWeights derivatives = FrontNetworkWeights::zero(kStopInputs);
     add_derivatives(network, inputs, 2.0F, derivatives);
-    // Beyond a kink of max(0, x) a difference is no derivative; so small a step seldom meets one.
+    // Across a kink of max(0, x), a difference is not a derivative; so small a step rarely crosses one.
     constexpr float kStep = 1e-3F;
     const auto check = [&](float& weight, float derivative) {
         const float kept = weight;
@@ -92,7 +92,7 @@ TEST(FrontGradient, AgreesWithFiniteDifferences) {
     check(network.output_bias, derivatives.output_bias);
 }
 
-/// The loss of a scene falls along its gradient as fast as the gradient says.
+/// The loss of a scene falls along its gradient by the amount that the gradient predicts.
 TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
     const FrontScenes scenes(courses(), {}, 3);
     const FrontScenes::Drawn drawn = scenes.draw(5);
@@ -127,7 +127,7 @@ TEST(FrontLearner, ItsDerivativesAreThoseOfTheLoss) {
     EXPECT_NEAR(slope / std::sqrt(squared), 1.0, 0.02);
 }
 
-/// So does that of the judge, by each network alone; `right` is an input of the others.
+/// So does the loss of the judge, for each network alone; `right` is an input of the others.
 TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
     const FrontScenes scenes(courses(), {}, 3);
     const FrontScenes::Drawn drawn = scenes.draw(5);
@@ -139,7 +139,7 @@ TEST(FrontJudgeLearner, ItsDerivativesAreThoseOfTheLoss) {
     weights.rank = weights.usable = random_network(kWholeLaneFeatures, 7);
     weights.right = random_network(kRightInputs, 8);
     FrontJudgeLossOptions options;
-    options.listwise = 0.0;  // is no part of the sum
+    options.listwise = 0.0;  // the sum does not include it
     FrontJudgeLearner learner;
     const auto loss_of = [&](const FrontWeights& at, FrontWeights* derivatives) {
         FrontCost cost(at);
@@ -181,7 +181,7 @@ TEST(FrontTraining, TrustsNoFartherThanItsShareOfScenesAllows) {
     EXPECT_LE(least_trust(0.7), strict);
 }
 
-/// Half of the draws show colors, with every kind of fault; geometry is as without.
+/// Half of the draws have colors, with every kind of fault; their geometry is the same as without.
 TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
     const FrontScenes colored(courses(), {}, 3);
     FrontSceneOptions without;
@@ -225,7 +225,7 @@ TEST(FrontScenes, HalfOfTheDrawsShowColorsThatMayBeWrongOrMissing) {
     EXPECT_NEAR(soft / seen, 0.3, 0.12);
 }
 
-/// A fifth of the draws has a scene in which no cone belongs to a course.
+/// A fifth of the draws has a scene of false cones only.
 TEST(FrontScenes, SomeDrawsHaveASceneOfFalseConesAlone) {
     const FrontScenes scenes(courses(), {}, 3);
     std::size_t noisy = 0;
@@ -241,7 +241,7 @@ TEST(FrontScenes, SomeDrawsHaveASceneOfFalseConesAlone) {
     EXPECT_NEAR(static_cast<double>(noisy) / 200.0, 0.2, 0.08);
 }
 
-/// The judge learns that what it finds there is no lane.
+/// The judge learns that lanes in such scenes are wrong.
 TEST(FrontJudgeLearner, TakesNoLaneOfNoiseForUsable) {
     const FrontScenes scenes(courses(), {}, 3);
     FrontWeights weights = random_front_weights(2);
@@ -272,7 +272,7 @@ TEST(FrontJudgeLearner, TakesNoLaneOfNoiseForUsable) {
     EXPECT_EQ(found, 3U);
 }
 
-/// A training that begins with weights and takes no step but of the judge keeps their cost.
+/// A training that begins with given weights and trains only the judge keeps the cost.
 TEST(FrontTraining, BeginsWithTheWeightsThatAreGiven) {
     FrontTrainingOptions options = quick();
     options.imitation_steps = 0;
@@ -285,14 +285,14 @@ TEST(FrontTraining, BeginsWithTheWeightsThatAreGiven) {
     EXPECT_NE(weights.usable, options.initial->usable);
     EXPECT_THAT(describe_training(courses(), options),
                 testing::HasSubstr(R"("begins_with":"0123456789abcdef")"));
-    // A set for colors that the training does not learn stays.
+    // If the training does not learn the set for colors, that set does not change.
     options.initial->colored = random_front_weights(5);
     EXPECT_EQ(train_front(courses(), {}, options, {}).colored, options.initial->colored);
     options.initial->stop.linear.pop_back();
     EXPECT_THROW((void)train_front(courses(), {}, options, {}), InvalidInput);
 }
 
-/// The set for colors learns what a training of one set does that begins with the same numbers.
+/// The set for colors learns the same as a training of one set that begins with the same numbers.
 TEST(FrontTraining, LearnsTheSetForColorsAlone) {
     FrontTrainingOptions options = quick();
     options.imitation_steps = 0;
@@ -306,7 +306,7 @@ TEST(FrontTraining, LearnsTheSetForColorsAlone) {
     of_one_set.only_colors = false;
     EXPECT_EQ(weights.colored, first_set(train_front(courses(), {}, of_one_set, {})));
     EXPECT_NE(weights.colored, first_set(*options.initial));
-    // It begins with the set for colors of the weights that are given.
+    // It begins with the set for colors of the given weights.
     options.initial->colored = random_front_weights(5);
     options.search_steps = 0;
     options.judge_steps = 0;
@@ -318,7 +318,7 @@ TEST(FrontTraining, LearnsTheSetForColorsAlone) {
     EXPECT_THROW((void)train_front(courses(), {}, drawn, {}), InvalidInput);
 }
 
-/// Of lanes of random weights hardly any is right, so the threshold depends on what is drawn.
+/// Lanes of random weights are rarely right, so the threshold depends on the drawn scenes.
 TEST(FrontTraining, ChoosesTheThresholdOfTrustOnOtherCourses) {
     FrontTrainingOptions options = quick();
     options.initial = random_front_weights(4);
@@ -356,7 +356,7 @@ TEST(FrontScenes, DrawTheSameForTheSameNumber) {
     EXPECT_GT(drawn_scenes, 12U);
 }
 
-// Whatever is done to a course, its ground truth stays a lane that scores as one.
+// Whatever changes are made to a course, its ground truth is still a lane with the best score.
 TEST(FrontScenes, TheirGroundTruthsAreUsable) {
     const FrontScenes scenes(courses(), {}, 2);
     std::size_t usable = 0;
@@ -386,7 +386,7 @@ TEST(FrontTraining, GivesTheSameWeightsOnAnyNumberOfThreadsAndOthersFromAnotherS
     EXPECT_FALSE(train_front(courses(), {}, options, {}) == weights);
 }
 
-TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
+TEST(FrontTraining, ResumesFromItsCheckpoint) {
     const auto folder = std::filesystem::temp_directory_path() / "conelane_front_training_test";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
@@ -394,7 +394,7 @@ TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
     const FrontWeights whole = train_front(courses(), {}, options, {});
     options.checkpoint = (folder / "front.checkpoint").string();
     options.checkpoint_every = 5;
-    // Ended by what a report throws, in the middle of the second part.
+    // An exception from a report ends it in the middle of the second part.
     struct Ended {};
     options.figures_every = 8;
     EXPECT_THROW((void)train_front(courses(), {}, options, [](const FrontProgress&) { throw Ended{}; }),
@@ -412,7 +412,7 @@ TEST(FrontTraining, GoesOnFromWhereItWasEnded) {
     std::filesystem::remove_all(folder);
 }
 
-// `turn` is an input of the extensions, behind those of the state, and `width` of the state, the extensions
+// `turn` is an input of the extensions, after those of the state; `width` is one of the state, the extensions
 // and the start.
 TEST(FrontTraining, AnInputThatIsLeftOutKeepsNoWeight) {
     FrontTrainingOptions options = quick();
@@ -467,7 +467,7 @@ TEST(FrontTraining, FiguresOfARunCountWhereItsPathShowsTheWay) {
     course.left.clear();
     course.right.clear();
     for (AnnotatedScene& scene : run.scenes) scene.ground_truth.reset();
-    run.scenes.front().scene.cones.clear();  // nothing shows that a lane goes on
+    run.scenes.front().scene.cones.clear();  // so nothing shows that a lane continues
 
     const FrontFigures figures = front_figures(run, shipped_front_weights(), {}, 1);
     EXPECT_EQ(figures.scenes, run.scenes.size() - 1);
@@ -565,12 +565,12 @@ TEST(FrontWeightsFile, TheLibraryHasTheWeightsOfItsFile) {
     EXPECT_TRUE(parse_front_weights(text.str()) == shipped_front_weights());
 }
 
-/// What a file of version 1 lacks is the features of colors; its numbers stand for the other ones.
+/// A file of version 1 has no features of colors; its numbers are those of the other features.
 TEST(FrontWeightsFile, OfVersionOneKnowNoColors) {
     FrontWeights weights = random_front_weights(8);
     weights.rank = random_network(kWholeLaneFeatures, 5);
     weights.right = random_network(kRightInputs, 6);
-    // The blocks of inputs of each network, with how many of each are of colors.
+    // The blocks of inputs of each network, with the number of color features in each.
     using Blocks = std::vector<std::pair<std::size_t, std::size_t>>;
     const Blocks state_and_extend{{kStateFeatures, kStateColorFeatures},
                                   {kExtendFeatures, kExtendColorFeatures}};

@@ -25,7 +25,7 @@
 namespace conelane::experiments {
 namespace {
 
-/// Scenes of ten candidates whose IoU falls with their fourth feature, whatever the others are.
+/// Scenes of ten candidates whose IoU falls with their fourth feature; the other features are random.
 std::vector<CandidateList> lists_by_fourth_feature(std::size_t count, std::uint64_t seed) {
     boost::random::mt19937_64 random(seed);
     boost::random::uniform_01<double> uniform;
@@ -55,7 +55,7 @@ RankNetTrainingOptions quick() {
 TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
     Adam adam(3, 1e-8);
     adam.add(Eigen::Array3d(4.0, -0.01, 0.0));
-    // After one step both means are unbiased: the derivative over its own size.
+    // After one step, both means are unbiased: the quotient is the sign of the derivative.
     EXPECT_NEAR((adam.mean() / adam.deviation())(0), 1.0, 1e-6);
     EXPECT_NEAR((adam.mean() / adam.deviation())(1), -1.0, 1e-5);
     EXPECT_EQ((adam.mean() / adam.deviation())(2), 0.0);
@@ -69,7 +69,7 @@ TEST(Adam, ScalesEveryDerivativeByItsRootMeanSquare) {
 }
 
 TEST(PairLoss, OfOnePairByHand) {
-    // One unit that passes the only input on: scores 3 and 1.
+    // One unit that passes on the only input: scores 3 and 1.
     const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
                                        Eigen::VectorXd::Ones(1)};
     CandidatePairs pairs{Eigen::MatrixXd::Constant(1, 1, 3.0), Eigen::MatrixXd::Ones(1, 1),
@@ -136,7 +136,7 @@ struct ChoiceProblem {
 };
 
 TEST(ChoiceLoss, OfTwoScenesByHand) {
-    // One unit that passes the only input on: scores 1 and 1 in the first scene, ln 3 and 0 in the second.
+    // One unit that passes on the only input: scores 1 and 1 in the first scene, ln 3 and 0 in the second.
     const RankNetParameters parameters{Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1),
                                        Eigen::VectorXd::Ones(1)};
     CandidateScenes scenes{Eigen::MatrixXd(1, 4), Eigen::RowVectorXd(4), {0, 2, 4}};
@@ -194,7 +194,7 @@ TEST(RankNetTraining, DecayKeepsTheWeightsSmall) {
     const RankNetWeights with = train_rank_net(lists_by_fourth_feature(100, 1), options);
     EXPECT_LT(with.hidden.norm(), 0.8F * without.hidden.norm());
     EXPECT_LT(with.output.norm(), 0.8F * without.output.norm());
-    // The seven inputs that decide nothing lose more of their weight than the one that does.
+    // The seven inputs without influence lose more of their weight than the one with influence.
     const auto share = [](const RankNetWeights& weights) {
         return weights.hidden.col(3).squaredNorm() / weights.hidden.squaredNorm();
     };
@@ -206,7 +206,7 @@ TEST(RankNetTraining, DecayKeepsTheWeightsSmall) {
 TEST(RankNetTraining, StoresMeanAndDeviationOfTheInputs) {
     std::vector<CandidateList> lists = lists_by_fourth_feature(200, 3);
     for (CandidateList& list : lists) {
-        for (LaneFeatures& lane : list.lanes) lane[0] = 7.0;  // does not vary
+        for (LaneFeatures& lane : list.lanes) lane[0] = 7.0;  // constant
     }
     const RankNetWeights weights = train_rank_net(lists, quick());
     EXPECT_EQ(weights.mean.size(), 8);
@@ -272,7 +272,7 @@ TEST(RankingFigures, OfThreeScenesByHand) {
         return result;
     };
     constexpr double kNever_m = std::numeric_limits<double>::infinity();
-    // Chosen are a usable lane, a stub beside a usable one, and nothing.
+    // The choices are a usable lane, a lane that is too short beside a usable one, and nothing.
     const std::vector<CandidateList> lists{list({0.5, 0.99}, {5.0, kNever_m}, {false, true}),
                                            list({0.8, 0.2}, {kNever_m, kNever_m}, {true, false}),
                                            {}};

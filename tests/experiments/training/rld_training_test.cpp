@@ -41,7 +41,7 @@ RldTrainingOptions quick() {
     return options;
 }
 
-/// The training begins where `shape` stands: with its limits, the same lane graphs are optimal.
+/// The training begins with the set `shape`: with its limits, the same lane graphs are optimal.
 TEST(RldTraining, BeginsWithTheOptimaOfShape) {
     const RldParameters shape = rld_parameter_set("shape").value();
     RldParameters learned = shape;
@@ -69,7 +69,7 @@ TEST(RldTraining, BeginsWithTheOptimaOfShape) {
     EXPECT_GE(same, lanes - 2);
 }
 
-/// Of the cost of a lane graph by each number, as differences of two costs say.
+/// Derivatives of a lane graph's cost by each number, from differences of two costs.
 TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
     int compared = 0;
     for (std::uint64_t seed = 0; seed < 14; ++seed) {
@@ -77,7 +77,7 @@ TEST(RldTraining, TheGradientOfACostIsThatOfItsDifferences) {
         const Scene scene = tests::random_scene(seed, 10);
         RldParameters parameters;
         LearnedCosts costs = *tests::random_learned_costs(seed, 4);
-        // Away from the limits, where there is no derivative.
+        // Away from the limits, where the derivative does not exist.
         costs.of(LearnedPart::turn).linear[0] += 60.0;
         costs.of(LearnedPart::near_end).linear[0] -= 60.0;
         costs.of(LearnedPart::far_end).linear[0] -= 60.0;
@@ -178,7 +178,7 @@ TEST(RldTraining, GivesTheSameCostsOnAnyNumberOfThreadsAndOthersFromAnotherSeed)
     EXPECT_FALSE(train_rld(courses(), options, {}) == costs);
 }
 
-TEST(RldTraining, GoesOnFromWhereItWasEnded) {
+TEST(RldTraining, ResumesFromItsCheckpoint) {
     const auto folder = std::filesystem::temp_directory_path() / "conelane_rld_training_test";
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
@@ -200,7 +200,7 @@ TEST(RldTraining, GoesOnFromWhereItWasEnded) {
     std::filesystem::remove_all(folder);
 }
 
-/// Without a step, what comes out is what went in, with hidden units on top that change next to nothing.
+/// Without a step, the result is the input, with hidden units that change almost nothing.
 TEST(RldTraining, BeginsWithTheCostsOfTheParameters) {
     RldTrainingOptions options = quick();
     options.steps = 0;
@@ -218,7 +218,7 @@ TEST(RldTraining, BeginsWithTheCostsOfTheParameters) {
     EXPECT_THROW((void)train_rld(courses(), options, {}), InvalidInput);
 }
 
-TEST(RldTraining, RefusesWhatIsOutOfRange) {
+TEST(RldTraining, RefusesOptionsOutOfRange) {
     const auto refused = [](const auto& change) {
         RldTrainingOptions options = quick();
         change(options);

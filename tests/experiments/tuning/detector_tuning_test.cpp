@@ -1,4 +1,4 @@
-// `conelane tune-method`: parameters of the detectors that are no RLD, found by random search.
+// `conelane tune-method`: parameters of detectors that are not RLD, found by random search.
 
 #include "experiments/tuning/detector_tuning.hpp"
 
@@ -32,7 +32,7 @@ TEST(DetectorTuning, FindsBetterParametersAndTheSameOnesAgain) {
     const SceneSet set = few_scenes();
     for (const TunableDetector& known : tunable_detectors()) {
         SCOPED_TRACE(known.name);
-        // A start that finds little: the highest end of each range.
+        // A bad start: the highest end of each range.
         TunableDetector detector = known;
         for (TunableParameter& parameter : detector.parameters) parameter.start = parameter.highest;
         const TunedDetector tuned = tune_detector(detector, set, {.evaluations = 8, .seed = 2, .threads = 2});

@@ -1,5 +1,5 @@
-// What tuning promises: ranges around sensible parameters, fits that forget no better point, folds that see
-// nothing of their held-out tracks, and a log from which a stopped run goes on.
+// Contract of tuning: ranges around sensible parameters, fits that keep the best point, folds that do not see
+// their held-out tracks, and a log from which a stopped run resumes.
 
 #include "conelane/rld_parameter_sets.hpp"
 #include "evaluation/files/input_error.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Stands for scenes: each track is best at a d_e of its own, and of less value the farther d_e is from it.
+/// Replaces scenes: each track is best at its own d_e; its value falls with the distance of d_e from it.
 std::vector<LapFigure> value_by_d_e(const RldParameters& parameters, const std::vector<double>& best_d_e) {
     std::vector<LapFigure> laps;
     for (std::size_t i = 0; i < best_d_e.size(); ++i) {
@@ -60,7 +60,7 @@ TEST(ParameterRanges, MovesTheShapeCostsOfAStartThatHasThemAndKeepsItsLimits) {
     EXPECT_EQ(shaped.s_crit, 7.0) << "a limit below its range";
 }
 
-TEST(ParameterRanges, MovesWhatLiesOutsideToItsBorder) {
+TEST(ParameterRanges, MovesValuesOutsideToTheBorder) {
     RldParameters start;
     start.s_crit = 1.0;
     start.d_min = 3.5;
@@ -99,7 +99,8 @@ TEST(Tune, KeepsTheStartWhereNothingIsBetter) {
 }
 
 TEST(Tune, FitsAFoldToTheOtherTracksAlone) {
-    // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to what it does not hold out.
+    // Tracks 0 and 2 are best at 2, tracks 1 and 3 at 4: a fold is fitted to the tracks that it does not hold
+    // out.
     const auto evaluate = [](const RldParameters& p) { return value_by_d_e(p, {2.0, 4.0, 2.0, 4.0}); };
     const Tuned tuned = tune(evaluate, RldParameters{}, {.folds = 2, .evaluations = 300, .seed = 3});
     ASSERT_EQ(tuned.folds.size(), 2U);
@@ -212,8 +213,8 @@ TEST(FailureCauses, NameTheConstraintThatTheGroundTruthBreaks) {
 }
 
 /// Cones every 4 m on both sides, and on the left a false positive in the middle of each gap. At an expected
-/// spacing of 2 m they all belong to the lane of least cost: it has two edges more than the ground truth, and
-/// w_s (2 / 1.7)^4 = 1.92 w_s less of spacing cost for each gap.
+/// spacing of 2 m, the lane of least cost contains all of them: it has two edges more than the ground truth,
+/// and w_s (2 / 1.7)^4 = 1.92 w_s less spacing cost for each gap.
 TEST(FailureCauses, NameTheTermInWhichTheGroundTruthIsDearest) {
     AnnotatedScene scene;
     scene.scene.id = "every_gap_halved";

@@ -1,5 +1,5 @@
-// The fit of weights: the objective is linear in them, the value of the lane graph of least cost made smooth
-// has a gradient, and rounds learn from the tracks they are given and from no other.
+// The fit of weights: the objective is linear in them, the smoothed value of the lane graph of least cost has
+// the right gradient, and rounds learn only from the tracks that they are given.
 
 #include "experiments/tuning/weight_fit.hpp"
 
@@ -107,8 +107,8 @@ TEST(ExpectedValue, HasTheGradientOfItsDifferences) {
     }
 }
 
-/// In both scenes the right lane is spaced worse and faced better: by 1 and 1, and by 2 and 1. Its benefit is
-/// greater by 0.1 and 0.2. Both are right where w_v > 2 w_s - 0.2.
+/// In both scenes, the right lane has worse spacing and better facing: by 1 and 1, and by 2 and 1. Its
+/// benefit is higher by 0.1 and 0.2. It is the answer in both if w_v > 2 w_s - 0.2.
 TEST(FitWeights, MakesTheRightOnesCheapest) {
     const std::vector<RatedGraphs> scenes{{rated(1.0, 0.0, 1.0), rated(0.0, 1.0, 0.0)},
                                           {rated(2.0, 0.0, 1.0), rated(0.0, 1.0, 0.0)}};

@@ -24,7 +24,7 @@ LaneAnswer detect(const Scene& scene, const AstarLaneParameters& parameters = {}
 }
 
 /// Left cones 0, 1, ..., right ones 100, 101, ... of a bend of this radius to the left, 3.6 m wide, every 3 m
-/// along its centre line; the car stands on that at 1 m before the first.
+/// along its centre line; the car is on that line, 1 m before the first cones.
 Scene bend(double radius_m, int cones_a_side) {
     Scene scene;
     for (int i = 0; i < cones_a_side; ++i) {
@@ -129,7 +129,7 @@ TEST(BoundariesAlong, TakeTheChainThatRunsMostEvenly) {
     const PathBoundaries read = boundaries_along(straight_path(10.0), points, {0.4, 4.0, 4.0}, budget);
     EXPECT_EQ(read[kLeft], (std::vector<std::uint32_t>{0, 1, 2}));
     EXPECT_EQ(read[kRight], (std::vector<std::uint32_t>{7}));
-    // Without a price for slopes every cone is taken.
+    // Without a cost of slopes, every cone is taken.
     EXPECT_EQ(boundaries_along(straight_path(10.0), points, {0.4, 4.0, 0.0}, budget)[kLeft],
               (std::vector<std::uint32_t>{0, 1, 3, 2}));
 }

@@ -42,8 +42,8 @@ TEST(DelaunayBeam, LeavesConesBesideTheLaneOut) {
     EXPECT_EQ(detect(scene).lane, kAllGates);
 }
 
-// The reason why the CLC paper does not search in a triangulation: both edges from the cones before it to
-// those behind it cross the lane, and the edge from left cone 2 to left cone 3 is not the way round it.
+// The reason why the CLC paper does not search in a triangulation: beside a cone in the lane, the
+// triangulation has no edge from left cone 2 to left cone 3, so one of the boundaries must contain that cone.
 TEST(DelaunayBeam, AConeInsideTheLaneIsOnABoundary) {
     Scene scene = five_gates();
     scene.cones.push_back({20, {11.2, 0.2}});
@@ -82,7 +82,7 @@ TEST(DelaunayBeam, GrowsNoFartherThanTheLengthExpected) {
     EXPECT_LT(lane.left.size() + lane.right.size(), 10u);
 }
 
-// A narrow beam may miss a lane, and says so; the tree as a whole has one.
+// A narrow beam may miss a lane, and reports that it left paths out; the whole tree contains one.
 TEST(DelaunayBeam, FindsNothingButKnowsThatTheBeamWasTooNarrow) {
     DelaunayBeamParameters narrow;
     narrow.beam_width = 1;

@@ -45,8 +45,8 @@ Edges voronoi_edges(const std::vector<Point>& points) {
     return all;
 }
 
-/// Distinct whole points in a square of this half side, its corners among them: so each place is one of the
-/// triangulation's grid where the half side is a power of two.
+/// Distinct points with whole coordinates in a square of this half side, including its corners. If the half
+/// side is a power of two, each place is on the triangulation's grid.
 std::vector<Point> whole_points(std::uint64_t seed, std::size_t count, int half_side) {
     boost::random::mt19937_64 random(seed);
     const boost::random::uniform_int_distribution<> coordinate(-half_side, half_side);
@@ -58,7 +58,7 @@ std::vector<Point> whole_points(std::uint64_t seed, std::size_t count, int half_
 }
 
 TEST(DelaunayGraph, JoinsWhatTheTriangulationJoins) {
-    // A rhombus: the short diagonal is in it, the long one is not.
+    // A rhombus: its short diagonal is an edge, its long one is not.
     const std::vector<Point> points{{0, 0}, {2, 1}, {4, 0}, {2, -1}};
     SearchGraph graph;
     graph.build(points, 5.0, delaunay_edges);

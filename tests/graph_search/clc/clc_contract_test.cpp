@@ -58,7 +58,7 @@ Scene strewn(std::size_t cones, double ahead_m, double across_m, const Point& ca
     return scene;
 }
 
-/// Beside a lane, `cones` of them at one place or, with `spread_m`, about it.
+/// Adds `cones` cones beside a lane, at one place or, with `spread_m`, around it.
 Scene heap(std::size_t cones, double spread_m) {
     Scene scene = straight(6);
     const Scene heaped = strewn(cones, 1.0, 1.0);
@@ -138,7 +138,7 @@ TEST(ClcContract, FewConesHaveNoLaneByProof) {
 }
 
 TEST(ClcContract, NoneOnlyWhereEverythingWasSearched) {
-    // The first step goes to a cone that no lane can go to; with more steps there is a lane.
+    // The first step goes to a cone that no lane can include; with more steps, a lane is found.
     const Scene scene = straight(4);
     ClcOptions options;
     options.iteration_limit = 1;
@@ -147,7 +147,7 @@ TEST(ClcContract, NoneOnlyWhereEverythingWasSearched) {
     EXPECT_EQ(one_step.stopped_by, StopReason::iterations);
     EXPECT_FALSE(one_step.enumeration->complete);
 
-    // The nearest pair leads nowhere.
+    // The nearest pair starts no lane.
     Scene beside = straight(4);
     for (Cone& cone : beside.cones) cone.position.x() += 2.0;
     beside.cones.push_back({1000, {-2.7, 1.4}});
@@ -176,7 +176,7 @@ TEST(ClcContract, AFoundLaneTellsWhetherALimitCutTheSearch) {
     EXPECT_EQ(late.stopped_by, StopReason::time);
 }
 
-TEST(ClcContract, HugeLimitsAreNoneAndNegativeOnesAreOver) {
+TEST(ClcContract, HugeLimitsNeverExpireAndNegativeOnesHaveExpired) {
     const Scene scene = tests::random_scene(3, 30);
     for (const auto& [name, options] : variants()) {
         SCOPED_TRACE(name);
@@ -202,7 +202,7 @@ TEST(ClcContract, AnAnswerDependsOnTheSceneAlone) {
         for (std::uint64_t seed = 0; seed < 40; ++seed) {
             SCOPED_TRACE(seed);
             const Scene scene = tests::random_scene(seed, 8 + 2 * seed);
-            // What ran before: a search that time cut off, an error, a scene of another size.
+            // Earlier calls: a search that reached its time limit, an error, a scene of another size.
             (void)used->detect(strewn(200 + 10 * seed, 30.0, 16.0), {.time_limit_ms = 1.0});
             Scene broken = scene;
             broken.cones.front().position.x() = kNaN;

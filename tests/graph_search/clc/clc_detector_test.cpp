@@ -35,7 +35,7 @@ LaneAnswer detect(const Scene& scene, const ClcOptions& options = {},
 }
 
 /// Left cones have even ids, right ones odd ids, ascending in driving order, `count` a side. The lane winds
-/// with the given amplitude of its heading; it is 6 m wide, so that no boundary can cross over to the other,
+/// with the given amplitude of its heading; it is 6 m wide, so that no boundary can cross to the other side,
 /// and `random` shifts every cone a little, so that nothing ties.
 Scene winding_lane(std::size_t count, double amplitude_rad, unsigned seed) {
     boost::random::mt19937_64 random(seed);
@@ -142,7 +142,7 @@ TEST(ClcDetector, CandidatesAreFeasibleDistinctAndHoldTheAnswerAsTheLongest) {
     }
 }
 
-// Of a straight lane the car has missed one cone: that boundary has a gap of 8 m.
+// The car has missed one cone of a straight lane: that boundary has a gap of 8 m.
 TEST(ClcDetector, GoesOnPastAMissedCone) {
     for (std::size_t missed = 1; missed < 7; ++missed) {
         SCOPED_TRACE(missed);
@@ -158,7 +158,7 @@ TEST(ClcDetector, GoesOnPastAMissedCone) {
         const LaneAnswer answer = detect(scene, extended_clc_options());
         EXPECT_EQ(answer.lane.left, left);
         EXPECT_THAT(answer.lane.right, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15, 17));
-        // The 5.5 m of the paper end there.
+        // With the 5.5 m of the paper, the lane ends there.
         EXPECT_LE(detect(scene, paper_clc_options()).lane.left.size(), missed);
     }
 }
@@ -212,7 +212,7 @@ TEST(ClcDetector, AWarmStartFindsTheSameLanesWhereTheSearchIsComplete) {
         ASSERT_TRUE(warm.enumeration->complete);
         EXPECT_EQ(candidates(cold), candidates(warm));
         EXPECT_EQ(cold.lane, warm.lane);
-        // The way along the last answer comes first: as many steps as it has cones beyond the first two.
+        // The last answer is followed first: one step for each of its cones after the first two.
         const auto steps = static_cast<std::int64_t>(cold.lane.left.size() + cold.lane.right.size() - 2);
         const auto at = std::ranges::find(warm.enumeration->candidates, cold.lane, &LaneCandidate::lane);
         ASSERT_NE(at, warm.enumeration->candidates.end());
@@ -273,7 +273,7 @@ TEST(ClcDetector, TriesOtherStartsWhereFalsePositivesStandAtTheCar) {
         scene.cones.push_back({static_cast<ConeId>(10 * x), {x, 1.8}});
         scene.cones.push_back({static_cast<ConeId>(10 * x + 1), {x, -1.8}});
     }
-    // Out of reach of everything else, but the most symmetric pair and the nearest.
+    // Too far from everything else, but the most symmetric and the nearest pair.
     scene.cones.push_back({1000, {-2.7, 1.4}});
     scene.cones.push_back({1001, {-2.7, -1.4}});
     ClcOptions one;
@@ -312,7 +312,7 @@ TEST(ClcDetector, SearchesASecondTimeOnlyWhereTheFirstSearchIsNotComplete) {
 }
 
 TEST(ClcDetector, FollowsTheLaneOfTheBeamSearchFirst) {
-    // Hardly more iterations than the lane has vertices.
+    // Few more iterations than the lane has vertices.
     std::size_t found = 0;
     std::size_t found_without = 0;
     for (unsigned seed = 0; seed < 30; ++seed) {

@@ -30,7 +30,7 @@ double& score_at(StepScores& scores, std::size_t measure, std::size_t place) {
     return scores.values[step_score_count(measure) + place];
 }
 
-/// A score for each step, less where it turns or the width changes, and for pairs near the car.
+/// A score for each step, lower for turns and changes of width, and one for pairs near the car.
 StepScores sensible_scores() {
     StepScores scores = zero_scores();
     score_at(scores, kStepsMeasure, 0) = 3.0;
@@ -56,7 +56,7 @@ Scene scene_of(const std::vector<Point>& points) {
     return scene;
 }
 
-/// Six pairs along a straight, somewhat shaken, and false positives.
+/// Six pairs along a straight, slightly shifted, and false positives.
 Scene random_scene(unsigned seed, std::size_t false_positives) {
     boost::random::mt19937_64 random(seed);
     boost::random::uniform_real_distribution<> shake(-0.4, 0.4);
@@ -81,7 +81,7 @@ struct Search {
     StepScores scores;
     SearchGraph graph;
     LaneBeam beam;
-    SearchBudget budget;  ///< without limits of time
+    SearchBudget budget;  ///< without a time limit
 
     Search(Scene of, StepScores by) : scene(std::move(of)), scores(std::move(by)) {
         std::vector<Point> points;

@@ -16,7 +16,7 @@
 namespace conelane {
 namespace {
 
-/// Both boundaries, grown through LaneConstraints and kept as plain points beside it.
+/// Both boundaries, grown by LaneConstraints and also stored as plain points.
 class GrowingLane {
   public:
     GrowingLane(const Point& left, const Point& right, WidthBacktracking rule = WidthBacktracking::proven)
@@ -95,7 +95,7 @@ TEST(LaneConstraints, ASideThatRanAheadNeedsTheOther) {
     EXPECT_TRUE(lane.state().backtrack(true, false));
 }
 
-// Lemma 3, first case, as the search takes it: both sides have passed the bulge.
+// Lemma 3, first case, as the search applies it: both sides have passed the bulge.
 TEST(LaneConstraints, APlaceThatIsTooWideIsGivenUpOnceLeftBehind) {
     for (const auto rule : {WidthBacktracking::proven, WidthBacktracking::left_behind}) {
         GrowingLane lane({0, 2}, {0, -2}, rule);
@@ -135,9 +135,9 @@ class Walk {
     double curvature_;
 };
 
-// The online deciders agree with the definition of the constraints at every step, and Lemmata 1 to 3 hold:
-// what is hopeless stays infeasible, what needs one side stays infeasible until that side grows. The
-// exceptions that the lemmata make do occur.
+// At every step, the online deciders agree with the definition of the constraints, and Lemmata 1 to 3 hold: a
+// hopeless lane stays infeasible, and a lane that needs one side stays infeasible until that side grows. The
+// exceptions in the lemmata occur.
 TEST(LaneConstraints, AgreeWithTheirDefinitionAndKeepTheirPromisesOnRandomLanes) {
     int feasible = 0;
     int hopeless = 0;
@@ -173,7 +173,7 @@ TEST(LaneConstraints, AgreeWithTheirDefinitionAndKeepTheirPromisesOnRandomLanes)
     EXPECT_GT(ends_uncrossed, 5);
 }
 
-// Not hopeless is a promise too: a lane is never given up for what an undone push had done.
+// A lane that is not hopeless must not be given up: a push that was undone has no effect.
 TEST(LaneConstraints, ArePutBackByPop) {
     for (unsigned seed = 0; seed < 300; ++seed) {
         SCOPED_TRACE(seed);

@@ -50,7 +50,7 @@ double vertex_width_m(const OnlineLaneWidth& width, Side side, std::size_t verte
     return std::sqrt(width.squared_vertex_widths_m2(side)[vertex]);
 }
 
-/// Of the widths of all vertices and segments, by definition.
+/// Mean of the widths of all vertices and segments, by definition.
 double variance_of(const LaneWidths& widths) {
     std::vector<double> all_m;
     for (const Side side : {kLeft, kRight}) {
@@ -64,8 +64,8 @@ double variance_of(const LaneWidths& widths) {
     return sum_m2 / static_cast<double>(all_m.size());
 }
 
-// Algorithm 3 would call the matching between the first points fixed after two points a side: it comes before
-// the first one that meets an end. The third right point is nearer to the first left one all the same.
+// With two points a side, Algorithm 3 would fix the matching between the first points, because it comes
+// before the first one that meets an end. But the third right point is nearer to the first left one.
 TEST(OnlineLaneWidth, SeesWhatComesNearerAfterAMatchingWouldHaveBeenFixed) {
     OnlineLaneWidth width;
     width.reset({0, 0}, {0, -6}, kWMax_m);
@@ -88,7 +88,7 @@ TEST(OnlineLaneWidth, TellsWhoCanHelpAVertexThatIsTooFar) {
     width.reset({0, 2}, {0, -2}, kWMax_m);
     width.push(kLeft, {5, 2});
     width.push(kLeft, {10, 2});
-    // The left boundary has run ahead: its last vertex is too far from the only right one, whose end is near.
+    // The left boundary is ahead: its last vertex is too far from the only right one, whose end is near.
     EXPECT_THAT(width.state().too_wide, ElementsAre(1, 0));
     EXPECT_FALSE(width.state().too_wide_behind);
     width.push(kRight, {5, -2});
@@ -119,7 +119,7 @@ class RandomLane {
     }
     Side random_side() { return uniform(0, 1) < 0.5 ? kLeft : kRight; }
     const std::vector<Point>& vertices(Side side) const { return vertices_[side]; }
-    /// Nothing where the new segment would meet the other boundary.
+    /// Nothing if the new segment would meet the other boundary.
     bool push(Side side) {
         std::vector<Point>& own = vertices_[side];
         const std::vector<Point>& other = vertices_[opposite(side)];
@@ -183,7 +183,7 @@ TEST(OnlineLaneWidth, EqualsTheDefinitionAfterEveryStepOfARandomLane) {
     }
 }
 
-// What is fixed: a verdict on a width that no further vertex can change.
+// Verdicts on a width that no further vertex can change.
 TEST(OnlineLaneWidth, VerdictsThatAreFixedNeverChange) {
     int verdicts = 0;
     int helped = 0;

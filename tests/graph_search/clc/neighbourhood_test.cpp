@@ -1,4 +1,4 @@
-// What stands about a new segment of a lane, four vertices at a time, against one at a time.
+// Cones around a new segment of a lane: four vertices at a time, compared with one at a time.
 
 #include "graph_search/clc/neighbourhood.hpp"
 
@@ -48,7 +48,7 @@ TEST(Neighbourhood, AreCountedForAnyNumberOfVertices) {
         for (Vertex tip = 0; tip < count; ++tip) {
             const Vertex facing = (tip + 1) % static_cast<Vertex>(count);
             const Vertex next = (tip + 2) % static_cast<Vertex>(count);
-            // The segment's end is rounded to either side of it.
+            // Rounding may put the segment's end on either side of it.
             for (const Point& left_out : {points[next], points[(tip + 3) % count]}) {
                 const Neighbourhood found = neighbourhood(graph, tip, points[tip], points[facing],
                                                           points[next], left_out, points[next]);

@@ -44,7 +44,7 @@ Result enumerate(const std::vector<Point>& points, const EnumerationRules& rules
     return result;
 }
 
-/// Closed pairs left out: the definition of the solution set knows none.
+/// Without closed pairs, which the definition of the solution set does not contain.
 std::multiset<PathPairVertices> open_pairs(const Result& result) {
     std::multiset<PathPairVertices> pairs;
     for (std::size_t i = 0; i < result.found.size(); ++i) {
@@ -160,7 +160,8 @@ void add_paths(const std::vector<Point>& points, const EnumerationRules& rules, 
         if (std::ranges::count(path, next) > 0) continue;
         const Point segment = points[next] - points[path.back()];
         if (segment.norm() > rules.d_max_m) continue;
-        // C_seg, which no extension can help, already here: else there are too many paths to pair.
+        // C_seg is applied here, because no extension can repair it: otherwise there are too many paths to
+        // pair.
         if (size > 1 && std::abs(turning_angle(points[path.back()] - points[path[size - 2]], segment)) >=
                             rules.bounds.phi_max_rad) {
             continue;
@@ -291,7 +292,7 @@ TEST(PathPairEnumeration, ABoundaryThatComesBackHealsWhatBothLeftBehind) {
     EXPECT_EQ(open_pairs(enumerate(points, rules)).count(lane), 0u);
 }
 
-// Giving up what both boundaries have left behind finds nothing infeasible and rarely misses something.
+// Giving up lanes that both boundaries have left behind finds nothing infeasible and rarely misses a lane.
 TEST(PathPairEnumeration, GivingUpWhatIsLeftBehindMissesLittle) {
     EnumerationRules rules;
     rules.width_backtracking = WidthBacktracking::left_behind;

@@ -21,14 +21,14 @@
 namespace conelane {
 namespace {
 
-/// One unit that passes the given input on, standardised; a negative weight turns the preference round.
+/// One unit that passes on the given input, standardised; a negative weight reverses the preference.
 RankNetWeights only_input(std::size_t input, float weight = 1.0F) {
     RankNetWeights weights;
     weights.mean = Eigen::VectorXd::Zero(8);
     weights.deviation = Eigen::VectorXd::Ones(8);
     weights.hidden = Eigen::MatrixXf::Zero(1, 8);
     weights.hidden(0, static_cast<Eigen::Index>(input)) = weight;
-    weights.hidden_bias = Eigen::VectorXf::Constant(1, 1000.0F);  // far from where the unit is cut off
+    weights.hidden_bias = Eigen::VectorXf::Constant(1, 1000.0F);  // far below the unit's limit
     weights.output = Eigen::VectorXf::Ones(1);
     return weights;
 }
@@ -180,8 +180,8 @@ TEST(LaneGrowth, TellsTheNearPartFromTheRest) {
     EXPECT_EQ(of("near_sharpest_turn_rad"), 0.0);
     EXPECT_NEAR(of("sharpest_turn_rad"), 2.0 * std::atan(0.25), 1e-12);
     EXPECT_EQ(of("near_largest_offset_m"), 0.0);
-    // Where the two before and the two after the vertex at 20 m (2, 2, 2, 3) put it: (4 (2 + 2) - (2 + 3)) /
-    // 6, 1/6 m off; at 24 m (4 (2 + 3) - (2 + 2)) / 6 - 2 = 2/3 m, across a chord that rises 1 in 8.
+    // The two vertices before and the two after 20 m (2, 2, 2, 3) suggest (4 (2 + 2) - (2 + 3)) / 6, 1/6 m
+    // off; at 24 m (4 (2 + 3) - (2 + 2)) / 6 - 2 = 2/3 m, across a chord that rises 1 in 8.
     EXPECT_NEAR(of("largest_offset_m"), 2.0 / 3.0 * 8.0 / std::sqrt(65.0), 1e-12);
     EXPECT_EQ(of("near_narrowest_m"), 4.0);
     EXPECT_EQ(of("near_widest_m"), 4.0);
@@ -204,13 +204,13 @@ TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     weights.output.resize(2);
     weights.output << 3.0F, 10.0F;
     weights.output_bias = -1.0F;
-    // More lanes than go through at once; only the first and the last differ from the mean.
+    // More lanes than one batch; only the first and the last differ from the mean.
     LaneFeatures average;
     average.fill(1.0);
     std::vector<LaneFeatures> lanes(150, average);
     lanes.front()[0] = 5.0;  // standardised 2: first unit 2.5, second 0
     lanes.back()[3] = -3.0;  // standardised -2: first unit 0.5, second 2
-    lanes[70][3] = 9.0;      // standardised 4: the second unit is cut off at 0
+    lanes[70][3] = 9.0;      // standardised 4: the second unit is 0
     std::vector<double> scores(lanes.size());
     make_rank_net(weights)->score(lanes, scores);
     EXPECT_DOUBLE_EQ(scores.front(), 3 * 2.5 - 1);
@@ -219,7 +219,7 @@ TEST(RankNet, IsTwoLayersWithARectifierBetween) {
     EXPECT_DOUBLE_EQ(scores[71], 3 * 0.5 - 1);
 }
 
-/// Whatever is left over where units and lanes go through a few at a time.
+/// Rests that do not fill a batch of units or lanes.
 TEST(RankNet, IsTheSameForAnyNumberOfUnitsAndLanes) {
     boost::random::mt19937_64 random(7);
     boost::random::uniform_real_distribution<float> draw(-1.0F, 1.0F);

@@ -52,7 +52,7 @@ TEST(SearchGraph, HoldsForNoPointsAndForPointsFarAway) {
 }
 
 TEST(SearchGraph, EqualsTheDefinitionOnRandomMaps) {
-    SearchGraph graph;  // one object for all: nothing is left of the map before
+    SearchGraph graph;  // one object for all maps: nothing is left of an earlier map
     for (unsigned seed = 0; seed < 50; ++seed) {
         SCOPED_TRACE(seed);
         boost::random::mt19937_64 random(seed);
@@ -111,7 +111,7 @@ TEST(NextVertexDecider, OrdersNeighboursByTheAngleOfTheTurn) {
 }
 
 TEST(LeftRightDecider, AdvancesTheBoundaryThatIsBehind) {
-    // Equally advanced boundaries deviate by nothing, however wide the lane.
+    // Equally advanced boundaries have no deviation, however wide the lane is.
     EXPECT_NEAR(advance_deviation({4, 2}, {4, 0}, {4, -2}, {4, 0}), 0.0, 1e-15);
     EXPECT_GT(advance_deviation({8, 2}, {4, 0}, {4, -2}, {4, 0}), 0.1);
     const BoundaryTip left{{4, 2}, {4, 0}, {8, 2}};

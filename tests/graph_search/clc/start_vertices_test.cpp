@@ -22,7 +22,7 @@ Scene scene_of(const std::vector<Point>& points, double yaw_rad = 0.0) {
 TEST(StartPairs, LeftIsLeftOfTheHeadingAndRightIsRight) {
     const Scene scene = scene_of({{0.5, -1.6}, {0.5, 1.6}});
     EXPECT_THAT(start_pairs(scene, 1, {}), ElementsAre(StartPair{1, 0}));
-    // Turned around, left and right change places.
+    // With the heading reversed, left and right are exchanged.
     EXPECT_THAT(start_pairs(scene_of({{0.5, -1.6}, {0.5, 1.6}}, 3.14159), 1, {}),
                 ElementsAre(StartPair{0, 1}));
 }

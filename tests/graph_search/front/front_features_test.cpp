@@ -1,5 +1,5 @@
-// What the networks of `front` see of a lane that grows, followed by hand, and that scores are of what is
-// seen.
+// The inputs of the networks of `front` for a lane that grows, computed by hand; scores depend only on these
+// inputs.
 
 #include "graph_search/front/front_features.hpp"
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr float kRounding = 1e-4F;  ///< angles are approximated
 
-/// Cones of a scene by their place in it, so that a test can name them; the car stands at the origin.
+/// Cones of a scene by their index in it, so that a test can name them; the car is at the origin.
 class Growth {
   public:
     /// `colors`: of the first cones; the others' are unknown.
@@ -93,22 +93,22 @@ TEST(FrontFeatures, OfAStateAreSeenFromTheBoundaryThatMoves) {
         EXPECT_EQ(of_right("own_" + std::string(known)), 0.0F) << known;
         EXPECT_EQ(of_right("other_" + std::string(known)), 1.0F) << known;
     }
-    // To the left is outward for the left boundary; seen by the right one it is inward.
+    // A turn to the left is outward for the left boundary and inward for the right one.
     EXPECT_NEAR(of_left("own_turn"), -0.3F, kRounding);
     EXPECT_NEAR(of_right("other_turn"), 0.3F, kRounding);
     // The left boundary points away from the right one, which points towards it.
     EXPECT_NEAR(of_left("skew"), 0.3F, kRounding);
     EXPECT_NEAR(of_right("skew"), 0.3F, kRounding);
     EXPECT_NEAR(of_left("own_segment"), 3.0F / 4.0F, kRounding);
-    // A usual segment of 3.5 m, the last one and the mean count alike. The mean is of the whole way ahead,
-    // from beside the car: 8 m by two segments.
+    // The mean includes one usual segment of 3.5 m, like the last segments and the means. A mean is over the
+    // whole boundary from beside the car: 8 m in two segments.
     EXPECT_NEAR(of_left("mean_segment"), (3.5F + 3.0F + 4.0F) / 3.0F / 4.0F, kRounding);
-    // The right boundary is behind: its own lag is positive.
+    // The right boundary is behind, so its own lag is positive.
     EXPECT_LT(of_left("lag"), 0.0F);
     EXPECT_FLOAT_EQ(of_right("lag"), -of_left("lag"));
 }
 
-/// Before it has two segments the mean of a boundary is that of its one.
+/// The mean of a boundary with one segment is the length of that segment.
 TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
     Growth lane(bend());
     lane.start(0, 3);
@@ -120,7 +120,7 @@ TEST(FrontFeatures, ABoundaryOfOneConeHasNoSegment) {
     const StateFeatures right =
         state_features(lane.map, lane.state, kRight, measure(lane.map, lane.state, kRight));
     EXPECT_NEAR(named(state_feature_table(), right, "mean_segment"), (3.5F + 3.0F) / 2.0F / 4.0F, kRounding);
-    // Beside the beginning of the last segment it is as wide as between the cones there.
+    // Beside the beginning of the last segment, the width is that between the cones there.
     EXPECT_NEAR(named(state_feature_table(), right, "width"), 4.0F / 4.0F, kRounding);
 }
 
@@ -147,8 +147,8 @@ TEST(FrontFeatures, OfColorsSpeakForAndAgainstTheSideThatMoves) {
     EXPECT_FLOAT_EQ(of_state("color_agreement"), (3.0F - 1.0F) / 5.0F);
     EXPECT_EQ(of_state("color_end"), -1.0F);
     EXPECT_EQ(of_state("color_other_end"), 1.0F);
-    // Each one and the nearest other one that is blue or yellow: 0 and 3, 3 and 0, 1 and 6 differ, 6 and 1
-    // too (2 is as near, but stands later); 2 and 6, 4 and 1 are alike.
+    // Each blue or yellow cone and the nearest other one: 0 and 3, 3 and 0, 1 and 6 differ, and so do 6 and 1
+    // (2 is as near, but comes later); 2 and 6, 4 and 1 have the same color.
     EXPECT_FLOAT_EQ(of_state("color_consistency"), (2.0F - 4.0F) / 6.0F);
 
     const ExtendFeatures left = extend_features(lane.map, lane.state, kLeft, lane.move(kLeft, 2), measures);
@@ -196,7 +196,7 @@ TEST(FrontFeatures, OfColorsTakeProbabilities) {
     EXPECT_FLOAT_EQ(named(start_feature_table(), swapped, "color_own"), 0.1F);
 }
 
-/// So that weights without any of colors, and scenes without colors, are judged as if there were none.
+/// So weights without weights of colors, and scenes without colors, give the same result as before.
 TEST(FrontFeatures, OfColorsAreNothingWithoutColorsAndCountNothingThen) {
     Growth lane(colored_lane());
     lane.start(0, 3);
@@ -214,7 +214,7 @@ TEST(FrontFeatures, OfColorsAreNothingWithoutColorsAndCountNothingThen) {
     require_none(stop_feature_table(), stop_features(lane.map, lane.state, kLeft, extend));
     require_none(start_feature_table(), start_features(lane.map, start_cone(lane.map, lane.vertex(0)),
                                                        start_cone(lane.map, lane.vertex(3)), kLeft));
-    // They stand at the end, where the cost leaves them out.
+    // Color features are last, where the cost leaves them out.
     for (const FrontFeatureList& list : front_feature_lists()) {
         for (std::size_t i = 0; i < list.features.size(); ++i) {
             EXPECT_EQ(list.features[i].name.starts_with("color_"), i + list.colors >= list.features.size())
@@ -254,8 +254,8 @@ TEST(FrontFeatures, AMoveOverAMissedConeBridges) {
     EXPECT_EQ(named(extend_feature_table(), seen, "bridges"), 1.0F);
 }
 
-/// The boundary of `bend` turns by 0.3 rad with each segment of 3 m: the next cone is expected at 0.6 rad.
-/// A cone stands where it would be if the boundary went on straight.
+/// The boundary of `bend` turns by 0.3 rad with each segment of 3 m, so the next cone is expected at 0.6 rad.
+/// The added cone is at the place where a straight boundary would have one.
 TEST(FrontFeatures, OfAStopKnowWhereTheNextConeWouldBe) {
     std::vector<Point> cones = bend();
     const Point end = cones[2];
@@ -299,7 +299,7 @@ TEST(FrontFeatures, OfAStartAreThoseOfItsPair) {
     EXPECT_EQ(of_left("inside"), 1.0F);
     EXPECT_EQ(of_right("inside"), 1.0F);
     EXPECT_NEAR(of_left("own_continuation"), 0.0F, kRounding);
-    // To cone 3 a segment leads along the heading; from cone 2 to the left one it is well off.
+    // A segment to cone 3 runs along the heading; the one from cone 2 to the left cone does not.
     EXPECT_NEAR(start_cone(lane.map, lane.vertex(3)).predecessor, 0.0F, kRounding);
     EXPECT_NEAR(of_left("own_predecessor"), std::atan2(1.8, 0.5), kRounding);
 }
@@ -313,7 +313,7 @@ class Wandering {
         map.build(scene);
         state = start_state(map, any_cone(), any_cone());
     }
-    /// A random way from that side's end; the lane takes it afterwards by `take`.
+    /// A random segment from that side's end; `take` then extends the lane by it.
     FrontMove any_move(Side side) {
         const auto ways = static_cast<double>(map.edges(state.ends[side].cones[0]).size());
         const auto edge = static_cast<std::size_t>(anywhere(0, ways));
@@ -346,7 +346,7 @@ float inside(const FrontMap& map, const Point& a, const Point& b, const Point& c
     return std::min(count, 3.0F);
 }
 
-/// What looks for cones finds those that a look at every cone within a segment's reach finds.
+/// The searches for cones find the same cones as a test of every cone within a segment's reach.
 TEST(FrontFeatures, InACrowdAreThoseThatEveryConeGives) {
     int counted = 0;
     int near_partners = 0;
@@ -415,7 +415,7 @@ TEST(ComeWithin, SaysWhatTheDistanceSays) {
     EXPECT_LT(within, 45'000);
 }
 
-/// A false cone far from all others does not widen the view; one that a segment could lead to does.
+/// A false cone far from all others does not change the view distance; one that a segment could reach does.
 TEST(FrontMap, TheViewReachesToTheFarthestConeThatIsNotAlone) {
     Scene scene = tests::straight_front_scene(3);
     FrontMap map;
@@ -434,7 +434,7 @@ TEST(FrontMap, TheViewReachesToTheFarthestConeThatIsNotAlone) {
     EXPECT_NEAR(map.view_radius_m(), 40.0, 1e-9) << "where all are alone, the farthest of them";
 }
 
-/// A score is the network's of what is seen, of a start the sum over both boundaries.
+/// A score is the network's value for the inputs; for a start, it is the sum over both boundaries.
 void require_scores_of_what_is_seen(const Scene& scene) {
     const FrontWeights weights = tests::random_front_weights(4);
     FrontCost cost(weights);
@@ -488,7 +488,7 @@ void require_scores_of_what_is_seen(const Scene& scene) {
     EXPECT_NEAR(scores.back(), FrontNetwork(weights.stop).score(with_state(stop)), kRounding);
 }
 
-TEST(FrontCost, ScoresAreOfWhatIsSeen) {
+TEST(FrontCost, ScoresAreTheNetworksValues) {
     Scene scene = tests::straight_front_scene(3);
     require_scores_of_what_is_seen(scene);
     for (std::size_t i = 0; i < scene.cones.size(); ++i) scene.cones[i].color = i % 3 == 0 ? kBlue : kYellow;

@@ -1,4 +1,4 @@
-// The judge of whole lanes in `front`: what it sees of lanes side by side, and what it makes of that.
+// The judge of whole lanes in `front`: its inputs for competing lanes, and its outputs.
 
 #include "graph_search/front/front_judge.hpp"
 
@@ -25,7 +25,7 @@ using tests::random_front_weights;
 using tests::straight_front_scene;
 using Cones = std::array<std::vector<Vertex>, 2>;
 
-/// Where features stand, by name.
+/// Indices of the features, by name.
 template <std::size_t count>
 std::size_t place_of(std::span<const FrontFeature, count> table, std::string_view name) {
     return static_cast<std::size_t>(std::ranges::find(table, name, &FrontFeature::name) - table.begin());
@@ -84,7 +84,7 @@ std::vector<double> softmax(const std::vector<FrontJudge::Contender>& contenders
     return result;
 }
 
-// Places are looked up by name, and so is what files of weights hold.
+// Indices are looked up by name, as in files of weights.
 TEST(FrontJudge, EveryFeatureHasANameOfItsOwn) {
     for (const FrontFeatureList& list : front_feature_lists()) {
         std::set<std::string_view> names;
@@ -102,7 +102,7 @@ TEST(FrontJudge, WithoutWeightsKeepsTheOrderOfTheSearch) {
     EXPECT_DOUBLE_EQ(judged.judge.confidence(0), 0.5);
 }
 
-/// What lanes share, counted segment by segment.
+/// Segments that lanes share, counted one by one.
 TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
     std::size_t met = 0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -128,8 +128,8 @@ TEST(FrontJudge, SharesAreThoseOfTheLanesWithTheSameSegment) {
     EXPECT_GT(met, 100U);
 }
 
-/// Of a cone: the least share of it and of all before it; and of the lanes that have its segment the best
-/// one, and how far that is ahead of the best one without.
+/// For a cone: the least share up to it, the best lane that has its segment, and how far that lane is ahead
+/// of the best one without the segment.
 TEST(FrontJudge, AConeIsSeenWithThoseBeforeItAndWithTheBestLaneThatHasIt) {
     std::size_t min_before = 0;
     std::size_t not_of_the_best = 0;
@@ -179,7 +179,7 @@ TEST(FrontJudge, AllAgreeOnALaneWithoutAnyOther) {
     EXPECT_EQ(lane_feature(judged.judge, 0, "behind"), 0.0F);
 }
 
-/// What the lane of the scene before earns in the search is no evidence for the judge.
+/// The bonus of the last scene's lane in the search does not influence the judge.
 TEST(FrontJudge, DoesNotSeeTheBonusOfTheLastLane) {
     const Scene scene = straight_front_scene(4);
     const FrontWeights weights = random_front_weights(4);
@@ -208,7 +208,7 @@ TEST(FrontJudge, DoesNotSeeTheBonusOfTheLastLane) {
 
 TEST(FrontJudge, RankLiftsALaneOverBetterScores) {
     FrontWeights weights = random_front_weights(1);
-    // Worth more than any difference of scores for each cone that a lane has less.
+    // A reward, larger than any difference of scores, for each cone that a lane does not have.
     weights.rank.linear[place_of(whole_lane_feature_table(), "cones")] = -1e4F;
     const Judged judged(tests::random_scene(3, 24), weights);
     ASSERT_GT(judged.contenders.size(), 2U);
@@ -220,7 +220,7 @@ TEST(FrontJudge, RankLiftsALaneOverBetterScores) {
     }
 }
 
-/// Each cone is right with probability 0.8, the lane surely usable, so three steps keep 0.512 and four 0.41.
+/// Each cone is right with probability 0.8 and the lane is usable, so three steps give 0.512 and four 0.41.
 TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
     FrontWeights weights = random_front_weights(6);
     weights.right.output_bias = static_cast<float>(std::log(0.8 / 0.2));
@@ -240,7 +240,7 @@ TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
     EXPECT_EQ(trusted_m(0.9), 0.0);  // not even the first pair
     // The pair, the next left cone and the next right one: a segment on each side, and half a metre less.
     EXPECT_NEAR(trusted_m(0.5), std::min(segment_m(kLeft, 1), segment_m(kRight, 1)) - 0.5, 1e-5);
-    EXPECT_EQ(trusted_m(0.6), 0.0);  // a segment on the left alone is none of the lane
+    EXPECT_EQ(trusted_m(0.6), 0.0);  // a segment on the left alone does not count
     EXPECT_LE(trusted_m(0.5), trusted_m(0.2));
     double whole_m = 0.0;
     for (const Side side : {kLeft, kRight}) {
@@ -250,7 +250,7 @@ TEST(FrontJudge, TrustEndsBeforeTheConeThatCostsTooMuch) {
     EXPECT_NEAR(trusted_m(0.0), whole_m, 1e-5);
 }
 
-/// Scenes without colors are answered by the first set of weights alone, the others by the set for them.
+/// Scenes without colors use the first set of weights only, the others the set for colors.
 TEST(FrontJudge, ScenesWithColorsHaveWeightsOfTheirOwn) {
     FrontWeights first = random_front_weights(1);
     first.usable.output_bias = 1.0F;

@@ -1,4 +1,4 @@
-// Which moves a side of the front has, each rule alone.
+// The moves of a side of the front: each rule alone.
 
 #include "graph_search/front/front_moves.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-/// The left cone 0 and the right cone 1 begin a lane; the others are where a test puts them, ids from 2 on.
+/// The left cone 0 and the right cone 1 begin a lane; a test adds the others, with ids from 2 on.
 class Front {
   public:
     explicit Front(const std::vector<Point>& others) {
@@ -24,7 +24,7 @@ class Front {
         state = start_state(map_, 0, 1);
     }
 
-    /// Ids of the cones that the left side may go on to.
+    /// Ids of the cones to which the left side may continue.
     std::vector<ConeId> list(const FrontRules& rules) {
         moves.list(map_, state, kLeft, rules);
         std::vector<ConeId> ids;

@@ -1,4 +1,4 @@
-// The search of `front`: how a lane is put together, and that what the beam finds is the best of all lanes.
+// The search of `front`: how a lane is built, and that the beam finds the best of all lanes.
 
 #include "graph_search/front/front_search.hpp"
 
@@ -31,7 +31,7 @@ using tests::random_front_weights;
 using tests::straight_front_scene;
 using Cones = std::array<std::vector<Vertex>, 2>;
 
-/// All states are followed.
+/// All states are kept.
 FrontSearchOptions exhaustive() {
     FrontSearchOptions options;
     options.beam_width = std::numeric_limits<std::size_t>::max();
@@ -41,8 +41,8 @@ FrontSearchOptions exhaustive() {
     return options;
 }
 
-/// Every lane of a scene with its score, met by plain recursion. The rules of the whole lane are looked at
-/// anew, segment by segment.
+/// Every lane of a scene with its score, by plain recursion. The rules about the whole lane are tested again,
+/// segment by segment.
 class Enumeration {
   public:
     Enumeration(const Scene& scene, const FrontWeights& weights, const FrontRules& rules)
@@ -61,7 +61,7 @@ class Enumeration {
     }
 
     std::map<Cones, double> lanes;
-    std::size_t met = 0;  ///< lanes, each as often as it was reached
+    std::size_t met = 0;  ///< number of lanes, each counted as often as it was reached
 
   private:
     bool is_free(Side side, Vertex to) const {
@@ -155,8 +155,8 @@ TEST(FrontSearch, ALevelHoldsNoMoreThanTheBeam) {
     EXPECT_TRUE(search.left_out());
 }
 
-// Far along the lane a third of the beam goes on. Both boundaries together advance 2.5 m a level, so 5 m
-// along the lane are four levels.
+// Far along the lane, only a third of the beam is kept. Both boundaries together advance 2.5 m a level, so 5
+// m along the lane are four levels.
 TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
     const FrontWeights weights = random_front_weights(3);
     FrontSearchOptions options = exhaustive();
@@ -176,7 +176,7 @@ TEST(FrontSearch, AThirdOfTheBeamGoesOnFarAlongTheLane) {
     EXPECT_EQ(far, 2U);
 }
 
-/// The margin of the best move is over the second one, that of any other under the best.
+/// The margin of the best move is its lead over the second one; that of any other is its lag behind the best.
 TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
     const FrontWeights weights = random_front_weights(3);
     FrontCost cost(weights);
@@ -193,8 +193,8 @@ TEST(FrontSearch, OneMoveOfAStateHasAMargin) {
     for (const auto& [state, moves] : best_moves) EXPECT_EQ(moves, 1) << state;
 }
 
-// States with the same front are merged although their pasts differ, and a beam drops what lies behind: so it
-// may miss the best lane, but never finds a better one.
+// States with the same front are merged although their pasts differ, and a beam drops the worst states: so it
+// may miss the best lane, but it never finds a better one.
 TEST(FrontSearch, TheBeamIsNeverBetterAndMostlyAsGood) {
     std::size_t as_good = 0;
     std::size_t scenes = 0;
@@ -251,8 +251,8 @@ TEST(FrontState, AStoppedSideLetsTheOtherGoOn) {
     EXPECT_EQ(moving_side(map, state), kLeft);
 }
 
-/// Both cones are near enough to the heading to begin either boundary, yet the left one is to the left. A
-/// third one, on the right, is too far off to be the partner of the left one.
+/// Both cones are near enough to the heading to begin either boundary, but one is to the left of the other. A
+/// third cone, on the right, is too far away to be the partner of the left one.
 TEST(FrontStarts, PairsStandOnTheirSidesAndNotTooFarApart) {
     Scene scene;
     scene.cones = {{0, {2.0, 1.5}}, {1, {2.0, -1.5}}, {2, {2.0, -8.9}}};
@@ -316,7 +316,7 @@ TEST(FrontMap, AnglesAreExactToTwentyMillionths) {
     EXPECT_EQ(front_angle(0.0, 0.0), 0.0);
 }
 
-TEST(FrontMap, KnowsWhatLiesAboutAWay) {
+TEST(FrontMap, ComputesWhatIsAroundAWay) {
     Scene scene;
     scene.cones = {{0, {0.0, 0.0}}, {1, {4.0, 0.0}}, {2, {2.0, 0.5}}, {3, {2.0, -1.0}}, {4, {8.0, 0.0}}};
     FrontMap map;
@@ -355,7 +355,7 @@ TEST(FrontMap, WhereConesAreFewWaysGoFarther) {
     EXPECT_FLOAT_EQ(farthest_m(), 11.4F);
 }
 
-TEST(FrontNetwork, IsWhatItsFormulaSays) {
+TEST(FrontNetwork, EqualsItsFormula) {
     const FrontWeights weights = random_front_weights(3);
     const FrontNetworkWeights& w = weights.stop;
     const FrontNetwork network(w);
@@ -388,7 +388,7 @@ TEST(FrontNetwork, IsWhatItsFormulaSays) {
     }
 }
 
-/// The same numbers one at a time, in the order that the network states: what any processor gives.
+/// The same sums one at a time, in the order that the network states: every processor gets this result.
 TEST(FrontNetwork, IsPlainArithmeticToTheLastBit) {
     const FrontNetworkWeights w = random_front_weights(3).extend;
     const FrontNetwork network(w);
@@ -446,7 +446,7 @@ Scene hairpin(double radius_m) {
     return scene;
 }
 
-/// A lane knows its cones by their numbers, which only repeat from 256 on.
+/// A lane stores its cones as bits by number, which repeat from 256 on.
 TEST(FrontDetector, FollowsAStraightOfManyCones) {
     const Scene scene = straight_front_scene(70);
     const LaneAnswer answer = detect(scene);
@@ -483,8 +483,8 @@ TEST(FrontDetector, LeavesAFalseConeAside) {
     EXPECT_THAT(answer.lane.right, ElementsAre(100, 101, 102, 103, 104, 105));
 }
 
-// Ends are evened where the other side is more than 6.5 m away; of a lane that is wide all along nothing
-// would be left.
+// Far ends are dropped if the other side is more than 6.5 m away; a lane that is wide everywhere would be
+// lost completely.
 TEST(FrontDetector, AWideLaneIsALane) {
     Scene scene = straight_front_scene(6);
     for (Cone& cone : scene.cones) cone.position.y() *= 2.0;  // 7.2 m
@@ -564,8 +564,8 @@ TEST(FrontDetector, ADeadlineGivesTheBestLaneSoFar) {
     EXPECT_TRUE(cut_off);
 }
 
-/// Found by fuzzing: as float such a segment has no length, and its direction was no number.
-TEST(FrontDetector, TwoConesAllButAtOnePlaceAreNoSegment) {
+/// Found by fuzzing: as float, such a segment has no length, so its direction was not a number.
+TEST(FrontDetector, TwoConesAlmostAtOnePlaceAreNoSegment) {
     Scene scene{.id = "nearly one place", .pose = {{0.0, 0.0}, 0.6}, .cones = {}};
     scene.cones = {{1, {0.0, 0.0}},
                    {2, {6.291347651660108, 2.476074458886653}},

@@ -1,4 +1,4 @@
-// What becomes of a point that CBC returns although it violates rows.
+// Treatment of a point of CBC that violates rows.
 
 #include "solvers/milp/detail/invented_point.hpp"
 

@@ -1,5 +1,5 @@
-// What path-pair makes before its first bound: in a dense scene that takes milliseconds, so the clock is
-// looked at all along, and at any look it may strike.
+// The work of path-pair before its first bound takes milliseconds in a dense scene. So the clock is checked
+// throughout, and the time may end at any check.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "conelane/scene.hpp"
@@ -38,14 +38,14 @@ std::vector<char> near_cones(const ArcGraph& graph) {
     return near;
 }
 
-TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
+TEST(PathPairClock, IsCheckedWhileTheArcGraphIsMade) {
     const LaneGraphProblem problem = dense_problem();
     ASSERT_GT(problem.edges.size(), 1500U);
     tests::FakeSearchClock clock;
     ArcGraph graph;
     EXPECT_TRUE(graph.build(problem, clock));
     const int looks = clock.looks();
-    // So many steps of a nanosecond at least, and a look after each 50 000 of them.
+    // At least this number of steps of a nanosecond, with a check after each 50 000 of them.
     EXPECT_GT(looks, static_cast<int>((10 * problem.conflicts.size() + 20 * problem.turns.size()) / 50'000));
 
     for (int last = 1; last <= looks; ++last) {
@@ -55,7 +55,7 @@ TEST(PathPairClock, IsLookedAtWhileTheArcGraphIsMade) {
     }
 }
 
-TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
+TEST(PathPairClock, IsCheckedWhileTheResidualGraphIsMade) {
     const LaneGraphProblem problem = dense_problem();
     SearchClock no_limit;
     ArcGraph graph;
@@ -77,7 +77,7 @@ TEST(PathPairClock, IsLookedAtWhileTheResidualGraphIsMade) {
     }
 }
 
-TEST(PathPairClock, IsLookedAtWhileAVectorIsFilled) {
+TEST(PathPairClock, IsCheckedWhileAVectorIsFilled) {
     constexpr std::size_t kCount = 300'000;
     tests::FakeSearchClock clock;
     std::vector<int> values{1, 2};
@@ -92,7 +92,7 @@ TEST(PathPairClock, IsLookedAtWhileAVectorIsFilled) {
     EXPECT_EQ(striking.looks(), 3);
 }
 
-TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
+TEST(PathPairClock, IsCheckedWhileAVectorGrows) {
     std::vector<int> values;
     for (int i = 0; i < 300'000; ++i) values.push_back(i);
     values.shrink_to_fit();
@@ -113,7 +113,7 @@ TEST(PathPairClock, IsLookedAtWhileAVectorGrows) {
     EXPECT_EQ(clock.looks(), looks) << "there is room";
 }
 
-/// A limit in steps, unlike one in time, ends a search in the same place each time.
+/// A limit in steps, unlike a limit of time, ends a search at the same place each time.
 TEST(PathPairWork, ALimitOfWorkEndsTheSearchInTheSamePlace) {
     const LaneGraphProblem problem = dense_problem();
     std::vector<RldReport> reports;

@@ -1,5 +1,5 @@
-// What path-pair drops from the frontiers of two legs is in no lane graph, and what it finds there is the
-// best.
+// No lane graph passes a frontier that path-pair drops, and the search on the frontiers finds the best
+// one.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/exhaustive.hpp"
@@ -151,7 +151,7 @@ LaneGraphProblem random_problem(std::uint64_t seed, std::size_t cones = 9) {
 }
 
 /// Of a problem of all pairs those edges that a lane graph may have, and of their turns the allowed ones.
-TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
+TEST(PathPairArcGraph, HasTheAllowedEdgesAndTurns) {
     const LaneGraphProblem all = make_problem(tests::random_scene(3, 9), {}, EdgeExtent::all_pairs);
     const LaneGraphProblem allowed = make_problem(tests::random_scene(3, 9), {});
     ArcGraph graph;
@@ -163,7 +163,7 @@ TEST(PathPairArcGraph, HoldsWhatIsAllowed) {
         EXPECT_FALSE(all.edges[graph.problem_edge(edge)].high_cost);
 }
 
-/// Across and then along is a forbidden turn: no lane graph has both of its edges, so a clique may hold them.
+/// The turn from across to along is forbidden: no lane graph has both edges, so a clique may contain them.
 TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
     const Frontiers s(tests::straight_lane_problem(), 1);
     const int across = s.graph.arc(0, 1) / 2;
@@ -173,9 +173,9 @@ TEST(PathPairArcGraph, EdgesOfAForbiddenTurnExcludeEachOther) {
     EXPECT_FALSE(s.graph.incompatible(s.graph.arc(0, 2) / 2, s.graph.arc(2, 4) / 2)) << "straight on";
 }
 
-/// 500 cones without an edge: wherever the clock strikes, the last time among the far cones, there is no
-/// graph.
-TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
+/// 500 cones without an edge: if the time ends at any check, the last of which is among the far cones, there
+/// is no graph.
+TEST(PathPairArcGraph, AnInterruptedBuildGivesNoGraph) {
     Scene scene;
     for (int cone = 0; cone < 500; ++cone)
         scene.cones.push_back({static_cast<ConeId>(cone), Point(100.0 + 100.0 * cone, 0.0)});
@@ -192,8 +192,8 @@ TEST(PathPairArcGraph, ABuildThatTheClockCutsShortIsNone) {
     }
 }
 
-/// Three cones about each of which a leg may turn for nothing: going round costs exactly 0, gains nothing and
-/// is no cycle that pays.
+/// Three cones, around each of which a leg may turn at no cost: a round costs exactly 0, so it is not a cycle
+/// that gains.
 TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
     Scene scene;
     const double height = 1.6 * std::sqrt(3.0);
@@ -218,7 +218,7 @@ TEST(PathPairLegBounds, ACycleOfCostZeroIsNotWalked) {
     EXPECT_EQ(label, nothing);
 }
 
-/// A leg might end on 4 -> 6 alone, which is left out: none ends at all.
+/// A leg could end only on 4 -> 6, which is left out, so no leg ends.
 TEST(PathPairLegBounds, ALegDoesNotEndOnAnArcThatIsLeftOut) {
     const Frontiers s(tests::straight_lane_problem(), 1);
     const auto count = static_cast<std::size_t>(s.residual.size());
@@ -348,7 +348,7 @@ TEST(PathPairFrontierGraph, TheEarlierLegMoves) {
     EXPECT_GT(both_go_on, 20);
 }
 
-TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
+TEST(PathPairFrontierGraph, DropsOnlyWhatReachesTheLimit) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
         SCOPED_TRACE(testing::Message() << "seed " << seed);
         Frontiers s(random_problem(seed, 14), seed);
@@ -363,7 +363,7 @@ TEST(PathPairFrontierGraph, WhatIsDroppedByALimitReachesIt) {
     }
 }
 
-TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
+TEST(PathPairFrontierGraph, GivesUpAtItsLimit) {
     Frontiers s(random_problem(3, 20), 3);
     EXPECT_FALSE(s.build(kUnreachable, 2));
     EXPECT_TRUE(s.build());
@@ -371,8 +371,8 @@ TEST(PathPairFrontierGraph, GivesUpWhereToldTo) {
     EXPECT_FALSE(s.build());
 }
 
-/// Dominated edges that are looked for while the frontiers are built leave fewer of them, no lower bound and
-/// the best pair.
+/// If dominated edges are searched while the frontiers are built, there are fewer frontiers, the bound is not
+/// lower, and the best pair stays.
 TEST(PathPairFrontierGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver({.search_frontiers = false});
     int fewer = 0;
@@ -400,8 +400,8 @@ TEST(PathPairFrontierGraph, LeavesOutDominatedEdgesWhileItIsBuilt) {
     EXPECT_GT(fewer, 3);
 }
 
-/// A walk on that costs x more than the cheapest one uses no edge whose regret is above x, and nothing that
-/// an arc excludes whose detour is above x.
+/// A continuation that costs x more than the cheapest one uses no edge with a regret above x, and nothing
+/// that an arc with a detour above x excludes.
 TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
     std::size_t walks = 0;
     int regrets = 0;
@@ -444,7 +444,7 @@ TEST(PathPairOnwardTables, AreNoHigherThanAnyWalkOn) {
     EXPECT_GT(detours, 100);
 }
 
-/// A beam of one beginning at each arc runs along both boundaries of a straight lane.
+/// A beam of one beginning at each arc follows both boundaries of a straight lane.
 TEST(PathPairFrontierBeam, FindsTheStraightLane) {
     Frontiers s(tests::straight_lane_problem(), 1);
     FrontierBeam beam;
@@ -490,7 +490,7 @@ TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
             EXPECT_FALSE(best.objective);
             continue;
         }
-        // Of each frontier the cheapest beginning alone: a lane graph, but not always the best.
+        // With only the cheapest beginning at each frontier, it finds a lane graph, but not always the best.
         const FrontierSearch::Outcome narrow = s.run(1, kAny);
         EXPECT_NE(narrow, FrontierSearch::Outcome::stopped);
         EXPECT_GE(s.incumbent.cutoff(), best.objective.value_or(1e6) - 1e-9);
@@ -508,8 +508,8 @@ TEST(PathPairFrontierSearch, FindsTheBestOfAllLaneGraphs) {
     EXPECT_GT(narrow_ones, 2);
 }
 
-/// Whenever the clock strikes on the way, the search does not call itself whole.
-TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
+/// If the time ends at any check, the search does not claim to be complete.
+TEST(PathPairFrontierSearch, StopsAtEveryCheckOfTheClock) {
     int stopped_on_the_way = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         Frontiers s(random_problem(seed, 24), seed);
@@ -533,7 +533,7 @@ TEST(PathPairFrontierSearch, IsStoppedByEveryLookAtTheClock) {
     EXPECT_GT(stopped_on_the_way, 5);
 }
 
-TEST(PathPairFrontierSearch, StopsWhereToldTo) {
+TEST(PathPairFrontierSearch, StopsAtItsLimit) {
     Frontiers s(random_problem(3, 20), 3);
     ASSERT_TRUE(s.build());
     s.frontiers.find_onward(kUnreachable);

@@ -1,4 +1,4 @@
-// The parts of path-pair's search that need no scene: its clock, its queue of nodes, steps and stages of
+// The parts of path-pair's search that need no scene: its clock, its queue of nodes, and steps and stages of
 // multipliers.
 
 #include "solvers/path_pair/bound/multipliers.hpp"
@@ -17,7 +17,7 @@
 namespace conelane::path_pair {
 namespace {
 
-TEST(PathPairSearchClock, LooksAfterSoMuchWorkWhoeverCountsIt) {
+TEST(PathPairSearchClock, ChecksAfterAFixedAmountOfWork) {
     tests::FakeSearchClock clock;
     EXPECT_FALSE(clock.out_of_time(30'000));
     EXPECT_FALSE(clock.tick(19'999));
@@ -29,7 +29,7 @@ TEST(PathPairSearchClock, LooksAfterSoMuchWorkWhoeverCountsIt) {
     EXPECT_EQ(clock.total_work(), 30'000) << "ticks are not part of the total";
 }
 
-TEST(PathPairSearchClock, HavingStruckStrikesAtEveryCall) {
+TEST(PathPairSearchClock, StaysExpired) {
     tests::FakeSearchClock clock(2);
     EXPECT_FALSE(clock.out_of_time());
     EXPECT_FALSE(clock.struck());

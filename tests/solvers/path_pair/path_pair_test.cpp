@@ -1,4 +1,5 @@
-// path-pair as a whole: the optima of others, and answers that stay true at any deadline and in any mode.
+// path-pair as a whole: the same optima as other solvers, and answers that are true for any deadline and
+// mode.
 
 #include "conelane/bound_certificate.hpp"
 #include "conelane/check.hpp"
@@ -104,8 +105,8 @@ TEST(PathPair, StartsFromALaneGraph) {
     EXPECT_GT(started, 20);
 }
 
-/// With a gap wider than any difference of costs every lane graph is good enough: the start is the answer.
-/// Without one it is any, but there is one.
+/// With a gap above any difference of costs, every lane graph is good enough, so the start is the answer.
+/// Without a start, any lane graph is.
 TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
     Scene scene = tests::six_cone_lane();
     scene.cones.push_back({6, {10.6, 1.75}});  // the best lane goes on to it
@@ -124,8 +125,8 @@ TEST(PathPair, AWideGapTakesTheStartButProvesNothingWrong) {
     }
 }
 
-/// Cones on a lattice, where walks of equal cost and cycles that are neutral abound: labels that improve by
-/// rounding alone must not go round for ever.
+/// Cones on a lattice, with many walks of equal cost and cycles of cost zero: labels that improve only by
+/// rounding must not lead to endless rounds.
 TEST(PathPair, EndsWhereEverythingTies) {
     const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
     const std::unique_ptr<RldSolver> cbc = make_milp_rld_solver(make_cbc_solver(), Formulation::tight);
@@ -149,7 +150,7 @@ TEST(PathPair, EndsWhereEverythingTies) {
     }
 }
 
-/// Whatever the deadline, the claim is true: the bound is below the optimum, the lane graph is one.
+/// For every deadline, the claim is true: the bound is below the optimum, and the lane graph is one.
 TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
     int unfinished = 0;
@@ -183,9 +184,9 @@ TEST(PathPair, BoundsAndIncumbentsHoldAtEveryDeadline) {
     EXPECT_GT(unfinished, 20);
 }
 
-/// The clock strikes at each of the looks at it in turn: what is claimed complete is, and the bound is one.
-/// It never falls, and where nodes branch it rises on the way.
-TEST(PathPair, AClockThatStrikesAtAnyLookMakesNoFalseProof) {
+/// The time ends at each check of the clock in turn: a claimed complete search is complete, and the bound is
+/// valid. It never falls, and rises on the way if nodes branch.
+TEST(PathPair, ADeadlineAtAnyCheckMakesNoFalseProof) {
     int cut_short = 0;
     int rises = 0;
     std::uint64_t run = 0;
@@ -253,7 +254,7 @@ TEST(PathPair, TakesLargeConeSets) {
     }
 }
 
-/// The verifier finds the root's bound again from the scene, below the optimum, and refuses a higher claim, a
+/// The verifier finds the root's bound again from the scene, below the optimum. It rejects a higher claim, a
 /// multiplier below zero and an invalid clique.
 TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     const std::unique_ptr<RldSolver> solver = make_path_pair_solver();
@@ -296,8 +297,8 @@ TEST(PathPairCertificate, IsVerifiedAndCannotBeForged) {
     }
 }
 
-/// The verifier's shape costs are those that the solver saw: it finds the same bound, and nearly always a
-/// lower one where any of them is cheaper.
+/// The verifier uses the same shape costs as the solver: it finds the same bound, and nearly always a lower
+/// one if one of them is cheaper.
 TEST(PathPairCertificate, RestsOnEveryShapeCost) {
     const RldParameters parameters = with_shape_costs({});
     std::vector<RldParameters> cheaper(3, parameters);
@@ -416,7 +417,7 @@ TEST(PathPairCertificate, CliquesMayRestOnGaps) {
                 testing::ElementsAre(testing::HasSubstr("may go together")));
 }
 
-/// Bounds of one step each leave everything to branching, on ends first and then on edges.
+/// With bounds of one step each, the proof needs branching, first on ends and then on edges.
 TEST(PathPair, BranchingAloneFindsTheOptimum) {
     PathPairOptions options;
     options.search_frontiers = options.complete_walks = options.clique_multipliers = options.fix_arcs = false;
@@ -442,8 +443,8 @@ TEST(PathPair, BranchingAloneFindsTheOptimum) {
     EXPECT_GT(nodes, 1000);
 }
 
-/// Where edges cost more than they gain, the rest of a leg costs something too: arcs are dropped by the sum
-/// of both parts of a leg, no more.
+/// If edges cost more than they gain, the rest of a leg has a positive cost too: arcs are dropped only by the
+/// sum of both parts of a leg.
 TEST(PathPair, FixesNoArcOfTheOptimumWhereEdgesCostMoreThanTheyGain) {
     RldParameters parameters;
     parameters.w_b = 0.05;

@@ -1,4 +1,4 @@
-// The units of path-pair: bounds that bound, cliques that are cliques, legs as brute force finds them.
+// The units of path-pair: valid bounds, valid cliques, and the same legs as brute force finds.
 
 #include "conelane/lane_graph_problem.hpp"
 #include "solvers/path_pair/bound/clique_separation.hpp"
@@ -149,7 +149,7 @@ TEST(PathPairIncumbent, TakesNoLaneGraphWithoutTwoFarEndsThatFit) {
     EXPECT_FALSE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 5})) << "too far apart";
 }
 
-/// Whatever they cost: (5) allows a cone two edges.
+/// Even if they have no cost: (5) allows a cone at most two edges.
 TEST(PathPairIncumbent, TakesNoLegsThatPassOneCone) {
     RldParameters parameters;
     parameters.t_crit = 1e6;
@@ -184,7 +184,7 @@ TEST(PathPairIncumbent, TakesNothingThatBreaksAConstraint) {
     EXPECT_TRUE(Offers(six_cone_lane(), parameters).offer({0, 1, 2}, {3, 4, 5}));
 }
 
-/// Of one boundary alone: each cone has half of its edges, and its turn.
+/// For one boundary alone: each cone has half of its edges, and its turn.
 TEST(PathPairArcGraph, SharesOfConesAddUpToTheLane) {
     LaneGraphProblem problem;
     problem.cone_count = 3;
@@ -232,8 +232,8 @@ TEST(PathPairLegBounds, ForwardAndBackwardAgreeOnTheShortestWalk) {
     }
 }
 
-/// What came before is a start, not more: labels are the same from the walks of other costs, from another
-/// graph's and from none.
+/// Earlier walks are only a start: labels are the same from the walks of other costs, of another graph, and
+/// from none.
 TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
     LegBounds bounds;
     std::vector<int> left_over;
@@ -245,7 +245,7 @@ TEST(PathPairLegBounds, LabelsDoNotDependOnTheWalksTheyStartFrom) {
         std::vector<int> before, cycles;
         ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, cold, before, cycles));
         left_over.resize(s.residual.arc.size(), 0);
-        // Walks of another graph, but of arcs that this one has.
+        // Walks of another graph, but with arcs of this one.
         for (int& arc : left_over) arc = std::min(arc, s.residual.size() - 1);
         started += static_cast<int>(left_over.size());
         ASSERT_TRUE(bounds.forward(s.residual, s.reduced, s.start, warm, left_over, cycles));

@@ -69,8 +69,8 @@ std::size_t at(int index) {
     return static_cast<std::size_t>(index);
 }
 
-// No arc of the lane leads on from 6 or 7, so windows around them are empty: all stays as it is. From 4 one
-// leads to 6: the left leg may end anywhere from there on.
+// No arc of the lane leaves 6 or 7, so windows around them are empty and nothing changes. From 4, one arc
+// leads to 6: the left leg may end anywhere behind it.
 TEST(PathPairIncumbentWindow, FollowedByHandOnAStraightLane) {
     Graph s(tests::straight_lane_problem());
     const Legs legs{s.leg(std::vector<int>{0, 2, 4, 6}), s.leg(std::vector<int>{1, 3, 5, 7})};
@@ -140,7 +140,7 @@ TEST(PathPairBeam, FindsLaneGraphsAndOftenTheBest) {
     EXPECT_GT(4 * best_found, 3 * with_lane);
 }
 
-/// The legs are in every window, and nothing else there is excluded by a first or a last arc that stays.
+/// The legs are in every window, and only a fixed first or last arc excludes anything there.
 TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
     int fixed_ends = 0;
     int with_others = 0;
@@ -188,7 +188,7 @@ TEST(PathPairIncumbentWindow, HoldsTheLegsAndWhatGoesWithTheirFixedEnds) {
     EXPECT_GT(with_others, 100);
 }
 
-/// Cones strewn ahead of the car, three metres apart in the mean: many ways, no lane.
+/// Cones at random ahead of the car, with a mean spacing of three metres: many walks, but no lane.
 Scene strewn_scene(std::uint64_t seed, std::size_t cones, double side) {
     boost::random::mt19937_64 random(seed);
     const auto uniform = [&](double low, double high) {
@@ -209,7 +209,7 @@ struct Stopped {
     bool is_lane = true;
 };
 
-/// Until the clock has been looked at so often.
+/// Until the clock has been checked this number of times.
 Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     const LaneGraphProblem problem = make_problem(scene, {});
     Graph s(problem);
@@ -231,7 +231,7 @@ Stopped search(const Scene& scene, const PathPairOptions& options, int looks) {
     return result;
 }
 
-/// In dense scenes: a search that goes on has a lane graph that costs no more, and with windows it costs
+/// In dense scenes, a search that continues has a lane graph that costs no more, and with windows it costs
 /// less.
 TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
     double with = 0.0;
@@ -259,10 +259,10 @@ TEST(PathPairWindows, MakeNoIncumbentWorseAndManyBetter) {
     EXPECT_LT(with, without);
 }
 
-/// Its own lane graph, far ends first in one of its paths or not, stays one when windows improve it. In these
-/// three scenes a search that takes a start's paths in the direction in which they come, and does not ask
-/// where the paths of an incumbent end, answers with one near end and three far ones.
-TEST(PathPairWindows, AStartIsImprovedAsWhatItIs) {
+/// Its own lane graph stays a lane graph when windows improve it, whether one of its paths lists far ends
+/// first or not. In these three scenes, a search that takes a start's paths in their given direction, and
+/// does not check where the paths of an incumbent end, answers with one near end and three far ones.
+TEST(PathPairWindows, AnImprovedStartIsALaneGraph) {
     struct Drawn {
         std::uint64_t seed;
         double d_near_m;

@@ -4,14 +4,14 @@
 
 namespace conelane::tests {
 
-/// A clock of path-pair's search that counts the looks at its deadline and strikes at one of them.
+/// A clock of path-pair's search that counts the checks of its deadline, and whose time ends at one of them.
 class FakeSearchClock : public path_pair::SearchClock {
   public:
     /// Counted from 1; 0: never.
     explicit FakeSearchClock(int strikes_at = 0) : strikes_at_(strikes_at) {}
 
     [[nodiscard]] int looks() const { return looks_; }
-    /// Strikes at the next look.
+    /// The time ends at the next check.
     void strike() { strikes_at_ = looks_ + 1; }
 
   private:

@@ -8,19 +8,19 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-// Fakes the clocks of the whole program, of the C library and of every library that it links: a test
-// program includes this once. The monotonic clock is as it was, but ahead by what a test asks for, as if the
-// processor had been away; the time of day jumps by an hour, forth and back, from one look at it to the next.
+// Fakes the clocks of the whole program, of the C library and of every library that it links: a test program
+// includes this once. The monotonic clock is real, but can be ahead by a requested time, as if the processor
+// had been away; the time of day jumps by an hour, forth and back, at each reading.
 
 namespace conelane::tests {
 
 struct ClockLooks {
     std::int64_t monotonic = 0;
     std::int64_t time_of_day = 0;
-    double max_gap_ms = 0.0;  ///< processor time of this thread between two looks at the monotonic clock
+    double max_gap_ms = 0.0;  ///< processor time of this thread between two readings of the monotonic clock
     double last_look_ms = 0.0;
-    std::int64_t away_at = 0;  ///< the look at the monotonic clock from which it is ahead; 0: none
-    std::int64_t away_s = 0;   ///< by so much
+    std::int64_t away_at = 0;  ///< the reading of the monotonic clock from which it is ahead; 0: none
+    std::int64_t away_s = 0;   ///< by how much
 };
 inline thread_local ClockLooks clock_looks;
 
@@ -33,7 +33,7 @@ inline double thread_cpu_ms() {
     const timespec time = true_time(CLOCK_THREAD_CPUTIME_ID);
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
-/// A look at the clock, and what ends a call.
+/// A reading of the clock, and the end of a call.
 inline void note_look() {
     const double now_ms = thread_cpu_ms();
     clock_looks.max_gap_ms = std::max(clock_looks.max_gap_ms, now_ms - clock_looks.last_look_ms);
