@@ -30,6 +30,14 @@ void require_probabilities(const ColorProbabilities& given, std::size_t cone) {
         throw InvalidInput(key_of(cone, "color_probabilities"), "must add up to 1");
 }
 
+void require_covariance(const PositionCovariance& given, std::size_t cone) {
+    if (given.is_valid()) return;
+    const bool finite =
+        std::isfinite(given.xx_m2) && std::isfinite(given.xy_m2) && std::isfinite(given.yy_m2);
+    throw InvalidInput(key_of(cone, "position_covariance"),
+                       finite ? "must be positive semidefinite" : kNotFinite);
+}
+
 }  // namespace
 
 Point Pose::heading() const {
@@ -88,6 +96,21 @@ ConeColor most_probable_color(const ColorProbabilities& probabilities) {
     return std::ranges::count_if(labels, is_best) > 1 ? ConeColor::unknown : best->second;
 }
 
+bool PositionCovariance::is_valid() const {
+    constexpr double kMaxCorrelation = 1.0 + 1e-6;
+    if (!(std::isfinite(xx_m2) && std::isfinite(xy_m2) && std::isfinite(yy_m2))) return false;
+    // Of the roots, since the product may overflow.
+    return xx_m2 >= 0.0 && yy_m2 >= 0.0 &&
+           std::abs(xy_m2) <= kMaxCorrelation * std::sqrt(xx_m2) * std::sqrt(yy_m2);
+}
+
+double PositionCovariance::along_m2(const Point& direction) const {
+    const double variance_m2 = direction.x() * direction.x() * xx_m2 +
+                               2.0 * direction.x() * direction.y() * xy_m2 +
+                               direction.y() * direction.y() * yy_m2;
+    return std::max(0.0, variance_m2);
+}
+
 void validate(const Scene& scene) {
     std::vector<ConeId> ids;
     validate(scene, ids);
@@ -106,6 +129,7 @@ void validate(const Scene& scene, std::vector<ConeId>& ids) {
             throw InvalidInput(key_of(i, "confidence"), "must be in [0, 1]");
         }
         if (cone.color_probabilities) require_probabilities(*cone.color_probabilities, i);
+        if (cone.position_covariance) require_covariance(*cone.position_covariance, i);
     }
     ids.clear();
     for (const Cone& cone : scene.cones) ids.push_back(cone.id);

@@ -1,6 +1,7 @@
 #include "evaluation/scenes/condition.hpp"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -17,6 +18,10 @@ std::span<const Condition> named_conditions() {
     return conditions;
 }
 
+double Condition::noise_m(double distance_m) const {
+    return noise_by_range > 0.0 ? std::hypot(noise_sigma_m, noise_by_range * distance_m) : noise_sigma_m;
+}
+
 std::string noise_text(const Condition& condition) {
     return fmt::format("noise_{}", condition.noise_sigma_m);
 }
@@ -26,10 +31,14 @@ std::string pose_noise_text(const Condition& condition) {
 std::string miss_text(const Condition& condition) {
     return fmt::format("miss_{}", condition.miss_rate);
 }
+std::string noise_by_range_text(const Condition& condition) {
+    return fmt::format("noise_by_range_{}", condition.noise_by_range);
+}
 
 std::vector<std::string> disturbances(const Condition& condition) {
     std::vector<std::string> parts;
     if (condition.noise_sigma_m > 0.0) parts.push_back(noise_text(condition));
+    if (condition.noise_by_range > 0.0) parts.push_back(noise_by_range_text(condition));
     if (condition.pose_noise_lateral_m > 0.0 || condition.pose_noise_yaw_rad > 0.0) {
         parts.push_back(pose_noise_text(condition));
     }

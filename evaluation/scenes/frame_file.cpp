@@ -4,6 +4,7 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/scenes/cone_colors.hpp"
+#include "evaluation/scenes/cone_covariance.hpp"
 #include "evaluation/tracks/run_log.hpp"
 
 #include <string_view>
@@ -18,6 +19,7 @@ Cone read_cone(const JsonNode& json) {
     if (const auto id = json.find("id")) cone.id = id->integer();
     cone.position = {json.member("x").number(), json.member("y").number()};
     read_color(json, cone);
+    read_covariance(json, cone);
     if (const auto confidence = json.find("confidence")) cone.confidence = confidence->number();
     return cone;
 }

@@ -5,6 +5,7 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/json_node.hpp"
 #include "evaluation/scenes/cone_colors.hpp"
+#include "evaluation/scenes/cone_covariance.hpp"
 #include "evaluation/scenes/left_out_scenes.hpp"
 #include "evaluation/scenes/scene_pair.hpp"
 
@@ -26,6 +27,7 @@ Cone read_cone(const JsonNode& json) {
     cone.id = json.member("id").integer();
     cone.position = {json.member("x").number(), json.member("y").number()};
     read_color(json, cone);
+    read_covariance(json, cone);
     if (const auto confidence = json.find("confidence")) cone.confidence = confidence->number();
     return cone;
 }
@@ -113,6 +115,8 @@ ordered_json to_json(const AnnotatedScene& annotated, const std::string& key) {
                          {"confidence", cone.confidence}});
         if (cone.color_probabilities)
             cones.back()["color_probabilities"] = color_probabilities_json(*cone.color_probabilities);
+        if (cone.position_covariance)
+            cones.back()["position_covariance"] = covariance_json(*cone.position_covariance);
     }
     ordered_json json{
         {"id", scene.id},

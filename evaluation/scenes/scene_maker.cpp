@@ -63,7 +63,7 @@ class SceneMaker {
         if (frame != nullptr || !lap_.condition.name.empty() || lap_.condition.persistent) {
             result.missed = missed_cones(sights);
         }
-        scene.cones = seen_cones(sights);
+        scene.cones = seen_cones(sights, scene.pose.position);
         mistake_colors(scene.cones);
         hide_colors(scene.cones);
         if (course_.track.driven.empty()) {
@@ -74,6 +74,7 @@ class SceneMaker {
             return std::nullopt;
         }
         add_false_positives(scene.cones, view);
+        state_covariances(scene);
         draw_confidences(scene.cones);
         SceneGenerator order = generator("order");
         shuffle(scene.cones, order);
@@ -150,7 +151,7 @@ class SceneMaker {
         return cones;
     }
 
-    [[nodiscard]] std::vector<Cone> seen_cones(const std::vector<Sight>& sights) const {
+    [[nodiscard]] std::vector<Cone> seen_cones(const std::vector<Sight>& sights, const Point& car) const {
         SceneGenerator random = generator("position noise");
         boost::random::normal_distribution<double> standard;
         std::vector<Cone> cones;
@@ -158,13 +159,24 @@ class SceneMaker {
             if (sights[i] != Sight::seen) continue;
             cones.push_back(course_.cones[i]);
             cones.back().position = *places_[i];
-            if (const double sigma_m = lap_.condition.noise_sigma_m; sigma_m > 0.0) {
+            const double distance_m = (cones.back().position - car).norm();
+            if (const double sigma_m = lap_.condition.noise_m(distance_m); sigma_m > 0.0) {
                 const double x_m = sigma_m * standard(random);
                 const double y_m = sigma_m * standard(random);
                 cones.back().position = rounded(cones.back().position + Point(x_m, y_m));
             }
         }
         return cones;
+    }
+
+    /// By where a cone was seen, as a sensor states it: false positives have covariances of the same kind.
+    void state_covariances(Scene& scene) const {
+        if (lap_.condition.noise_by_range == 0.0) return;
+        for (Cone& cone : scene.cones) {
+            const double sigma_m = lap_.condition.noise_m((cone.position - scene.pose.position).norm());
+            const double variance_m2 = rounded(sigma_m * sigma_m, 1e6);
+            cone.position_covariance = PositionCovariance{variance_m2, 0.0, variance_m2};
+        }
     }
 
     void mistake_colors(std::vector<Cone>& cones) const {

@@ -35,12 +35,15 @@ void require_list(const std::vector<double>& values, double lowest, double highe
 Condition adapted(Condition condition, const SceneOptions& options) {
     const Condition own = condition;
     condition.noise_sigma_m = options.noise_sigma_m.value_or(own.noise_sigma_m);
+    condition.noise_by_range = options.noise_by_range.value_or(own.noise_by_range);
     condition.pose_noise_lateral_m = options.pose_noise_lateral_m.value_or(own.pose_noise_lateral_m);
     condition.pose_noise_yaw_rad = options.pose_noise_yaw_rad.value_or(own.pose_noise_yaw_rad);
     condition.miss_rate = options.miss_rate.value_or(own.miss_rate);
     condition.persistent = options.persistent.value_or(own.persistent);
     if (own.name.empty()) return condition;
     if (condition.noise_sigma_m != own.noise_sigma_m) condition.name += "+" + noise_text(condition);
+    if (condition.noise_by_range != own.noise_by_range)
+        condition.name += "+" + noise_by_range_text(condition);
     if (condition.pose_noise_lateral_m != own.pose_noise_lateral_m ||
         condition.pose_noise_yaw_rad != own.pose_noise_yaw_rad) {
         condition.name += "+" + pose_noise_text(condition);
@@ -62,6 +65,7 @@ void validate(const SceneOptions& options) {
     if (options.nearest == 0U) throw InvalidInput("nearest", "must be at least 1");
     static_cast<void>(conditions_of(options));
     require_between(options.noise_sigma_m.value_or(0.0), 0.0, kMax, "noise");
+    require_between(options.noise_by_range.value_or(0.0), 0.0, 1.0, "noise-by-range");
     require_between(options.pose_noise_lateral_m.value_or(0.0), 0.0, kMax, "pose-noise");
     require_between(options.pose_noise_yaw_rad.value_or(0.0), 0.0, kMax, "pose-noise");
     const double miss_rate = options.miss_rate.value_or(0.0);

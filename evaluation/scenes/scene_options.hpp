@@ -20,6 +20,7 @@ struct SceneOptions {
     std::vector<std::string> conditions;
     // These values replace those of every condition; see Condition.
     std::optional<double> noise_sigma_m;
+    std::optional<double> noise_by_range;  ///< in [0, 1]
     std::optional<double> pose_noise_lateral_m;
     std::optional<double> pose_noise_yaw_rad;
     std::optional<double> miss_rate;  ///< in [0, 1)

@@ -17,6 +17,7 @@ nlohmann::ordered_json scene_options_json(const SceneOptions& options) {
         {"confidence", options.with_confidence},
         {"seed", options.seed}};
     if (!options.conditions.empty()) json["condition"] = condition_names(options);
+    if (options.noise_by_range) json["noise_by_range"] = *options.noise_by_range;
     if (options.persistent) json["persist"] = *options.persistent;
     if (options.nearest) json["nearest"] = *options.nearest;
     return json;

@@ -150,6 +150,10 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_option_function<double>(
         "--noise", [&options](double sigma_m) { options.noise_sigma_m = sigma_m; },
         "standard deviation of the seen positions [m]");
+    command.add_option_function<double>(
+        "--noise-by-range", [&options](double share) { options.noise_by_range = share; },
+        "standard deviation of the seen positions for each metre between cone and car, beside --noise; "
+        "the cones of the scenes carry their covariance");
     command
         .add_option_function<std::vector<double>>(
             "--pose-noise",

@@ -132,7 +132,9 @@ class Lap {
                                              const char* what) const {
         require_accepted(check(cones, problem.parameters, graph, {false, value, {}}), cones.id, what);
         if (row.status == SolveStatus::infeasible) {
-            throw InvalidInput(cones.id, fmt::format("a {} is feasible, but the exact search proved that there is none", what));
+            throw InvalidInput(
+                cones.id,
+                fmt::format("a {} is feasible, but the exact search proved that there is none", what));
         }
         if (row.status == SolveStatus::optimal && value < *row.optimum->objective - kObjectiveTolerance) {
             throw InvalidInput(cones.id, fmt::format("a {} has the objective {}, below the proven optimum {}",
@@ -173,7 +175,7 @@ class Lap {
     std::unique_ptr<LaneDetector> beside_;
 };
 
-/// The lanes of a row that are held against its optimum.
+/// The lanes of a row that are compared with its optimum.
 struct Rival {
     const char* name;
     std::optional<JudgedLane> OptimalityRow::*lane;
@@ -397,7 +399,7 @@ class OptimalityStudy : public Study {
                "Every scene with a ground truth is solved by path-pair on the cone set that the methods get, "
                "under each of the named costs. Of the candidates of the enumerating method those that RLD's "
                "constraints allow are compared by the objective; a beam search over the same costs, the "
-               "answer of that method and that of another one are held against the optimum too. Gap: "
+               "answer of that method and that of another one are compared with the optimum too. Gap: "
                "(lane - optimum) / max(1, |optimum|). Quality: usable / success / IoU in %, of scenes with "
                "a proven optimum. Nothing is timed."}) {}
 
@@ -416,7 +418,7 @@ class OptimalityStudy : public Study {
         command.add_option("--method", options_.detector, "a method that enumerates")->capture_default_str();
         command
             .add_option("--beside", options_.beside,
-                        "another method, whose lanes are held against the optimum; '' for none")
+                        "another method, whose lanes are compared with the optimum; '' for none")
             ->capture_default_str();
         command
             .add_option("--beam-width", options_.beam_width,

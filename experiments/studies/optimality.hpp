@@ -27,7 +27,7 @@ struct NamedCosts {
 
 struct OptimalityOptions {
     std::string detector = "clc";        ///< one that enumerates
-    std::string beside = "front";        ///< one whose lanes are held against the optimum; none if empty
+    std::string beside = "front";        ///< one whose lanes are compared with the optimum; none if empty
     std::optional<std::size_t> nearest;  ///< cone set of all; all cones if absent
     std::vector<NamedCosts> costs{{}};   ///< at least one
     std::size_t beam_width = 100;        ///< see beam_lane_graph

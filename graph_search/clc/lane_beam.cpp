@@ -71,7 +71,12 @@ constexpr double kMaxFirstTurn_rad = 110.0 * kDegree;
 
 constexpr Vertex kNoVertex = ~Vertex{0};
 
-/// One of 64 bits for each vertex; several vertices share a bit.
+/// Bits of a state; beyond so many vertices some share a bit.
+constexpr std::size_t kBits = 64 * std::tuple_size_v<decltype(LaneBeam::State::bits)>;
+
+std::size_t word_of(Vertex vertex) {
+    return vertex % kBits / 64;
+}
 std::uint64_t bit_of(Vertex vertex) {
     return std::uint64_t{1} << (vertex % 64);
 }
@@ -126,6 +131,13 @@ void LaneBeam::start(const SearchGraph& graph, const Scene& scene, std::span<con
     first_turn_limit_ = turning_measure(kMaxFirstTurn_rad);
     heading_ = scene.pose.heading();
     width_ = width;
+    constexpr double kRounding = 1e-9;
+    most_about_ = kRounding;
+    for (const std::size_t measure : {kBesideMeasure, kCloseMeasure, kInsideMeasure}) {
+        const auto first = scores.values.begin() + static_cast<std::ptrdiff_t>(kOffsets[measure]);
+        most_about_ +=
+            *std::max_element(first, first + static_cast<std::ptrdiff_t>(kMeasures[measure].scores));
+    }
     states_.clear();
     best_ = {kNotBetter, 0.0, kNone, kNoVertex, kNoVertex, kNoVertex};
     next_.clear();
@@ -153,14 +165,20 @@ bool LaneBeam::advance(SearchBudget& budget) {
             if (budget.spend(work)) return false;
             if (!measure(number, side, vertex, step)) continue;
             const auto [low, high] = std::minmax(vertex, facing);
-            const Extension extension{from.score + scores_->score(step.measures),
-                                      from.length_m + step.segment_m,
-                                      number,
-                                      vertex,
-                                      low,
-                                      high};
+            Extension extension{score_after(number, step) + most_about_,
+                                from.length_m + step.segment_m,
+                                number,
+                                vertex,
+                                low,
+                                high,
+                                false};
+            if (is_lane && extension.score > best_.score) {
+                look_about(number, side, vertex, step);
+                extension.score = score_after(number, step);
+                extension.exact = true;
+                if (extension.score > best_.score) best_ = extension;
+            }
             next_.push_back(extension);
-            if (is_lane && extension.score > best_.score) best_ = extension;
         }
     }
     keep_best();
@@ -208,7 +226,7 @@ std::size_t LaneBeam::add_start(StartPair start) {
     const Point across = graph_->position(start.left) - graph_->position(start.right);
     State state{};
     state.last = {start.left, start.right};
-    state.bits = bit_of(start.left) | bit_of(start.right);
+    for (const Vertex vertex : {start.left, start.right}) state.bits[word_of(vertex)] |= bit_of(vertex);
     state.before = state.last;
     state.direction = {heading_, heading_};
     state.vertices = {1, 1};
@@ -263,22 +281,29 @@ bool LaneBeam::measure(std::size_t number, Side side, Vertex vertex, Step& step)
     const Point along = step.direction + from.direction[facing];
     const double along_length = along.norm();
     measures[kAdvanceMeasure] = along_length == 0.0 ? 0.0 : (point - facing_tip).dot(along) / along_length;
-    const Neighbourhood cones =
-        neighbourhood(*graph_, from.last[side], tip, facing_tip, point, point, facing_tip);
-    measures[kBesideMeasure] = cones.beside;
-    measures[kCloseMeasure] = cones.close;
-    measures[kInsideMeasure] = cones.inside;
     return true;
+}
+
+void LaneBeam::look_about(std::size_t number, Side side, Vertex vertex, Step& step) const {
+    const State& from = states_[number];
+    const Point& point = graph_->position(vertex);
+    const Point& facing_tip = graph_->position(from.last[opposite(side)]);
+    const Neighbourhood cones = neighbourhood(*graph_, from.last[side], graph_->position(from.last[side]),
+                                              facing_tip, point, point, facing_tip);
+    step.measures[kBesideMeasure] = cones.beside;
+    step.measures[kCloseMeasure] = cones.close;
+    step.measures[kInsideMeasure] = cones.inside;
 }
 
 std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
     Step step;
     const Side side = next_side(states_[number]);
     if (!measure(number, side, vertex, step)) return kNone;
+    look_about(number, side, vertex, step);
     State state = states_[number];
     state.before[side] = state.last[side];
     state.last[side] = vertex;
-    state.bits |= bit_of(vertex);
+    state.bits[word_of(vertex)] |= bit_of(vertex);
     state.direction[side] = step.direction;
     state.segment_m[side] = step.segment_m;
     state.turn_rad[side] = step.turn_rad;
@@ -294,7 +319,8 @@ std::size_t LaneBeam::extend(std::size_t number, Vertex vertex) {
 }
 
 bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
-    if ((states_[number].bits & bit_of(vertex)) == 0) return false;
+    if ((states_[number].bits[word_of(vertex)] & bit_of(vertex)) == 0) return false;
+    if (graph_->vertex_count() <= kBits) return true;
     for (; number != kNone; number = states_[number].parent) {
         const std::array<Vertex, 2>& last = states_[number].last;
         if (last[kLeft] == vertex || last[kRight] == vertex) return true;
@@ -304,21 +330,31 @@ bool LaneBeam::is_on_lane(std::size_t number, Vertex vertex) const {
 
 void LaneBeam::keep_best() {
     // A heap, because only the first few are taken. Ties are decided by values that do not change when the
-    // scene is mirrored.
+    // scene is mirrored. The first one's bound is replaced by its score, so scores are taken in their order.
     const auto is_worse = [](const Extension& a, const Extension& b) {
-        return std::tuple(-a.score, a.length_m, a.low, a.high) >
-               std::tuple(-b.score, b.length_m, b.low, b.high);
+        return std::tuple(-a.score, a.exact, a.length_m, a.low, a.high) >
+               std::tuple(-b.score, b.exact, b.length_m, b.low, b.high);
     };
+    Step step;
     std::make_heap(next_.begin(), next_.end(), is_worse);
     level_.clear();
     while (!next_.empty() && level_.size() < width_) {
         std::pop_heap(next_.begin(), next_.end(), is_worse);
-        const Extension extension = next_.back();
+        Extension extension = next_.back();
         next_.pop_back();
-        if (!is_known(extension)) {
+        if (is_known(extension)) continue;
+        if (extension.exact) {
             level_.push_back(extension.vertex == kNoVertex ? extension.parent
                                                            : extend(extension.parent, extension.vertex));
+            continue;
         }
+        const Side side = next_side(states_[extension.parent]);
+        (void)measure(extension.parent, side, extension.vertex, step);
+        look_about(extension.parent, side, extension.vertex, step);
+        extension.score = score_after(extension.parent, step);
+        extension.exact = true;
+        next_.push_back(extension);
+        std::push_heap(next_.begin(), next_.end(), is_worse);
     }
 }
 

@@ -91,9 +91,9 @@ class LaneBeam {
         double width_m;
         double length_m;  ///< of both sides
         double score;
-        std::size_t parent;  ///< kNone: a starting pair
-        Side pushed;         ///< the side that was extended to get here
-        std::uint64_t bits;  ///< of the lane's vertices, see is_on_lane
+        std::size_t parent;                 ///< kNone: a starting pair
+        Side pushed;                        ///< the side that was extended to get here
+        std::array<std::uint64_t, 8> bits;  ///< of the lane's vertices, see is_on_lane
         StepMeasures step;
     };
     static constexpr std::size_t kNone = ~std::size_t{0};
@@ -136,18 +136,25 @@ class LaneBeam {
     };
     /// A state that may follow; only those that go on are stored.
     struct Extension {
-        double score;
+        double score;  ///< an upper bound until the neighbourhood of its step was looked at
         double length_m;
         std::size_t parent;
         Vertex vertex;  ///< none: the parent itself, a starting pair
         Vertex low;     ///< the last vertices of both sides
         Vertex high;
+        bool exact = true;
     };
 
     [[nodiscard]] bool is_on_lane(std::size_t number, Vertex vertex) const;
-    /// Whether the vertex can follow on the side, and the step if so.
+    /// Whether the vertex can follow on the side, and the step if so, without measures of its neighbourhood.
     [[nodiscard]] bool measure(std::size_t number, Side side, Vertex vertex, Step& step) const;
-    /// Makes a level of the best ones in `next_`.
+    /// Adds the measures of the neighbourhood, which take most of the time.
+    void look_about(std::size_t number, Side side, Vertex vertex, Step& step) const;
+    /// The score of the state after that step, which has all its measures.
+    [[nodiscard]] double score_after(std::size_t number, const Step& step) const {
+        return states_[number].score + scores_->score(step.measures);
+    }
+    /// Makes a level of the best ones in `next_`. Looks about only where a bound could be among them.
     void keep_best();
     /// Whether the level has a state with the same last vertices.
     [[nodiscard]] bool is_known(const Extension& extension) const;
@@ -160,6 +167,7 @@ class LaneBeam {
     double first_turn_limit_ = 0.0;
     Point heading_{0.0, 0.0};
     std::size_t width_ = 0;
+    double most_about_ = 0.0;  ///< at least what the neighbourhood of a step adds to its score
     std::vector<State> states_;
     std::vector<std::size_t> level_;
     std::vector<Extension> next_;

@@ -33,6 +33,9 @@ struct FrontOptions {
 /// lane has two cones a side at least, each cone at most once. It is never closed: it ends where the course
 /// comes back beside or behind the car, where no view that it has learned from shows cones.
 ///
+/// Cone::position_covariance widens the rules of width and turn and shortens LaneAnswer::trusted_m. Where no
+/// cone has one, or all are 0, the answer is that without.
+///
 /// LaneAnswer::confidence is the probability that the lane is usable: that it can be driven by for 20 m, or
 /// to its end; LaneAnswer::trusted_m is how far it is right, with calibrated probability.
 /// DetectionLimits::keep_candidates asks for the best lanes, kContenders of FrontJudge at most, each with its

@@ -213,6 +213,19 @@ double worst_stop(const FrontSearch& search, const FrontJudge::Contender& lane) 
     return worst;
 }
 
+/// The probability of a step where positions may be more uncertain than the judge has learned from: as that
+/// of several cones, the more the larger the variance of its cone. Of the first pair the more uncertain one
+/// counts.
+double right_of(const FrontMap& map, const FrontSearch::Node& node, double right) {
+    constexpr double kPerUnit = 1.0;
+    constexpr double kUnit_m2 = 0.04;  // the learned scenes have a noise of 0.2 m at most
+    if (!map.has_spread()) return right;
+    const auto variance_m2 = [&](Side side) { return map.variance_m2(node.state.ends[side].cones[0]); };
+    const double largest_m2 =
+        node.parent == kNone ? std::max(variance_m2(kLeft), variance_m2(kRight)) : variance_m2(node.side);
+    return std::pow(right, 1.0 + kPerUnit * largest_m2 / kUnit_m2);
+}
+
 const FrontWeights& valid(const FrontWeights& weights) {
     validate(weights);
     return weights;
@@ -398,7 +411,7 @@ std::span<const FrontJudge::Reach> FrontJudge::reaches(const FrontSearch& search
             length_m[node.side] += static_cast<double>(node.state.ends[node.side].segment_m);
             ++counted[node.side];
         }
-        trust *= steps_[place].right;
+        trust *= right_of(search.map(), node, steps_[place].right);
         const double shorter_m = std::min(length_m[kLeft], length_m[kRight]);
         reaches_.push_back({trust, std::max(0.0, shorter_m - kTrustMargin_m)});
     }

@@ -61,7 +61,7 @@ class FrontJudge {
     [[nodiscard]] std::span<const Reach> reaches(const FrontSearch& search, std::size_t contender,
                                                  const std::array<std::size_t, 2>& cones);
     /// How far the contender is trusted: up to the last cone whose trust is least_trust of the scene's set
-    /// of weights.
+    /// of weights. Where covariances of positions are known, an uncertain cone lowers the trust more.
     [[nodiscard]] double trusted_m(const FrontSearch& search, std::size_t contender,
                                    const std::array<std::size_t, 2>& cones);
 

@@ -57,6 +57,7 @@ void FrontMap::build(const Scene& scene) {
     for (std::size_t i = 0; i < count; ++i) positions_[i] = in_car_frame(order_[i]);
     find_view_radius();
     take_colors(scene);
+    take_spread(scene);
     places_.assign(count, {0, kNotAsked});
     used_ = 0;
     left_out_edges_ = false;
@@ -89,6 +90,33 @@ void FrontMap::take_colors(const Scene& scene) {
         pairs += 1.0F;
     }
     if (pairs > 0.0F) color_consistency_ = sum / pairs;
+}
+
+void FrontMap::take_spread(const Scene& scene) {
+    has_spread_ = std::ranges::any_of(scene.cones, [](const Cone& cone) {
+        return cone.position_covariance.value_or(PositionCovariance{}) != PositionCovariance{};
+    });
+    if (!has_spread_) return;
+    const Point ahead = scene.pose.heading();
+    const Point left(-ahead.y(), ahead.x());
+    spread_.resize(positions_.size());
+    for (Vertex cone = 0; cone < positions_.size(); ++cone) {
+        const PositionCovariance given =
+            scene.cones[order_[cone]].position_covariance.value_or(PositionCovariance{});
+        const double xy_m2 = ahead.x() * left.x() * given.xx_m2 +
+                             (ahead.x() * left.y() + ahead.y() * left.x()) * given.xy_m2 +
+                             ahead.y() * left.y() * given.yy_m2;
+        spread_[cone] = {given.along_m2(ahead), xy_m2, given.along_m2(left)};
+    }
+}
+
+double FrontMap::spread_between_m(Vertex a, Vertex b) const {
+    if (!has_spread_) return 0.0;
+    const Point apart = positions_[b] - positions_[a];
+    const double distance_m = apart.norm();
+    if (distance_m == 0.0) return 0.0;
+    const Point direction = apart / distance_m;
+    return std::sqrt(variance_m2(a, direction) + variance_m2(b, direction));
 }
 
 /// The nearest other cone that has a color; of equally near ones the first.

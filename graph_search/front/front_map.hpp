@@ -125,6 +125,19 @@ class FrontMap {
     /// for random colors.
     [[nodiscard]] float color_consistency() const { return color_consistency_; }
 
+    /// Whether the place of any cone is uncertain.
+    [[nodiscard]] bool has_spread() const { return has_spread_; }
+    /// Variance of the position of a cone along a unit vector [m^2]; 0 where nothing is known of it.
+    [[nodiscard]] double variance_m2(Vertex cone, const Point& direction) const {
+        return has_spread_ ? spread_[cone].along_m2(direction) : 0.0;
+    }
+    /// The mean of it over all directions.
+    [[nodiscard]] double variance_m2(Vertex cone) const {
+        return has_spread_ ? 0.5 * (spread_[cone].xx_m2 + spread_[cone].yy_m2) : 0.0;
+    }
+    /// Standard deviation of the distance of two cones [m]; 0 where they stand at one place.
+    [[nodiscard]] double spread_between_m(Vertex a, Vertex b) const;
+
     /// The ways from a cone of at most kMaxSegment_m, the shortest first; where they are fewer than
     /// kFewEdges, as many of at most kMaxLengthAmongFew_m. Cones at the same place are not joined. Stays
     /// valid until the next `build`.
@@ -165,6 +178,7 @@ class FrontMap {
     [[nodiscard]] bool is_alone(Vertex cone) const;
     void look_about(Vertex from, std::size_t edge, EdgeNeighbourhood& about);
     void take_colors(const Scene& scene);
+    void take_spread(const Scene& scene);
     [[nodiscard]] Vertex nearest_colored(Vertex cone) const;
 
     std::vector<Point> positions_;
@@ -181,6 +195,8 @@ class FrontMap {
     float color_share_ = 0.0F;
     float color_consistency_ = 0.0F;
     std::vector<ConeSide> colors_;  ///< not updated if no cone has a color
+    bool has_spread_ = false;
+    std::vector<PositionCovariance> spread_;  ///< in the frame of the car; not updated if there is none
 };
 
 }  // namespace conelane

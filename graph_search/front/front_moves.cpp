@@ -8,9 +8,11 @@ namespace conelane {
 namespace {
 
 /// Whether the other boundary's last cones leave room for a segment.
-bool leaves_room(const FrontMap& map, const FrontEnd& other, const Segment& segment,
+bool leaves_room(const FrontMap& map, const FrontEnd& other, Vertex from, Vertex to,
                  const FrontRules& rules) {
-    const auto near = [&](const Segment& facing) { return come_within(segment, facing, rules.narrowest_m); };
+    const Segment segment{map.position(from), map.position(to)};
+    const double narrowest_m = narrowest_between_m(map, to, other.cones[0], rules);
+    const auto near = [&](const Segment& facing) { return come_within(segment, facing, narrowest_m); };
     const Point& last = map.position(other.cones[0]);
     if (other.count < 2) return !near({last, last});
     const Point& before = map.position(other.cones[1]);
@@ -31,6 +33,13 @@ bool stays_near(const FrontMap& map, const FrontEnd& other, const Point& cone, c
 
 }  // namespace
 
+double narrowest_between_m(const FrontMap& map, Vertex added, Vertex facing, const FrontRules& rules) {
+    constexpr double kLeast_m = 0.5;
+    if (!map.has_spread()) return rules.narrowest_m;
+    return std::max(kLeast_m,
+                    rules.narrowest_m - rules.narrowest_spreads * map.spread_between_m(added, facing));
+}
+
 void FrontMoves::list(FrontMap& map, const FrontState& state, Side side, const FrontRules& rules) {
     const FrontEnd& own = state.ends[side];
     const FrontEnd& other = state.ends[opposite(side)];
@@ -47,12 +56,20 @@ void FrontMoves::list(FrontMap& map, const FrontState& state, Side side, const F
     const auto is_allowed = [&](const FrontEdge& edge) {
         if (edge.to == other.cones[0] || edge.to == other.cones[1] || edge.to == own.cones[1]) return false;
         if (own.length_m + static_cast<double>(edge.length_m) > rules.longest_boundary_m) return false;
-        return leaves_room(map, other, {map.position(from), map.position(edge.to)}, rules) &&
+        return leaves_room(map, other, from, edge.to, rules) &&
                stays_near(map, other, map.position(edge.to), rules);
+    };
+    // By how much the cosine may be off: all limits are about a right angle.
+    const auto slack = [&](const FrontEdge& edge) {
+        if (!map.has_spread()) return 0.0;
+        const Point across(-edge.direction.y(), edge.direction.x());
+        const double variance_m2 = map.variance_m2(from, across) + map.variance_m2(edge.to, across);
+        return rules.turn_spreads * std::sqrt(3.0 * variance_m2) /
+               std::max(static_cast<double>(edge.length_m), 1.0);
     };
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const FrontEdge& edge = edges[i];
-        const double straightness = own.direction.dot(edge.direction);
+        const double straightness = own.direction.dot(edge.direction) + slack(edge);
         if (edge.length_m <= static_cast<float>(kShortSegment_m)) {
             if (straightness < least || !is_allowed(edge)) continue;
             if (extensions.size() == rules.short_segments) {
@@ -102,7 +119,9 @@ void FrontStarts::list(const FrontMap& map, const FrontRules& rules) {
         for (std::size_t right = 0; right < cones[kRight].size(); ++right) {
             const Point& r = map.position(cones[kRight][right]);
             const double width_m = (l - r).norm();
-            if (width_m < rules.narrowest_m || width_m > rules.widest_start_m) continue;
+            const double narrowest_m =
+                narrowest_between_m(map, cones[kLeft][left], cones[kRight][right], rules);
+            if (width_m < narrowest_m || width_m > rules.widest_start_m) continue;
             if (l.y() <= r.y()) continue;  // the sides would be swapped
             pairs.push_back({left, right});
         }

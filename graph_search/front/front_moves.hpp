@@ -12,8 +12,11 @@ namespace conelane {
 /// Rules that no lane may break. There is no largest width beside a boundary that goes on: it would exclude
 /// true lanes in hairpins.
 struct FrontRules {
-    double narrowest_m = 2.0;     ///< from a new segment to the other boundary, noise included
-    double widest_alone_m = 7.5;  ///< from a new cone to a boundary that has stopped
+    double narrowest_m = 2.0;  ///< from a new segment to the other boundary, noise included
+    // Where covariances of positions are known, a rule gives way by so many standard deviations.
+    double narrowest_spreads = 0.5;  ///< of the distance between both cones, see narrowest_between_m
+    double turn_spreads = 1.0;       ///< of the turn, about as for three cones of the same variance
+    double widest_alone_m = 7.5;     ///< from a new cone to a boundary that has stopped
     double largest_turn_rad = 110.0 * std::numbers::pi / 180.0;
     double largest_long_turn_rad = 85.0 * std::numbers::pi / 180.0;    ///< onto a segment that bridges
     double largest_first_turn_rad = 110.0 * std::numbers::pi / 180.0;  ///< from the heading
@@ -28,6 +31,11 @@ struct FrontRules {
     double widest_start_m = 10.0;
     std::size_t start_cones = 48;  ///< of each side, the nearest to the car
 };
+
+/// How near a new cone may come to a cone of the other boundary [m]: FrontRules::narrowest_m, less where
+/// their positions are uncertain, half a metre at least.
+[[nodiscard]] double narrowest_between_m(const FrontMap& map, Vertex added, Vertex facing,
+                                         const FrontRules& rules);
 
 /// The moves of a side that its last cones allow: all segments up to kShortSegment_m and the straightest
 /// longer ones without a cone on them, in the order of their length. FrontSearch checks rules that depend on

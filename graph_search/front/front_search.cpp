@@ -226,16 +226,18 @@ bool FrontSearch::is_free(std::size_t number, Side side, Vertex to) const {
     for (; number != kNone; number = nodes_[number].parent) {
         const Node& node = nodes_[number];
         if (node.parent == kNone) {
-            const Point& facing = map_.position(node.state.ends[opposite(side)].cones[0]);
-            return foot_point(facing, added).distance_m >= options_.rules.narrowest_m;
+            const Vertex facing = node.state.ends[opposite(side)].cones[0];
+            return foot_point(map_.position(facing), added).distance_m >=
+                   narrowest_between_m(map_, to, facing, options_.rules);
         }
         if (node.move.stops()) continue;
         const std::array<Vertex, 3>& cones = node.state.ends[node.side].cones;
         const Segment segment{map_.position(cones[1]), map_.position(cones[0])};
+        const double narrowest_m = narrowest_between_m(map_, to, cones[0], options_.rules);
         if (node.side == side) {
             if (cones[0] != last && !far_apart(added, segment, 0.0) && segments_intersect(added, segment))
                 return false;
-        } else if (come_within(added, segment, options_.rules.narrowest_m)) {
+        } else if (come_within(added, segment, narrowest_m)) {
             return false;
         }
     }

@@ -43,6 +43,19 @@ struct ColorProbabilities {
 /// The most probable label, big orange cones with the small ones; unknown where two are equally probable.
 [[nodiscard]] ConeColor most_probable_color(const ColorProbabilities& probabilities);
 
+/// Covariance of the measured position of a cone, in the map frame [m^2].
+struct PositionCovariance {
+    double xx_m2 = 0.0;
+    double xy_m2 = 0.0;
+    double yy_m2 = 0.0;
+
+    bool operator==(const PositionCovariance&) const = default;
+    /// Finite and positive semidefinite; a correlation may be above 1 by at most 1e-6, which rounding does.
+    [[nodiscard]] bool is_valid() const;
+    /// Variance along a unit vector [m^2].
+    [[nodiscard]] double along_m2(const Point& direction) const;
+};
+
 struct Cone {
     ConeId id = 0;
     Point position{0.0, 0.0};  ///< [m], map frame
@@ -51,6 +64,9 @@ struct Cone {
     /// Class probabilities. If present, `front` and RldParameters::w_color use them instead of `color`; the
     /// other detectors use `color` alone.
     std::optional<ColorProbabilities> color_probabilities{};
+    /// How uncertain the position is. `front` uses it; the other detectors do not. Absent: unknown, which
+    /// gives the same answers as 0.
+    std::optional<PositionCovariance> position_covariance{};
 
     /// Those, or those of the label.
     [[nodiscard]] ColorProbabilities probabilities() const {
@@ -66,8 +82,8 @@ struct Scene {
 };
 
 /// Throws InvalidInput, naming the key, if a number is not finite, a confidence or a probability is outside
-/// [0, 1], the probabilities of a cone add up to less than 0.999 or more than 1.001, or an id occurs twice. A
-/// scene without cones is valid: it has no lane.
+/// [0, 1], the probabilities of a cone add up to less than 0.999 or more than 1.001, a covariance is not
+/// valid, or an id occurs twice. A scene without cones is valid: it has no lane.
 void validate(const Scene& scene);
 /// The same, with `ids` as workspace: it allocates only if `ids` has too little capacity.
 void validate(const Scene& scene, std::vector<ConeId>& ids);

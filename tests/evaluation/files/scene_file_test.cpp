@@ -127,6 +127,44 @@ TEST_F(SceneFileTest, NamesBadProbabilitiesOfColors) {
               "s.jsonl:1: cones[0].color_probabilities[1]: must be a number");
 }
 
+TEST_F(SceneFileTest, CovariancesOfPositionsAreReadAndWrittenWhereAConeHasOne) {
+    const fs::path file = file_with(
+        scene(R"({"id": 1, "x": 1, "y": 2, "position_covariance": [[0.25, -0.125], [-0.125, 0.5]]},)"
+              R"({"id": 2, "x": 1, "y": 3, "position_covariance": [[0, 0], [0, 0]]},)"
+              R"({"id": 3, "x": 1, "y": 4, "position_covariance": [[1, 0.1], [0.10000001, 1]]},)"
+              R"({"id": 4, "x": 1, "y": 5})"));
+    const std::vector<AnnotatedScene> read = read_scenes(file);
+    const std::vector<Cone>& cones = read.front().scene.cones;
+    EXPECT_EQ(cones[0].position_covariance, (PositionCovariance{0.25, -0.125, 0.5}));
+    EXPECT_EQ(cones[1].position_covariance, PositionCovariance{});
+    EXPECT_NEAR(cones[2].position_covariance->xy_m2, 0.1, 1e-7);  // rounding is no asymmetry
+    EXPECT_FALSE(cones[3].position_covariance.has_value());
+    write_scenes(path("out"), read);
+    const std::string written = text_of(path("out"));
+    EXPECT_THAT(written, testing::HasSubstr(R"("confidence":1.0,)"
+                                            R"("position_covariance":[[0.25,-0.125],[-0.125,0.5]]})"));
+    EXPECT_THAT(written, testing::HasSubstr(R"("y":5.0,"color":"unknown","confidence":1.0})"));
+    EXPECT_EQ(read_scenes(path("out")).front().scene.cones[0].position_covariance,
+              cones[0].position_covariance);
+}
+
+TEST_F(SceneFileTest, NamesBadCovariancesOfPositions) {
+    const auto error_with = [&](const std::string& matrix) {
+        return error_in(scene(R"({"id": 1, "x": 1, "y": 2, "position_covariance": )" + matrix + "}"));
+    };
+    const std::string key = "s.jsonl:1: cones[0].position_covariance";
+    for (const char* shape :
+         {"[]", "[[1, 0]]", "[[1, 0], [0, 1], [0, 0]]", "[[1, 0], [0]]", "[[1, 0, 0], [0, 1, 0]]"})
+        EXPECT_EQ(error_with(shape), key + ": must be [[xx, xy], [xy, yy]]") << shape;
+    EXPECT_EQ(error_with("[[1, 0.2], [0.1, 1]]"), key + ": must be symmetric");
+    for (const char* indefinite : {"[[-1, 0], [0, 1]]", "[[1, 2], [2, 1]]", "[[0, 0.1], [0.1, 1]]",
+                                   "[[1e300, 1.1e300], [1.1e300, 1e300]]"})
+        EXPECT_EQ(error_with(indefinite), key + ": must be positive semidefinite") << indefinite;
+    EXPECT_EQ(error_with("[[1, 0], [0, null]]"), key + "[1][1]: must be a number");
+    EXPECT_THAT(error_with("[1, 0, 0, 1]"), testing::HasSubstr("position_covariance"));
+    EXPECT_THAT(error_with("0.1"), testing::HasSubstr("position_covariance"));
+}
+
 TEST_F(SceneFileTest, ConditionAndMissedConesAreWrittenIfPresent) {
     AnnotatedScene made;
     made.scene = {"a", {{0, 0}, 0}, {{7, {1, 2}}}};

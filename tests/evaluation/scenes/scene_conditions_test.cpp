@@ -52,6 +52,8 @@ TEST(SceneConditions, AnOptionReplacesItsPartAndTheNameSaysSo) {
     };
     EXPECT_THAT(names([](SceneOptions&) {}), ElementsAre("paper", "car"));
     EXPECT_THAT(names([](SceneOptions& o) { o.noise_sigma_m = 0.1; }), ElementsAre("paper+noise_0.1", "car"));
+    EXPECT_THAT(names([](SceneOptions& o) { o.noise_by_range = 0.02; }),
+                ElementsAre("paper+noise_by_range_0.02", "car+noise_by_range_0.02"));
     EXPECT_THAT(names([](SceneOptions& o) { o.miss_rate = 0.0; }), ElementsAre("paper", "car+miss_0"));
     EXPECT_THAT(names([](SceneOptions& o) { o.persistent = false; }), ElementsAre("paper", "car+no_persist"));
     EXPECT_THAT(names([](SceneOptions& o) { o.persistent = true; }), ElementsAre("paper+persist", "car"));

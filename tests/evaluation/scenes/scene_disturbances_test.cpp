@@ -94,11 +94,49 @@ TEST(SceneGeneration, DisturbancesHaveTheRequestedSpread) {
     EXPECT_NEAR(std::sqrt(squared / 2000), 0.1, 0.01);
 
     wanted = options({0.0}, {40.0});
+    wanted.noise_sigma_m = 0.1;
+    wanted.noise_by_range = 0.02;
+    for (const std::size_t place : {0U, 6U}) {  // 3.4 m and 33 m from the car
+        const double distance_m = Point(3.0 + 5.0 * static_cast<double>(place), 1.5).norm();
+        squared = 0.0;
+        for (const auto& scene : generate(straight(), poses, wanted)) {
+            const Point truth(10.0 + 5.0 * static_cast<double>(place), 1.5);
+            squared += (cone_of(scene, scene.ground_truth->left.at(place)).position - truth).squaredNorm();
+        }
+        const double expected_m = std::hypot(0.1, 0.02 * distance_m);
+        EXPECT_NEAR(std::sqrt(squared / 2000), expected_m, 0.1 * expected_m);
+    }
+
+    wanted = options({0.0}, {40.0});
     wanted.miss_rate = 0.2;
     std::size_t seen = 0;
     for (const auto& scene : generate(straight(), poses, wanted)) seen += scene.scene.cones.size();
     // From x = 7 to x = 47: eight cones a side and the stray point.
     EXPECT_NEAR(static_cast<double>(seen) / 17000.0, 0.8, 0.01);
+}
+
+/// As a sensor states it, by where the cone is seen: it does not tell false positives from true ones.
+TEST(SceneGeneration, NoiseByRangeComesWithTheCovarianceOfEveryCone) {
+    const std::vector<Pose> poses(3, Pose{{7.0, 0.0}, 0.0});
+    SceneOptions wanted = options({0.3}, {30.0});
+    wanted.noise_sigma_m = 0.1;
+    const auto without = generate(straight(), poses, wanted);
+    for (const Cone& cone : without[0].scene.cones) EXPECT_FALSE(cone.position_covariance.has_value());
+    wanted.noise_by_range = 0.0;
+    EXPECT_EQ(bytes(generate(straight(), poses, wanted)), bytes(without));
+    wanted.noise_by_range = 0.02;
+    for (const auto& scene : generate(straight(), poses, wanted)) {
+        EXPECT_THAT(scene.scene.id, testing::EndsWith("/noise_0.1/noise_by_range_0.02"));
+        EXPECT_NO_THROW(validate(scene.scene));
+        for (const Cone& cone : scene.scene.cones) {
+            const double distance_m = (cone.position - scene.scene.pose.position).norm();
+            const double variance_m2 = 0.01 + std::pow(0.02 * distance_m, 2);
+            ASSERT_TRUE(cone.position_covariance.has_value());
+            EXPECT_NEAR(cone.position_covariance->xx_m2, variance_m2, 1e-6);
+            EXPECT_EQ(cone.position_covariance->yy_m2, cone.position_covariance->xx_m2);
+            EXPECT_EQ(cone.position_covariance->xy_m2, 0.0);
+        }
+    }
 }
 
 TEST(SceneGeneration, ColorsShowOnlyWhereAskedForAndFalsePositivesHaveAnyOfThem) {

@@ -173,6 +173,7 @@ TEST(SceneGeneration, NamesOptionsOutOfRange) {
     EXPECT_EQ(error([](SceneOptions& o) { o.every_m = 0.0; }), "every: must be in [0.01, 1000]");
     EXPECT_EQ(error([](SceneOptions& o) { o.nearest = 0; }), "nearest: must be at least 1");
     EXPECT_EQ(error([](SceneOptions& o) { o.noise_sigma_m = -1.0; }), "noise: must be in [0, 1000]");
+    EXPECT_EQ(error([](SceneOptions& o) { o.noise_by_range = 1.5; }), "noise-by-range: must be in [0, 1]");
     EXPECT_EQ(error([](SceneOptions& o) { o.pose_noise_yaw_rad = kNan; }),
               "pose-noise: must be in [0, 1000]");
     EXPECT_EQ(error([](SceneOptions& o) { o.miss_rate = 1.0; }), "miss: must be in [0, 1)");

@@ -1,4 +1,4 @@
-// The beam search that the exact search is held against.
+// The beam search that the exact search is compared with.
 
 #include "experiments/studies/lane_graph_beam.hpp"
 

@@ -1,0 +1,39 @@
+#include "evaluation/scenes/cone_covariance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace conelane {
+
+std::optional<PositionCovariance> covariance_of(const std::array<double, 4>& matrix) {
+    constexpr double kOff = 1e-6;
+    const auto [xx, xy, yx, yy] = matrix;
+    if (xy == yx) return PositionCovariance{xx, xy, yy};
+    if (!(std::abs(xy - yx) <= kOff * std::max(std::abs(xy), std::abs(yx)))) return std::nullopt;
+    return PositionCovariance{xx, 0.5 * xy + 0.5 * yx, yy};
+}
+
+void read_covariance(const JsonNode& json, Cone& cone) {
+    const auto rows = json.find("position_covariance");
+    if (!rows) return;
+    constexpr std::size_t kSize = 2;
+    if (rows->array_size() != kSize) rows->fail("must be [[xx, xy], [xy, yy]]");
+    std::array<double, kSize * kSize> matrix{};
+    for (std::size_t row = 0; row < kSize; ++row) {
+        if (rows->element(row).array_size() != kSize) rows->fail("must be [[xx, xy], [xy, yy]]");
+        for (std::size_t column = 0; column < kSize; ++column)
+            matrix[kSize * row + column] = rows->element(row).element(column).number();
+    }
+    cone.position_covariance = covariance_of(matrix);
+    if (!cone.position_covariance) rows->fail("must be symmetric");
+    if (!cone.position_covariance->is_valid()) rows->fail("must be positive semidefinite");
+}
+
+nlohmann::ordered_json covariance_json(const PositionCovariance& covariance) {
+    using nlohmann::ordered_json;
+    return ordered_json::array({ordered_json::array({covariance.xx_m2, covariance.xy_m2}),
+                                ordered_json::array({covariance.xy_m2, covariance.yy_m2})});
+}
+
+}  // namespace conelane
