@@ -94,7 +94,7 @@ class NoiseStudy : public Study {
                        percent(share(row.claimed, row.scenes), 1), fixed(row.max_confidence, 2),
                        fixed(row.mean_trusted_m, 2), percent(share(row.trusted_10_m, row.scenes), 1)});
         }
-        return study_result(table.text(), rows, row_to_json);
+        return study_result(table.text(), rows, [](const NoiseRow& row) { return row_to_json(row); });
     }
 
   private:
