@@ -10,6 +10,7 @@
 #include "experiments/studies/front_beam.hpp"
 #include "experiments/studies/growth.hpp"
 #include "experiments/studies/memory.hpp"
+#include "experiments/studies/noise.hpp"
 #include "experiments/studies/optimality.hpp"
 #include "experiments/studies/relaxations.hpp"
 
@@ -29,6 +30,7 @@ std::vector<std::unique_ptr<Study>> make_studies() {
     studies.push_back(make_front_beam_study());
     studies.push_back(make_deadlines_study());
     studies.push_back(make_memory_study());
+    studies.push_back(make_noise_study());
     return studies;
 }
 

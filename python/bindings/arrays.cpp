@@ -3,9 +3,11 @@
 #include "conelane/invalid_input.hpp"
 #include "conelane/rld_parameter_sets.hpp"
 #include "detectors/parameters/learned_costs_reader.hpp"
+#include "evaluation/scenes/cone_covariance.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <unordered_map>
 
@@ -112,6 +114,27 @@ void set_colors(std::vector<Cone>& cones, py::handle object) {
     for (std::size_t i = 0; i < cones.size(); ++i) cones[i].color = color_of(codes.data()[i], key(i));
 }
 
+void set_covariances(std::vector<Cone>& cones, const Numbers& given) {
+    constexpr py::ssize_t kSize = 2;
+    const bool fits = cones.empty()
+                          ? given.size() == 0
+                          : given.ndim() == 3 && given.shape(0) == static_cast<py::ssize_t>(cones.size()) &&
+                                given.shape(1) == kSize && given.shape(2) == kSize;
+    if (!fits)
+        throw InvalidInput("covariances", "has shape " + shape_of(given) + ", not (" +
+                                              std::to_string(cones.size()) + ", 2, 2)");
+    const double* matrix = given.data();
+    for (std::size_t i = 0; i < cones.size(); ++i, matrix += kSize * kSize) {
+        const std::string key = "covariances[" + std::to_string(i) + "]";
+        if (!std::all_of(matrix, matrix + kSize * kSize, [](double value) { return std::isfinite(value); }))
+            throw InvalidInput(key, "must be a finite number");
+        cones[i].position_covariance = covariance_of({matrix[0], matrix[1], matrix[2], matrix[3]});
+        if (!cones[i].position_covariance) throw InvalidInput(key, "must be symmetric");
+        if (!cones[i].position_covariance->is_valid())
+            throw InvalidInput(key, "must be positive semidefinite");
+    }
+}
+
 /// Known keys, for the message about an unknown one.
 std::string parameter_keys() {
     std::string keys;
@@ -184,7 +207,8 @@ Pose pose(py::handle object) {
     return {{array.data()[0], array.data()[1]}, array.data()[2]};
 }
 
-std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors, py::handle confidences) {
+std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors, py::handle confidences,
+                        py::handle covariances) {
     const std::vector<Point> at = points(positions, "cones");
     std::vector<Cone> cones(at.size());
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -203,6 +227,7 @@ std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
         require_length(values, at.size(), "confidences");
         for (std::size_t i = 0; i < at.size(); ++i) cones[i].confidence = values.data()[i];
     }
+    if (!covariances.is_none()) set_covariances(cones, numbers(covariances, "covariances"));
     return cones;
 }
 
@@ -312,6 +337,18 @@ py::array_t<double> color_probabilities(std::span<const Cone> cones) {
 
 py::array_t<double> confidences(std::span<const Cone> cones) {
     return column<double>(cones, [](const Cone& cone) { return cone.confidence; });
+}
+
+std::optional<py::array_t<double>> covariances(std::span<const Cone> cones) {
+    if (std::ranges::none_of(cones, [](const Cone& cone) { return cone.position_covariance.has_value(); }))
+        return std::nullopt;
+    py::array_t<double> matrices({static_cast<py::ssize_t>(cones.size()), py::ssize_t{2}, py::ssize_t{2}});
+    double* out = matrices.mutable_data();
+    for (const Cone& cone : cones) {
+        const PositionCovariance c = cone.position_covariance.value_or(PositionCovariance{});
+        for (const double value : {c.xx_m2, c.xy_m2, c.xy_m2, c.yy_m2}) *out++ = value;
+    }
+    return matrices;
 }
 
 std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,

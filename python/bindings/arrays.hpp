@@ -30,10 +30,10 @@ using Indices = py::array_t<std::int64_t>;
 [[nodiscard]] std::vector<Point> points(py::handle object, const char* key);
 /// (x, y, yaw)
 [[nodiscard]] Pose pose(py::handle object);
-/// An (N, 2) array and, unless they are None, N ids, colors and confidences. Without ids a cone has its
-/// index.
+/// An (N, 2) array and, unless they are None, N ids, colors, confidences and covariances. Without ids a cone
+/// has its index.
 [[nodiscard]] std::vector<Cone> cones(py::handle positions, py::handle ids, py::handle colors,
-                                      py::handle confidences);
+                                      py::handle confidences, py::handle covariances);
 /// Ids of the cones that an array of indices names.
 [[nodiscard]] std::vector<ConeId> ids_at(py::handle indices, std::span<const Cone> cones, const char* key);
 [[nodiscard]] std::size_t positive_count(py::handle object, const char* key);
@@ -52,6 +52,8 @@ using Indices = py::array_t<std::int64_t>;
 /// (N, 5): unknown, blue, yellow, orange, big orange.
 [[nodiscard]] py::array_t<double> color_probabilities(std::span<const Cone> cones);
 [[nodiscard]] py::array_t<double> confidences(std::span<const Cone> cones);
+/// (N, 2, 2), 0 for a cone without one; nothing where no cone has one.
+[[nodiscard]] std::optional<py::array_t<double>> covariances(std::span<const Cone> cones);
 /// Positions of the cones with these ids in the list. Throws InvalidInput naming `key` for an unknown id.
 [[nodiscard]] std::vector<std::int64_t> indices_of(std::span<const ConeId> ids, std::span<const Cone> cones,
                                                    std::string_view key);

@@ -172,15 +172,16 @@ Examples
             "detect",
             [](DetectorObject& detector, const py::object& cones, const py::object& pose,
                const py::object& ids, const py::object& colors, const py::object& confidences,
-               std::optional<double> time_limit_ms) {
+               std::optional<double> time_limit_ms, const py::object& covariances) {
                 auto scene = std::make_shared<Scene>();
-                scene->cones = python::cones(cones, ids, colors, confidences);
+                scene->cones = python::cones(cones, ids, colors, confidences, covariances);
                 scene->pose = python::pose(pose);
                 return detector.detect(std::move(scene), time_limit_ms);
             },
             py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(), py::arg("colors") = py::none(),
-            py::arg("confidences") = py::none(), py::arg("time_limit_ms") = 50.0,
-            R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0)
+            py::arg("confidences") = py::none(), py::arg("time_limit_ms") = 50.0, py::kw_only(),
+            py::arg("covariances") = py::none(),
+            R"(detect(cones, pose, ids=None, colors=None, confidences=None, time_limit_ms=50.0, *, covariances=None)
 
 The lane among cones.
 
@@ -202,6 +203,9 @@ confidences : (N,) array_like of float, optional
     Of the detections, in [0, 1]. By default 1.
 time_limit_ms : float or None
     Wall clock [ms]; None for no limit.
+covariances : (N, 2, 2) array_like of float, optional
+    Of the positions [m^2], in the frame of `pose`: symmetric and positive semidefinite. `front` uses them. By
+    default unknown, which is the same as 0.
 
 Returns
 -------
@@ -210,7 +214,7 @@ Lane
 Raises
 ------
 ValueError
-    For wrong shapes and dtypes, numbers that are not finite, and an id that occurs twice.
+    For wrong shapes and dtypes, numbers that are not finite, an invalid covariance, and an id that occurs twice.
 
 Examples
 --------

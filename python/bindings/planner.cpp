@@ -211,9 +211,10 @@ True
             "update",
             [](PlannerObject& planner, const py::object& cones, const py::object& pose,
                const py::object& time_s, const py::object& ids, const py::object& colors,
-               std::optional<double> time_limit_ms, const py::object& confidences) {
+               std::optional<double> time_limit_ms, const py::object& confidences,
+               const py::object& covariances) {
                 Frame frame{time_of(time_s), python::pose(pose),
-                            python::cones(cones, ids, colors, confidences)};
+                            python::cones(cones, ids, colors, confidences, covariances)};
                 if (ids.is_none()) {
                     for (Cone& cone : frame.cones) cone.id = kNoId;
                 }
@@ -221,8 +222,8 @@ True
             },
             py::arg("cones"), py::arg("pose"), py::arg("time_s"), py::arg("ids") = py::none(),
             py::arg("colors") = py::none(), py::arg("time_limit_ms") = 20.0, py::kw_only(),
-            py::arg("confidences") = py::none(),
-            R"(update(cones, pose, time_s, ids=None, colors=None, time_limit_ms=20.0, *, confidences=None)
+            py::arg("confidences") = py::none(), py::arg("covariances") = py::none(),
+            R"(update(cones, pose, time_s, ids=None, colors=None, time_limit_ms=20.0, *, confidences=None, covariances=None)
 
 The plan of the next frame.
 
@@ -244,6 +245,8 @@ time_limit_ms : float or None
     Of the detector, wall clock [ms]; None for no limit.
 confidences : (N,) array_like of float, optional
     Of the detections, in [0, 1]. By default 1.
+covariances : (N, 2, 2) array_like of float, optional
+    As of `Detector.detect`. They are checked, and the planner does not use them: it keeps means of many sightings.
 
 Returns
 -------

@@ -42,7 +42,7 @@ SolutionObject solve_rld(const py::object& cones, const py::object& pose, const 
                          const py::object& parameters, const std::optional<std::string>& pairing,
                          const std::string& solver_name, std::optional<double> time_limit_ms,
                          double absolute_gap) {
-    Scene scene{"", python::pose(pose), python::cones(cones, ids, colors, confidences)};
+    Scene scene{"", python::pose(pose), python::cones(cones, ids, colors, confidences, py::none())};
     RldParameters chosen = rld_parameters(parameters).value_or(RldParameters{});
     if (pairing) chosen.pairing = pairing_of(*pairing);
     const RldSolverEntry& entry = find_solver(solver_name);

@@ -24,9 +24,10 @@ using Sides = std::optional<std::pair<py::object, py::object>>;
 std::shared_ptr<AnnotatedScene> make_scene(const py::object& cones, const py::object& pose,
                                            const py::object& ids, const py::object& colors,
                                            const py::object& confidences, const std::string& id,
-                                           const Sides& ground_truth, bool closed, const std::string& track) {
+                                           const Sides& ground_truth, bool closed, const std::string& track,
+                                           const py::object& covariances) {
     auto scene = std::make_shared<AnnotatedScene>();
-    scene->scene = {id, python::pose(pose), python::cones(cones, ids, colors, confidences)};
+    scene->scene = {id, python::pose(pose), python::cones(cones, ids, colors, confidences, covariances)};
     validate(scene->scene);
     scene->track = track;
     if (ground_truth) {
@@ -58,7 +59,8 @@ void write_scenes(const std::filesystem::path& file, const std::vector<SceneObje
 std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track, double false_positive_rate,
                                                              double range_m, double every_m,
                                                              const std::optional<std::string>& condition,
-                                                             bool with_color, std::uint64_t seed) {
+                                                             bool with_color, std::uint64_t seed,
+                                                             std::optional<double> noise_by_range) {
     SceneOptions options;
     options.false_positive_rates = {false_positive_rate};
     options.ranges_m = {range_m};
@@ -66,6 +68,7 @@ std::vector<std::shared_ptr<AnnotatedScene>> generate_scenes(const Track& track,
     if (condition) options.conditions = {*condition};
     options.with_color = with_color;
     options.seed = seed;
+    options.noise_by_range = noise_by_range;
     const py::gil_scoped_release unlocked;
     validate(options);
     return shared(generate_scenes(track, options));
@@ -79,13 +82,13 @@ Indices track_indices(const std::vector<std::size_t>& indices) {
 void add_scene(py::module_& module) {
     py::class_<AnnotatedScene, std::shared_ptr<AnnotatedScene>> scene(
         module, "Scene",
-        R"(Scene(cones, pose, ids=None, colors=None, confidences=None, *, id='', ground_truth=None, closed=False, track='')
+        R"(Scene(cones, pose, ids=None, colors=None, confidences=None, *, id='', ground_truth=None, closed=False, track='', covariances=None)
 
 The input of one call of a detector, and the truth for scoring. Every attribute is a copy.
 
 Parameters
 ----------
-cones, pose, ids, colors, confidences
+cones, pose, ids, colors, confidences, covariances
     As `Detector.detect` takes them.
 id : str
     Id of the scene.
@@ -107,7 +110,7 @@ Examples
         .def(py::init(&make_scene), py::arg("cones"), py::arg("pose"), py::arg("ids") = py::none(),
              py::arg("colors") = py::none(), py::arg("confidences") = py::none(), py::kw_only(),
              py::arg("id") = "", py::arg("ground_truth") = py::none(), py::arg("closed") = false,
-             py::arg("track") = "")
+             py::arg("track") = "", py::arg("covariances") = py::none())
         .def_property_readonly(
             "id", [](const AnnotatedScene& s) { return s.scene.id; }, "str")
         .def_property_readonly(
@@ -130,6 +133,11 @@ Examples
         .def_property_readonly(
             "confidences", [](const AnnotatedScene& s) { return python::confidences(s.scene.cones); },
             "(N,) ndarray of float64")
+        .def_property_readonly(
+            "covariances", [](const AnnotatedScene& s) { return python::covariances(s.scene.cones); },
+            "(N, 2, 2) ndarray of float64, or None where no cone has one: of the positions [m^2]; 0 for a "
+            "cone "
+            "without one")
         .def_property_readonly(
             "ground_truth", ground_truth,
             "tuple of two (K,) ndarray of int64, or None: left and right, as indices into `cones`")
@@ -322,7 +330,8 @@ Examples
         "generate_scenes", generate_scenes, py::arg("track"), py::kw_only(),
         py::arg("false_positive_rate") = 0.0, py::arg("range_m") = 30.0, py::arg("every_m") = 1.1,
         py::arg("condition") = py::none(), py::arg("with_color") = false, py::arg("seed") = 0,
-        R"(generate_scenes(track, *, false_positive_rate=0.0, range_m=30.0, every_m=1.1, condition=None, with_color=False, seed=0)
+        py::arg("noise_by_range") = py::none(),
+        R"(generate_scenes(track, *, false_positive_rate=0.0, range_m=30.0, every_m=1.1, condition=None, with_color=False, seed=0, noise_by_range=None)
 
 What a car sees along a track, with the true lane.
 
@@ -341,6 +350,9 @@ with_color : bool
     Whether cones show the colours of the track.
 seed : int
     The same seed gives the same scenes.
+noise_by_range : float, optional
+    Standard deviation of the positions for each metre between cone and car, in [0, 1], beside the noise of the
+    condition. Above 0 the scenes have `covariances`.
 
 Returns
 -------

@@ -48,12 +48,16 @@ class Cones(NamedTuple):
         None where the message has none.
     ids : (N,) ndarray of int64, or None
         None where the message has none.
+    covariances : (N, 2, 2) ndarray of float64, or None
+        Of the positions [m^2]. None where the message has none, or only zeros, which is what a message holds that
+        nobody filled.
     """
 
     cones: FloatArray
     colors: Union[NDArray[np.uint8], FloatArray]
     confidences: Optional[FloatArray] = None
     ids: Optional[NDArray[np.int64]] = None
+    covariances: Optional[FloatArray] = None
 
     @property
     def labels(self) -> NDArray[np.uint8]:
@@ -89,6 +93,12 @@ def _positions(points: Iterable[Any]) -> FloatArray:
 
 def _point(position: FloatArray) -> Dict[str, float]:
     return {"x": float(position[0]), "y": float(position[1]), "z": 0.0}
+
+
+def _covariances(rows: List[FloatArray]) -> Optional[FloatArray]:
+    """Matrices of the rows xx, xy, yx, yy; None where all are 0."""
+    matrices = np.array(rows, dtype=np.float64).reshape(-1, 2, 2)
+    return matrices if matrices.any() else None
 
 
 def _color(color: Any) -> Color:
@@ -135,7 +145,7 @@ def from_eufs(message: Any) -> Cones:
     ----------
     message : object or dict
         With the lists blue_cones, yellow_cones, orange_cones, big_orange_cones and unknown_color_cones of cones that
-        have a `point`.
+        have a `point` and, if they know it, a `covariance`: xx, xy, yx, yy.
 
     Returns
     -------
@@ -145,7 +155,7 @@ def from_eufs(message: Any) -> Cones:
     Raises
     ------
     ValueError
-        Naming the field that is missing.
+        Naming the field that is missing, or a covariance of other than four numbers.
 
     Examples
     --------
@@ -155,11 +165,17 @@ def from_eufs(message: Any) -> Cones:
     """
     positions: List[FloatArray] = []
     colors: List[int] = []
+    spread: List[FloatArray] = []
     for name, color in _EUFS_LISTS.items():
         of_list = _positions(_field(cone, "point") for cone in _field(message, name))
         positions.append(of_list)
         colors += [int(color)] * len(of_list)
-    return Cones(np.concatenate(positions), np.array(colors, dtype=np.uint8))
+        for i, cone in enumerate(_field(message, name)):
+            given = _field(cone, "covariance") if _has(cone, "covariance") else np.zeros(4)
+            spread.append(np.asarray(given, dtype=np.float64))
+            if spread[-1].shape != (4,):
+                raise ValueError(f"{name}[{i}].covariance: {spread[-1].size} numbers, not 4")
+    return Cones(np.concatenate(positions), np.array(colors, dtype=np.uint8), covariances=_covariances(spread))
 
 
 def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
@@ -172,7 +188,7 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
         Positions [m].
     colors : (N,) array_like of str or int, optional
         As `Detector.detect` takes them; orange cones become small orange ones.
-    covariances : (N, 4) array_like of float, optional
+    covariances : (N, 2, 2) or (N, 4) array_like of float, optional
         Row by row [m^2]; by default 0.
 
     Returns
@@ -191,6 +207,8 @@ def to_eufs(cones: ArrayLike, colors: Optional[ArrayLike] = None,
     """
     positions, kinds = _given(cones, colors)
     spread = np.zeros((len(positions), 4)) if covariances is None else np.asarray(covariances, dtype=np.float64)
+    if spread.shape == (len(positions), 2, 2):
+        spread = spread.reshape(-1, 4)
     if spread.shape != (len(positions), 4):
         raise ValueError(f"covariances: has shape {spread.shape}, not ({len(positions)}, 4)")
     message: Dict[str, Any] = {name: [] for name in _EUFS_LISTS}
@@ -274,7 +292,8 @@ def from_pacsim(message: Any) -> Cones:
     ----------
     message : object, dict or sequence
         With a list `detections`, or with `left_lane`, `right_lane` and `unknown`, of landmarks that have
-        `pose.pose.position`, `class_probabilities`, `detection_probability` and, in a track, `id`.
+        `pose.pose.position`, `class_probabilities`, `detection_probability` and, in a track, `id`. If they know it,
+        `pose.covariance` with 36 numbers, row by row: x, y, z and three angles.
 
     Returns
     -------
@@ -284,8 +303,8 @@ def from_pacsim(message: Any) -> Cones:
     Raises
     ------
     ValueError
-        Naming the field that is missing; for other than seven classes, and for probabilities that are negative or not
-        finite.
+        Naming the field that is missing; for other than seven classes, for a covariance of other than 36 numbers, and
+        for probabilities that are negative or not finite.
 
     Examples
     --------
@@ -300,6 +319,7 @@ def from_pacsim(message: Any) -> Cones:
     else:
         landmarks = list(_field(message, "detections"))
     kept, colors, soft = [], [], []
+    spread: List[FloatArray] = []
     for i, landmark in enumerate(landmarks):
         probabilities = np.asarray(_field(landmark, "class_probabilities"), dtype=np.float64)
         if probabilities.shape != (_PACSIM_CLASSES,):
@@ -311,6 +331,11 @@ def from_pacsim(message: Any) -> Cones:
             kept.append(landmark)
             colors.append(int(color))
             soft.append(_of_pacsim_classes(probabilities))
+            has_spread = _has(_field(landmark, "pose"), "covariance")
+            given = np.asarray(_field(landmark, "pose.covariance") if has_spread else np.zeros(36), dtype=np.float64)
+            if given.shape != (36,):
+                raise ValueError(f"landmark {i}: pose.covariance: {given.size} numbers, not 36")
+            spread.append(given[[0, 1, 6, 7]])
     is_sure = all(max(one) >= 1.0 - _PACSIM_SURE for one in soft)
     has_ids = bool(kept) and all(_has(landmark, "id") for landmark in kept)
     return Cones(
@@ -318,6 +343,7 @@ def from_pacsim(message: Any) -> Cones:
         np.array(colors, dtype=np.uint8) if is_sure else np.array(soft, dtype=np.float64),
         np.array([float(_field(landmark, "detection_probability")) for landmark in kept]),
         np.array([int(_field(landmark, "id")) for landmark in kept], dtype=np.int64) if has_ids else None,
+        _covariances(spread),
     )
 
 

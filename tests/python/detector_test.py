@@ -103,6 +103,31 @@ class Answers(unittest.TestCase):
         self.assertEqual(conelane.Scene(STRAIGHT, ORIGIN, colors=names).color_probabilities[0].tolist(),
                          [0, 0, 1, 0, 0])
 
+    def test_covariances_are_zero_by_default_and_shorten_what_is_trusted(self):
+        front = conelane.Detector("front")
+        without = front.detect(STRAIGHT, ORIGIN)
+        matrices = np.tile([[0.04, 0.01], [0.01, 0.09]], (8, 1, 1))
+        for zero in (np.zeros((8, 2, 2)), np.zeros((8, 2, 2), dtype=int).tolist()):
+            lane = front.detect(STRAIGHT, ORIGIN, covariances=zero)
+            self.assertEqual((lane.left.tolist(), lane.confidence, lane.trusted_m),
+                             (without.left.tolist(), without.confidence, without.trusted_m))
+        self.assertLess(front.detect(STRAIGHT, ORIGIN, covariances=1e4 * matrices).trusted_m, without.trusted_m)
+        scene = conelane.Scene(STRAIGHT, ORIGIN, covariances=matrices)
+        np.testing.assert_array_equal(scene.covariances, matrices)
+        self.assertIsNone(conelane.Scene(STRAIGHT, ORIGIN).covariances)
+        self.assertEqual(front.detect_scene(scene).trusted_m,
+                         front.detect(STRAIGHT, ORIGIN, covariances=matrices).trusted_m)
+        np.testing.assert_array_equal(
+            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0, covariances=matrices).centre_line,
+            conelane.Planner().update(STRAIGHT, ORIGIN, 0.0).centre_line)
+
+    def test_scenes_with_noise_by_range_have_covariances(self):
+        track = conelane.load_tracks("generated:circle")[0]
+        scene = conelane.generate_scenes(track, every_m=50.0, noise_by_range=0.02)[0]
+        far_m = np.hypot(*(scene.cones - scene.pose[:2]).T)
+        np.testing.assert_allclose(scene.covariances[:, 0, 0], (0.02 * far_m) ** 2, atol=1e-6)
+        self.assertIsNone(conelane.generate_scenes(track, every_m=50.0)[0].covariances)
+
     def test_an_answer_keeps_its_own_cones(self):
         cones = STRAIGHT.copy()
         lane = conelane.Detector("front").detect(cones, ORIGIN)
@@ -161,6 +186,12 @@ class Refusals(unittest.TestCase):
         self.check("colors: has shape (8, 4), not (8, 5) or (8,)", colors=np.zeros((8, 4)))
         self.check("cones[0].color_probabilities: must add up to 1", colors=np.zeros((8, 5)))
         self.check("cones[0].color_probabilities: must be in [0, 1]", colors=np.full((8, 5), 2.0))
+        self.check("covariances: has shape (8, 4), not (8, 2, 2)", covariances=np.zeros((8, 4)))
+        self.check("covariances: has shape (7, 2, 2), not (8, 2, 2)", covariances=np.zeros((7, 2, 2)))
+        self.check("covariances[0]: must be a finite number", covariances=np.full((8, 2, 2), np.nan))
+        self.check("covariances[0]: must be symmetric", covariances=np.tile([[1.0, 0.5], [0.0, 1.0]], (8, 1, 1)))
+        self.check("covariances[0]: must be positive semidefinite",
+                   covariances=np.tile([[1.0, 2.0], [2.0, 1.0]], (8, 1, 1)))
         self.check("colors: has dtype float64, not names or codes of colours", colors=np.zeros(8))
         self.check("colors[0]: 'red' is not a colour; colours are unknown, blue, yellow, orange", colors=["red"] * 8)
         self.check("colors[2]: 7 is not a colour; colours are 0 to 3: unknown, blue, yellow, orange",

@@ -44,6 +44,17 @@ class Eufs(unittest.TestCase):
             self.assertEqual(cones.colors.tolist(), KINDS)
             self.assertIsNone(cones.ids)
             self.assertIsNone(cones.confidences)
+            np.testing.assert_array_equal(cones.covariances, np.tile(0.1 * np.eye(2), (5, 1, 1)))
+
+    def test_covariances(self):
+        given = np.array([[[0.2, 0.1], [0.1, 0.3]], [[0.0, 0.0], [0.0, 0.0]]])
+        message = messages.to_eufs([[1, 2], [3, 4]], covariances=given)
+        np.testing.assert_array_equal(messages.from_eufs(message).covariances, given)
+        self.assertIsNone(messages.from_eufs(messages.to_eufs([[1, 2]])).covariances)
+        without = {**self.MESSAGE, "blue_cones": [{"point": point(1, 2)}]}
+        self.assertEqual(messages.from_eufs(without).covariances[0].tolist(), [[0, 0], [0, 0]])
+        with self.assertRaisesRegex(ValueError, r"blue_cones\[0\].covariance: 3 numbers, not 4"):
+            messages.from_eufs({**self.MESSAGE, "blue_cones": [{"point": point(1, 2), "covariance": [1, 0, 1]}]})
 
     def test_there_and_back(self):
         message = messages.to_eufs(PLACES, COLORS, covariances=np.arange(16.0).reshape(4, 4))
@@ -99,6 +110,16 @@ class PacSim(unittest.TestCase):
             self.assertEqual(cones.labels.tolist(), KINDS[-1:] + KINDS[:-1])
             np.testing.assert_allclose(cones.confidences, [0.0, 0.2, 0.3, 0.4, 0.5])
             self.assertIsNone(cones.ids)
+
+    def test_covariances(self):
+        uncertain = landmark(1, 2, 2)
+        uncertain["pose"]["covariance"] = np.arange(36.0).tolist()
+        cones = messages.from_pacsim(as_objects([uncertain, landmark(1, -2, 3)]))
+        self.assertEqual(cones.covariances.tolist(), [[[0, 1], [6, 7]], [[0, 0], [0, 0]]])
+        self.assertIsNone(messages.from_pacsim(self.LANDMARKS).covariances)
+        uncertain["pose"]["covariance"] = [1.0] * 4
+        with self.assertRaisesRegex(ValueError, "landmark 0: pose.covariance: 4 numbers, not 36"):
+            messages.from_pacsim([uncertain])
 
     def test_a_track_has_ids(self):
         track = {"left_lane": [landmark(0, 2, 2, id=5)], "right_lane": [landmark(0, -2, 3, id=8)],

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -260,6 +261,64 @@ TEST(LaneBeam, LevelsAreAsWideAsAskedBestFirstAndOneStepDeeperEach) {
             ++vertices;
         } while (search.beam.advance(search.budget));
     }
+}
+
+/// Scores that also judge what lies about a step, for better and for worse.
+StepScores neighbourhood_scores() {
+    StepScores scores = sensible_scores();
+    for (const std::size_t measure : {kBesideMeasure, kCloseMeasure, kInsideMeasure}) {
+        for (std::size_t i = 0; i < step_measures()[measure].scores; ++i)
+            score_at(scores, measure, i) = (i % 2 == 0 ? 0.7 : -0.9) * static_cast<double>(i);
+    }
+    return scores;
+}
+
+/// The neighbourhood of a step is looked at only where its bound may be among the best: no level shows it.
+TEST(LaneBeam, TheNextLevelHoldsTheBestOfAllSteps) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        SCOPED_TRACE(seed);
+        constexpr std::size_t kWidth = 6;
+        Search search(random_scene(seed, 25), neighbourhood_scores());
+        search.start(kWidth);
+        for (bool goes_on = true; goes_on;) {
+            const std::vector<std::size_t> level(search.beam.level().begin(), search.beam.level().end());
+            std::vector<LaneBeam::State> steps;
+            for (const std::size_t number : level) {
+                const LaneBeam::State from = search.beam.state(number);
+                for (const Vertex vertex : search.graph.neighbours(from.last[search.beam.next_side(from)])) {
+                    const std::size_t extended = search.beam.extend(number, vertex);
+                    if (extended != LaneBeam::kNone) steps.push_back(search.beam.state(extended));
+                }
+            }
+            std::ranges::sort(steps, std::ranges::greater{}, &LaneBeam::State::score);
+            std::vector<LaneBeam::State> best;
+            for (const LaneBeam::State& step : steps) {
+                const bool known = std::ranges::any_of(best, [&](const LaneBeam::State& better) {
+                    return better.last == step.last && better.before == step.before;
+                });
+                if (!known && best.size() < kWidth) best.push_back(step);
+            }
+            goes_on = search.beam.advance(search.budget);
+            ASSERT_EQ(search.beam.level().size(), best.size());
+            for (std::size_t i = 0; i < best.size(); ++i) {
+                EXPECT_EQ(search.beam.state(search.beam.level()[i]).score, best[i].score);
+                EXPECT_EQ(search.beam.state(search.beam.level()[i]).last, best[i].last);
+            }
+        }
+    }
+}
+
+/// More vertices than a state has bits.
+TEST(LaneBeam, TakesNoVertexTwiceAmongManyHundreds) {
+    Search search(random_scene(1, 560), sensible_scores());
+    const std::optional<std::size_t> best = search.best(3);
+    ASSERT_TRUE(best);
+    const PathPairVertices lane = search.beam.vertices(*best);
+    std::vector<Vertex> all(lane[kLeft]);
+    all.insert(all.end(), lane[kRight].begin(), lane[kRight].end());
+    EXPECT_GT(all.size(), 6U);
+    std::ranges::sort(all);
+    EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
 /// The highest score of all lanes below a state, the state included.
