@@ -26,6 +26,13 @@ bool LaneChoice::agrees(const DrivableLane& lane, const DrivableLane& left) cons
     return is_spent(left) || jump_m(lane, left, settings_.near_m) <= settings_.jump_m;
 }
 
+const DrivableLane& LaneChoice::reference(const DrivableLane& fresh, const DrivableLane& left,
+                                          const DrivableLane& course) const {
+    if (!agrees(fresh, course) || !agrees(left, course)) return course;
+    const double from_fresh_m = jump_m(fresh, course, settings_.near_m);
+    return jump_m(left, course, settings_.near_m) < from_fresh_m ? left : course;
+}
+
 /// Where the lane runs along the one driven so far, `weight` is added to what supported that one; elsewhere
 /// it is the only support.
 void LaneChoice::support(const DrivableLane& lane, double weight) {

@@ -23,6 +23,11 @@ class LaneChoice {
     /// Whether a lane continues the one driven so far, or too little of that one is left. `left`: the rest of
     /// the lane driven so far; without points there is none.
     [[nodiscard]] bool agrees(const DrivableLane& lane, const DrivableLane& left) const;
+    /// The lane that `fresh` is compared with in later laps: `course`, the one of the lap before, or `left`
+    /// if both are on the course and `left` is nearer to it. A lane that leaves `left` for the edge of what
+    /// agrees with the course then has to be confirmed as in the first lap.
+    [[nodiscard]] const DrivableLane& reference(const DrivableLane& fresh, const DrivableLane& left,
+                                                const DrivableLane& course) const;
     /// Whether to drive by `fresh` from now on, which the frame supports with `weight`. `kept_weight`: the
     /// frame's support of the lane driven so far if `fresh` disagrees with it; 0 for no support.
     [[nodiscard]] bool take(const DrivableLane& fresh, const DrivableLane& left, double weight = 1.0,

@@ -157,8 +157,9 @@ std::optional<DrivableLane> LapPlanner::chosen_lane(const LaneAnswer& answer, co
     if (!fresh) return std::nullopt;
     const DrivableLane course = course_.ahead(scene.pose, choice_settings_.course_ahead_m);
     if (off_course_ && choice_.agrees(*fresh, course)) off_course_ = false;
-    const bool by_course = !off_course_ && !left.points.empty() && !course.points.empty();
-    const DrivableLane& before = by_course ? course : left;
+    const bool is_in_later_lap = !off_course_ && !left.points.empty() && !course.points.empty();
+    const DrivableLane& before = is_in_later_lap ? choice_.reference(*fresh, left, course) : left;
+    const bool by_course = &before == &course;
     const double weight = answer.confidence.value_or(choice_settings_.unsure_weight);
     std::optional<DrivableLane> kept;
     double kept_weight = by_course ? choice_settings_.course_weight : 0.0;
