@@ -108,9 +108,9 @@ def html(results, published):
                          f"also if it is short. {bars}"
                          f"{alone}", success_figure(under), "Success"))
     if any(sample.has("iou") for sample in under.samples):
-        figures.append(drawn("iou-by-rate", "High is good. Compared with everything visible, so a method with a small cone set stays low. "
+        figures.append(drawn("iou-by-rate", "High is good, compared with everything visible, so a method with a small cone set stays low. "
                              f"{bars}{alone}", iou_figure(under), "Overlap"))
     if any(sample.has("accurate") for sample in under.samples):
-        figures.append(drawn("accurate-by-rate", "High is good. All four checks of the RLD paper pass, compared with the ground "
+        figures.append(drawn("accurate-by-rate", "High is good: all four checks of the RLD paper pass, compared with the ground "
                              f"truth of the method's own cone set. {bars}{alone}", accurate_figure(under), "Accurate lanes"))
     return group(figures, method_key(results, results.samples)) + quality_table(results)

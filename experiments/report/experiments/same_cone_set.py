@@ -87,7 +87,7 @@ def html(results, published):
     if not results.sweep:
         raise Missing("there is no sweep over cone-set sizes.")
     figures = [drawn("growth", "A level curve: more cones cost no time. Strong curves: the median. Thin curves: the 99th percentile.", growth_figure(results), "Latency")]
-    figures += [drawn(f"{name}-by-size", "High is good. Where a curve is level, more cones do not help. Error bars: 95 % intervals, tracks resampled.",
+    figures += [drawn(f"{name}-by-size", "High is good, and where a curve is level, more cones do not help. Error bars: 95 % intervals, tracks resampled.",
                       quality_figure(results, words, values_of), words.capitalize())
                 for name, words, values_of in MEASURES]
     return group(figures) + _by_size(results)
