@@ -1,6 +1,7 @@
 #include "experiments/cross_validation/cross_validation.hpp"
 
 #include "conelane/invalid_input.hpp"
+#include "evaluation/files/file_hash.hpp"
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/scenes/scene_options_json.hpp"
 #include "evaluation/tracks/track_spec.hpp"
@@ -10,6 +11,8 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -49,10 +52,26 @@ LearningOptions without(const CrossValidationOptions& options, const CourseFamil
     return learning;
 }
 
+/// The hash of each file in the folder of a family, sorted by name. Throws InputError.
+nlohmann::ordered_json hashes_in(const fs::path& folder) {
+    std::error_code failure;
+    std::map<std::string, std::string> hashes;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder, failure))
+        hashes[file.path().filename()] = file_hash(file.path());
+    if (failure) throw InputError(folder, 0, "--folds", "cannot be read: " + failure.message());
+    return hashes;
+}
+
 /// Everything that the folds depend on, for the record of the comparison.
 std::string record_of(const CrossValidationOptions& options) {
     nlohmann::ordered_json families = nlohmann::ordered_json::object();
     for (const CourseFamily& family : options.families) families[family.name] = family.tracks;
+    if (!options.folds.empty()) {
+        nlohmann::ordered_json folds = nlohmann::ordered_json::object();
+        for (const CourseFamily& family : options.families)
+            folds[family.name] = hashes_in(options.folds / family.name);
+        return nlohmann::ordered_json{{"families", families}, {"folds", folds}}.dump();
+    }
     const LearningOptions& learning = options.learning;
     return nlohmann::ordered_json{{"families", families},
                                   {"always", options.always},
@@ -85,8 +104,10 @@ ComparisonOutcome cross_validate(const CrossValidationOptions& options, const fs
         std::ranges::copy(family.tracks, std::back_inserter(comparison.tracks));
     comparison.cross_validation = record_of(options);
 
-    const fs::path folds = directory / "folds";
+    const bool learns = options.folds.empty();
+    const fs::path folds = learns ? directory / "folds" : options.folds;
     comparison.prepare = [&] {
+        if (!learns) return;
         for (const CourseFamily& family : options.families) {
             const LearningOptions learning = without(options, family);
             fs::create_directories(folds / family.name);

@@ -14,6 +14,8 @@ struct CrossValidationOptions {
     std::vector<CourseFamily> families;  ///< at least two; each is held out once
     std::vector<std::string> always;     ///< SPECs of tracks that every fold learns from; none is scored
     LearningOptions learning;            ///< its tracks are those of a fold
+    /// Learned files FOLDER/FAMILY/... of another cross-validation with the same families; empty: learn.
+    std::filesystem::path folds;
     /// The detectors, the scenes on which they are scored, and how they are run. Its tracks are those of the
     /// families.
     ComparisonOptions comparison;
@@ -22,8 +24,9 @@ struct CrossValidationOptions {
 /// A comparison in which no detector has seen a course that it is scored on. For each family, the detectors
 /// that learn do so on all other families and `always`, then drive the courses of the family; other detectors
 /// drive them unchanged. Writes the files of `compare` to the directory, and learned files to folds/FAMILY/
-/// in it. A stopped run resumes. Returns the table. Throws InputError or InvalidInput, also if a course
-/// belongs to two families, or to a family and to `always`.
+/// in it. With `folds` nothing is learned, and the record has hashes of the files. A stopped run resumes.
+/// Returns the table. Throws InputError or InvalidInput, also if a course belongs to two families, or to a
+/// family and to `always`, or if a learned file is missing.
 [[nodiscard]] ComparisonOutcome cross_validate(const CrossValidationOptions& options,
                                                const std::filesystem::path& directory);
 

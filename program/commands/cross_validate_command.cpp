@@ -23,6 +23,7 @@ struct CrossValidateOptions {
     std::vector<std::string> learning_conditions{"paper", "car"};
     double learning_every_m = 12.0;
     unsigned threads = 1;
+    std::string folds;  ///< folder of learned files; empty: learn
     std::string directory;
 };
 
@@ -43,6 +44,7 @@ void run(CrossValidateOptions& options) {
     learned.threads = options.threads;
     run.comparison.scenes.threads = options.threads;
     run.comparison.run.threads = options.threads;
+    run.folds = options.folds;
     require_own_page(options.directory);
     const ComparisonOutcome outcome = cross_validate(run, options.directory);
     fmt::print("{}", outcome.summary);
@@ -103,6 +105,17 @@ void add_cross_validate_command(CLI::App& program) {
                     "of the training of rld-learned, as a share of those of the shipped costs")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    command
+        .add_option("--folds", options->folds,
+                    "FOLDER/NAME/..., as another cross-validation leaves them in OUT/folds, are the learned "
+                    "files for the courses of --family NAME; nothing is learned")
+        ->excludes("--always")
+        ->excludes("--learn-condition")
+        ->excludes("--learn-every")
+        ->excludes("--variants")
+        ->excludes("--evaluations")
+        ->excludes("--front-steps")
+        ->excludes("--rld-steps");
     options->run.comparison.run.limits.time_limit_ms = kRealTimeLimit_ms;
     add_time_limit_option(command, options->run.comparison.run.limits.time_limit_ms);
     add_threads_option(command, options->threads,

@@ -87,6 +87,34 @@ TEST_F(CrossValidation, ResumesAfterAStop) {
     EXPECT_NE(text_of(path("cv/folds/a/rank_net_paper.json")), net) << "retrained";
 }
 
+TEST_F(CrossValidation, TakesTheLearnedFilesOfAnother) {
+    ASSERT_EQ(run(kFolds + "delaunay-beam,rld-pair").exit_code, 0);
+    const std::string again =
+        "cross-validate --family a=generated:circle --family b=generated:curvy --folds cv/folds "
+        "--condition paper --fp 0.3 --range 30 --every 40 --methods delaunay-beam,rld-pair --out ";
+    const Outcome outcome = run(again + "again");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const std::vector<LaneRecord> learned = read_lanes(path("cv/delaunay-beam.lanes.jsonl"));
+    const std::vector<LaneRecord> taken = read_lanes(path("again/delaunay-beam.lanes.jsonl"));
+    ASSERT_EQ(taken.size(), learned.size());
+    for (std::size_t i = 0; i < taken.size(); ++i) EXPECT_EQ(taken[i].answer.lane, learned[i].answer.lane);
+    EXPECT_FALSE(std::filesystem::exists(path("again/folds"))) << "nothing was learned";
+
+    std::filesystem::copy_file(path("cv/folds/b/delaunay-beam.json"), path("cv/folds/a/delaunay-beam.json"),
+                               std::filesystem::copy_options::overwrite_existing);
+    const Outcome changed = run(again + "again");
+    EXPECT_EQ(changed.exit_code, 2) << "other weights, another run";
+    EXPECT_THAT(changed.errors, HasSubstr("cross_validation"));
+    std::filesystem::remove(path("cv/folds/a/delaunay-beam.json"));
+    const Outcome missing = run(again + "missing");
+    EXPECT_EQ(missing.exit_code, 2);
+    EXPECT_THAT(missing.errors, HasSubstr("delaunay-beam.json"));
+    std::filesystem::remove_all(path("cv/folds/a"));
+    const Outcome without = run(again + "without");
+    EXPECT_EQ(without.exit_code, 2);
+    EXPECT_THAT(without.errors, HasSubstr("--folds"));
+}
+
 TEST_F(CrossValidation, RefusesInvalidFolds) {
     const auto errors = [&](const std::string& options) {
         const Outcome outcome = run("cross-validate --every 40 --methods rld-pair --out cv " + options);
