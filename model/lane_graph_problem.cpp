@@ -137,8 +137,8 @@ bool is_straight(const Scene& scene, std::size_t before, std::size_t middle, std
     return within(std::numbers::pi - angle, p.theta_gap);
 }
 
-/// Allows edges over gaps: longer than s_crit allows, at most d_gap, and at both ends a listed edge continues
-/// nearly straight. Precondition: all edges within s_crit are listed, and no gaps.
+/// Allows edges over gaps: longer than s_crit allows, at most d_gap, and at one end or both a listed edge
+/// continues nearly straight. Precondition: all edges within s_crit are listed, and no gaps.
 void find_gaps(const Scene& scene, const Point& heading, EdgeExtent extent, LaneGraphProblem& problem,
                Limits& limits) {
     const RldParameters& p = problem.parameters;
