@@ -1,22 +1,11 @@
-"""Tables of courses that no method has learned from, from the runs of experiments/held_out/measure.
-
-    tables.py collect DIR FILE   the figures of the runs in DIR, as one JSON file
-    tables.py write FILE         the tables of README.md and docs/ between their markers, and a copy of FILE in docs/benchmarks/
-    tables.py check              whether the pages say what docs/benchmarks/held_out.json says; exit code 1 if not
-
-A table stands between `<!-- table NAME -->` and `<!-- end of table -->`.
-"""
+"""Courses that no method has learned from: the figures of the runs of experiments/tables/held_out, and their tables."""
 
 import json
 import os
-import re
 import statistics
-import sys
 from collections import defaultdict
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-STORED = os.path.join("docs", "benchmarks", "held_out.json")
-PAGES = ["README.md", "docs/results.md", "docs/race.md", "docs/benchmarks/0.5.md"]
+from cells import both, lines_of, percent, provenance, rounded, table
 
 COMPARISONS = ["front", "front_no_persist", "front_lap", "clc", "others", "peers"]
 RACES = ["race", "race_harsh"]
@@ -48,22 +37,6 @@ README_METHODS = METHODS | {
 }
 
 
-# Collecting
-
-
-def lines_of(path):
-    with open(path, encoding="utf-8") as stream:
-        return [json.loads(line) for line in stream]
-
-
-def provenance(record):
-    return {key: record[key] for key in ("commit", "compiler", "machine")}
-
-
-def rounded(value):
-    return round(value, 6) if isinstance(value, float) else value
-
-
 def mean(values):
     return rounded(statistics.fmean(values)) if values else None
 
@@ -72,7 +45,7 @@ def row_of(line):
     """The figures of one method, condition, rate and range, from a line of results.jsonl."""
     row = {"method": line["method"], "condition": line["condition"], "rate": line["false_positive_rate"], "range": line["range"],
            "scenes": line["scenes"], "errors": line["errors"], "usable": line.get("usable_share"), "iou": line.get("mean_iou"),
-           "exact": line["share"]["ground truth"], "centre_p95_m": line.get("lateral_p95_m"),
+           "exact": line["share"]["ground_truth"], "centre_p95_m": line.get("lateral_p95_m"),
            "heading_p95_rad": line.get("heading_p95_rad"), "unsteady": line.get("unsteady_share"),
            "latency_ms": {key: rounded(line["latency_ms"][key]) for key in ("median", "p95", "max")}}
     said = line.get("calibration", {})
@@ -154,9 +127,6 @@ def collect(folder):
     return stored
 
 
-# Writing
-
-
 class Figures:
     """The stored figures; a figure that is not there is a dash."""
 
@@ -180,19 +150,6 @@ class Figures:
         measured = [row for row in found if row["iou"] is not None]
         iou = sum(row["iou"] * row["measured"] for row in measured) / sum(row["measured"] for row in measured) if measured else None
         return {"usable": usable, "iou": iou}
-
-
-def percent(value, digits=1):
-    return "–" if value is None else f"{100 * value:.{digits}f}"
-
-
-def both(row):
-    return "–" if row is None else f"{percent(row['usable'])} / {percent(row['iou'], 0)}"
-
-
-def table(header, rows):
-    lines = [header, ["---"] * len(header), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def columns(first, conditions=CONDITIONS):
@@ -283,18 +240,13 @@ def latency_table(figures):
 
 
 def race_table(figures):
-    rows = [("`front-warm`, frame by frame, `car`", "race", "front-warm"), ("through a planner, `car`", "race", "front-warm planner"),
-            ("through a planner, `harsh`", "race_harsh", "front-warm planner")]
+    rows = [("`front-warm`, frame by frame, `car`", "race", "front-warm"), ("through a planner, `car`", "race", "front-warm+planner"),
+            ("through a planner, `harsh`", "race_harsh", "front-warm+planner")]
     lines = []
     for label, run, method in rows:
         cells = [row for row in figures.stored["races"] if row["run"] == run and row["method"] == method]
         lines.append([label] + [percent(row["finished"]) for row in sorted(cells, key=lambda row: row["rate"])])
     return table(["finished, %", "0 %", "30 %", "50 %"], lines)
-
-
-def runs_table(figures):
-    return table(["run", "commit", "compiler", "machine"],
-                 [[f"`{name}`", run["commit"], run["compiler"], run["machine"]] for name, run in figures.stored["runs"].items()])
 
 
 TABLES = {
@@ -308,64 +260,10 @@ TABLES = {
     "certainty of front": certainty_table,
     "latency": latency_table,
     "races": race_table,
-    "runs": runs_table,
 }
 
-BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
 
-
-def filled(text, figures, page):
-    def block(match):
-        name = match["name"]
-        if name not in TABLES:
-            raise SystemExit(f"{page}: no table is called '{name}'; there are {', '.join(TABLES)}")
-        return f"{match[1]}{TABLES[name](figures)}\n{match[3]}"
-    return BLOCK.sub(block, text)
-
-
-def read(path):
-    with open(path, encoding="utf-8") as stream:
-        return stream.read()
-
-
-def write(path, text):
-    with open(path + ".part", "w", encoding="utf-8") as stream:
-        stream.write(text)
-    os.replace(path + ".part", path)
-
-
-def text_of(stored):
-    """One row a line, so that a change shows."""
-    def lines(rows):
-        return "[\n" + ",\n".join("    " + json.dumps(row) for row in rows) + "\n  ]"
-    return ("{\n" + ",\n".join(f'  "{key}": ' + (lines(value) if isinstance(value, list) else json.dumps(value))
-                               for key, value in stored.items()) + "\n}\n")
-
-
-def main(arguments):
-    match arguments:
-        case ["collect", folder, file]:
-            write(file, text_of(collect(folder)))
-        case ["write", file]:
-            text = read(file)
-            figures = Figures(json.loads(text))
-            for page in PAGES:
-                path = os.path.join(ROOT, page)
-                write(path, filled(read(path), figures, page))
-            write(os.path.join(ROOT, STORED), text)
-        case ["check"]:
-            figures = Figures(json.loads(read(os.path.join(ROOT, STORED))))
-            pages = {page: read(os.path.join(ROOT, page)) for page in PAGES}
-            named = {match["name"] for text in pages.values() for match in BLOCK.finditer(text)}
-            wrong = [f"{page}: a table is not what {STORED} says" for page, text in pages.items() if filled(text, figures, page) != text]
-            wrong += [f"no page has the table '{name}'" for name in TABLES if name not in named]
-            print("\n".join(wrong) or f"{len(named)} tables are what {STORED} says")
-            return 1 if wrong else 0
-        case _:
-            print(__doc__, file=sys.stderr)
-            return 2
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def tables(stored):
+    """The text of each table by its name."""
+    figures = Figures(stored)
+    return {name: make(figures) for name, make in TABLES.items()}
