@@ -2,7 +2,8 @@
 
     conelane solve --solver "exec:highs=/usr/bin/python3 experiments/adapters/highs_scipy.py" ...
 
-The program stays running, because scipy takes a second to load. One thread; scipy passes on no seed and no start."""
+The program stays running, because scipy takes a second to load. One thread; scipy passes on no seed and no start.
+`highs_scipy.py {mps} {sol} {limit_s}` answers one program and ends."""
 
 import json
 import sys
@@ -71,5 +72,14 @@ def answer(question):
     return told | ({"status": "unknown"} if result.status == 1 else {"status": "error", "message": result.message})
 
 
-for request in sys.stdin:
-    print(json.dumps(answer(json.loads(request))), flush=True)
+def answer_once(program, solution, limit_s):
+    told = answer({"program": program, "solution": solution, "time_limit_ms": 1000.0 * float(limit_s)})
+    with open(solution, "a", encoding="ascii") as file:
+        file.writelines(f"={key}= {told[key]}\n" for key in ("status", "bound", "nodes", "ms", "solver") if key in told)
+
+
+if len(sys.argv) > 1:
+    answer_once(*sys.argv[1:])
+else:
+    for request in sys.stdin:
+        print(json.dumps(answer(json.loads(request))), flush=True)

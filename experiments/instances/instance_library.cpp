@@ -9,6 +9,7 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/program_files.hpp"
 #include "evaluation/scenes/scene_set.hpp"
+#include "experiments/studies/instance_features.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_main_solver.hpp"
 #include "solvers/milp/cbc_solver.hpp"
@@ -38,11 +39,19 @@ constexpr double kSameObjective = 1e-6;
 struct SolvedProgram {
     MilpReport report;
     std::vector<ProgramRow> added;
+    double time_ms = 0.0;
+};
+
+/// The answer of path-pair to a scene.
+struct TimedReport {
+    RldReport report;
+    double time_ms = 0.0;
 };
 
 /// Solves the program and adds the rows that its point violates, until no row is violated or the time ends.
 SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formulation, double time_limit_ms) {
     const Deadline deadline(time_limit_ms);
+    const Stopwatch watch;
     // CBC's full machinery is faster on the printed program, `cbc` on the tight one.
     const std::unique_ptr<MilpSolver> solver =
         formulation == Formulation::paper ? make_cbc_main_solver() : make_cbc_solver();
@@ -60,7 +69,20 @@ SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formul
             solved.added.push_back(std::move(row));
         }
     }
+    solved.time_ms = watch.elapsed_ms();
     return solved;
+}
+
+/// Throws InvalidInput if the answer is an error.
+TimedReport solve_exactly(const Scene& scene, const std::string& name, const RldParameters& parameters,
+                          double time_limit_ms) {
+    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
+    const Stopwatch watch;
+    TimedReport timed;
+    timed.report = solve_scene(*path_pair, scene, parameters, {.time_limit_ms = time_limit_ms}).report;
+    timed.time_ms = watch.elapsed_ms();
+    if (timed.report.status == SolveStatus::error) throw InvalidInput(name, timed.report.message);
+    return timed;
 }
 
 [[noreturn]] void contradict(const std::string& name, const RldReport& exact, const MilpReport& milp) {
@@ -72,16 +94,20 @@ SolvedProgram solve_and_separate(const LaneGraphModel& model, Formulation formul
                                        text(milp.bound)));
 }
 
-KnownOptimum optimum_by_both(const std::string& name, const RldReport& exact, const SolvedProgram& solved,
+bool is_proof(SolveStatus status) {
+    return status == SolveStatus::optimal || status == SolveStatus::infeasible;
+}
+
+KnownOptimum optimum_by_both(const std::string& name, const TimedReport& timed, const SolvedProgram& solved,
                              const LaneGraphProblem& problem, const LaneGraphModel& model) {
+    const RldReport& exact = timed.report;
     const MilpReport& milp = solved.report;
-    const auto proved = [](SolveStatus status) {
-        return status == SolveStatus::optimal || status == SolveStatus::infeasible;
-    };
     KnownOptimum known;
     known.best = exact.objective;
     known.bound = milp.bound;
-    if (!proved(exact.status) || !proved(milp.status)) return known;
+    if (is_proof(exact.status)) known.path_pair_ms = timed.time_ms;
+    if (is_proof(milp.status)) known.milp_ms = solved.time_ms;
+    if (!is_proof(exact.status) || !is_proof(milp.status)) return known;
     if (exact.status != milp.status) contradict(name, exact, milp);
     known.status = KnownOptimum::Status::infeasible;
     if (exact.status == SolveStatus::infeasible) return known;
@@ -113,6 +139,7 @@ std::string name_of(const std::string& id, const std::optional<std::size_t>& nea
 
 constexpr const char* kList = "conelane.test";
 constexpr const char* kSolutions = "conelane.solu";
+constexpr const char* kIndex = "index.csv";
 constexpr std::string_view kProgramEnding = ".mps.gz";
 
 /// Files that get their names together, once all of them are complete. Until then at most one is open.
@@ -172,16 +199,113 @@ std::string solution_lines(const Instance& instance) {
     return lines;
 }
 
+/// Nothing if there is no program.
+std::optional<Instance> instance_of(const Scene& scene, const std::string& name, Formulation formulation,
+                                    const RldParameters& parameters, double time_limit_ms,
+                                    const TimedReport& exact) {
+    const Deadline no_deadline;
+    const LimitedProblem limited = make_problem(scene, parameters, parts(formulation).extent, no_deadline);
+    if (!limited.problem || limited.problem->edges.empty()) return std::nullopt;
+    LaneGraphModel model(formulation);
+    if (model.update(*limited.problem, no_deadline)) return std::nullopt;
+    const SolvedProgram solved = solve_and_separate(model, formulation, time_limit_ms);
+    Instance instance{name, model.program(), optimum_by_both(name, exact, solved, *limited.problem, model)};
+    if (instance.optimum.status != KnownOptimum::Status::open) {
+        add_rows(instance.program, solved.added);
+    } else if (!solved.added.empty()) {
+        instance.optimum.bound.reset();  // it is the bound of a program with more rows
+    }
+    return instance;
+}
+
+std::string number(const std::optional<double>& value) {
+    return value && std::isfinite(*value) && std::abs(*value) < kInfinity ? fmt::format("{:.12g}", *value)
+                                                                          : std::string();
+}
+
+/// What of the features a program shares with the other formulation of its scene and objective.
+std::vector<NamedFeature> features_of_problem(const Scene& scene, const RldParameters& parameters) {
+    InstanceFeatures features;
+    features.problem = problem_features(make_problem(scene, parameters));
+    std::vector<NamedFeature> all = named(features);
+    all.resize(kProblemFeatures);
+    return all;
+}
+
+std::string index_head(std::span<const NamedFeature> features) {
+    std::string line =
+        "file,track,condition,false_positive_rate,range_m,nearest,costs,pairing,formulation,class,"
+        "proved_by,best,bound,program_columns,program_rows,program_entries";
+    for (const NamedFeature& feature : features) line += fmt::format(",{}", feature.name);
+    return line + '\n';
+}
+
+std::string_view proved_by(const KnownOptimum& optimum) {
+    if (optimum.path_pair_ms && optimum.milp_ms) return "both";
+    return optimum.path_pair_ms ? "path-pair" : optimum.milp_ms ? "cbc" : "none";
+}
+
+std::string index_line(const InstanceScene& set, const InstanceObjective& objective, Formulation formulation,
+                       const Instance& instance, std::span<const NamedFeature> features) {
+    std::string line = fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", instance.name + std::string(kProgramEnding),
+        set.track, set.condition, number(set.false_positive_rate), number(set.range_m),
+        set.nearest ? std::to_string(*set.nearest) : "all", objective.costs,
+        to_string(objective.parameters.pairing), ending_of(formulation).substr(1),
+        to_string(class_of(instance.optimum)), proved_by(instance.optimum), number(instance.optimum.best),
+        number(instance.optimum.bound), instance.program.columns.size(), instance.program.rows.size(),
+        instance.program.entry_columns.size());
+    for (const NamedFeature& feature : features) line += fmt::format(",{:.6g}", feature.value);
+    return line + '\n';
+}
+
 }  // namespace
 
+std::string InstanceObjective::suffix() const {
+    std::string text;
+    if (costs != "default") text += '_' + costs;
+    if (parameters.pairing == Pairing::paper) text += "_paper";
+    return text;
+}
+
+InstanceClass class_of(const KnownOptimum& optimum) {
+    if (!optimum.path_pair_ms && !optimum.milp_ms) return InstanceClass::open;
+    const bool is_easy = optimum.path_pair_ms && *optimum.path_pair_ms <= kEasy_ms && optimum.milp_ms &&
+                         *optimum.milp_ms <= kEasy_ms;
+    return is_easy ? InstanceClass::easy : InstanceClass::hard;
+}
+
+std::string_view to_string(InstanceClass instance_class) {
+    switch (instance_class) {
+        case InstanceClass::easy:
+            return "easy";
+        case InstanceClass::hard:
+            return "hard";
+        case InstanceClass::open:
+            break;
+    }
+    return "open";
+}
+
 std::vector<InstanceScene> instance_scenes(const InstanceOptions& options) {
-    std::vector<InstanceScene> all;
-    for (const AnnotatedScene& annotated : make_scene_set(options.tracks, options.scenes).scenes) {
-        const Scene& scene = annotated.scene;
-        for (const std::optional<std::size_t>& nearest : options.nearest) {
-            if (nearest && *nearest >= scene.cones.size()) continue;
-            all.push_back({name_of(scene.id, nearest), nearest ? nearest_ahead(scene, *nearest) : scene});
+    const std::vector<AnnotatedScene> scenes = make_scene_set(options.tracks, options.scenes).scenes;
+    std::vector<std::pair<const AnnotatedScene*, std::optional<std::size_t>>> sets;
+    for (const std::optional<std::size_t>& nearest : options.nearest) {
+        std::vector<const AnnotatedScene*> of_size;
+        for (const AnnotatedScene& scene : scenes) {
+            if (!nearest || *nearest < scene.scene.cones.size()) of_size.push_back(&scene);
         }
+        const std::size_t count = std::min(of_size.size(), options.limit.value_or(of_size.size()));
+        for (std::size_t i = 0; i < count; ++i)
+            sets.emplace_back(of_size[i * of_size.size() / count], nearest);
+    }
+    std::ranges::stable_sort(sets, {}, [](const auto& set) { return set.first; });
+    std::vector<InstanceScene> all;
+    for (const auto& [annotated, nearest] : sets) {
+        const Scene& scene = annotated->scene;
+        all.push_back({name_of(scene.id, nearest), nearest ? nearest_ahead(scene, *nearest) : scene, nearest,
+                       annotated->track, annotated->condition, annotated->false_positive_rate,
+                       annotated->range_m});
     }
     return all;
 }
@@ -191,25 +315,9 @@ std::string_view ending_of(Formulation formulation) {
 }
 
 std::optional<Instance> make_instance(const Scene& scene, const std::string& name, Formulation formulation,
-                                      const InstanceOptions& options) {
-    const Deadline no_deadline;
-    const LimitedProblem limited =
-        make_problem(scene, options.parameters, parts(formulation).extent, no_deadline);
-    if (!limited.problem || limited.problem->edges.empty()) return std::nullopt;
-    LaneGraphModel model(formulation);
-    if (model.update(*limited.problem, no_deadline)) return std::nullopt;
-    const std::unique_ptr<RldSolver> path_pair = make_path_pair_solver();
-    const RldReport exact =
-        solve_scene(*path_pair, scene, options.parameters, {.time_limit_ms = options.time_limit_ms}).report;
-    if (exact.status == SolveStatus::error) throw InvalidInput(name, exact.message);
-    const SolvedProgram solved = solve_and_separate(model, formulation, options.time_limit_ms);
-    Instance instance{name, model.program(), optimum_by_both(name, exact, solved, *limited.problem, model)};
-    if (instance.optimum.status != KnownOptimum::Status::open) {
-        add_rows(instance.program, solved.added);
-    } else if (!solved.added.empty()) {
-        instance.optimum.bound.reset();  // it is the bound of a program with more rows
-    }
-    return instance;
+                                      const RldParameters& parameters, double time_limit_ms) {
+    return instance_of(scene, name, formulation, parameters, time_limit_ms,
+                       solve_exactly(scene, name, parameters, time_limit_ms));
 }
 
 InstanceCounts write_instances(const std::filesystem::path& folder, std::span<const InstanceScene> scenes,
@@ -225,25 +333,42 @@ InstanceCounts write_instances(const std::filesystem::path& folder, std::span<co
     std::set<std::filesystem::path> written;
     std::string list;
     std::string solutions;
+    std::string index;
     for (const InstanceScene& set : scenes) {
-        for (const Formulation formulation : kFormulations) {
-            const std::string name = set.name + std::string(ending_of(formulation));
-            const std::optional<Instance> instance = make_instance(set.scene, name, formulation, options);
-            if (advance) advance();
-            if (!instance) {
-                ++counts.too_large;
-                continue;
+        for (const InstanceObjective& objective : options.objectives) {
+            const RldParameters& parameters = objective.parameters;
+            const std::string scene_name = set.name + objective.suffix();
+            const TimedReport exact = solve_exactly(set.scene, scene_name, parameters, options.time_limit_ms);
+            const std::vector<NamedFeature> features = features_of_problem(set.scene, parameters);
+            if (index.empty()) index = index_head(features);
+            for (const Formulation formulation : kFormulations) {
+                if (formulation == Formulation::paper && options.max_printed_cones &&
+                    set.scene.cones.size() > *options.max_printed_cones) {
+                    if (advance) advance();
+                    continue;
+                }
+                const std::string name = scene_name + std::string(ending_of(formulation));
+                const std::optional<Instance> instance =
+                    instance_of(set.scene, name, formulation, parameters, options.time_limit_ms, exact);
+                if (advance) advance();
+                if (!instance) {
+                    ++counts.too_large;
+                    continue;
+                }
+                const std::string file = name + std::string(kProgramEnding);
+                files.add(folder / file, gzipped(mps_text(*instance)));
+                written.insert(folder / file);
+                list += file + '\n';
+                solutions += solution_lines(*instance);
+                index += index_line(set, objective, formulation, *instance, features);
+                ++counts.written;
+                ++counts.of_class.at(static_cast<std::size_t>(class_of(instance->optimum)));
+                counts.optimal += instance->optimum.status == KnownOptimum::Status::optimal ? 1 : 0;
+                counts.infeasible += instance->optimum.status == KnownOptimum::Status::infeasible ? 1 : 0;
             }
-            const std::string file = name + std::string(kProgramEnding);
-            files.add(folder / file, gzipped(mps_text(*instance)));
-            written.insert(folder / file);
-            list += file + '\n';
-            solutions += solution_lines(*instance);
-            ++counts.written;
-            counts.optimal += instance->optimum.status == KnownOptimum::Status::optimal ? 1 : 0;
-            counts.infeasible += instance->optimum.status == KnownOptimum::Status::infeasible ? 1 : 0;
         }
     }
+    files.add(folder / kIndex, index);
     files.add(folder / kSolutions, solutions);
     files.add(folder / kList, list);
     // After a signal, the folder has either the old library or the new one.

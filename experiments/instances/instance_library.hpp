@@ -5,6 +5,7 @@
 #include "evaluation/scenes/scene_generation.hpp"
 #include "model/binary_program.hpp"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -16,13 +17,26 @@
 
 namespace conelane::experiments {
 
+/// Costs and pairing of a program.
+struct InstanceObjective {
+    std::string costs = "default";  ///< name of the parameters, for people
+    RldParameters parameters;
+
+    /// What it adds to the name of a program: nothing for (29) with pairs of near and far ends, else the
+    /// costs and "paper".
+    [[nodiscard]] std::string suffix() const;
+};
+
 /// Which programs, and how long they may be solved.
 struct InstanceOptions {
     std::vector<std::string> tracks;
     SceneOptions scenes;
     std::vector<std::optional<std::size_t>> nearest;  ///< cone-set sizes; absent: all visible cones
-    RldParameters parameters;
-    double time_limit_ms = 10'000.0;  ///< of each engine, for each program
+    std::optional<std::size_t>
+        limit;  ///< largest number of scenes of each size, evenly spread; all if absent
+    std::vector<InstanceObjective> objectives{{}};  ///< at least one
+    std::optional<std::size_t> max_printed_cones;   ///< larger cone sets have the tight program only
+    double time_limit_ms = 10'000.0;                ///< of each engine, for each program
 };
 
 /// State of a program's optimum.
@@ -33,17 +47,31 @@ struct KnownOptimum {
         open,        ///< one of the engines did not finish
     };
     Status status = Status::open;
-    std::optional<double> best;   ///< objective of a point; present if optimal
-    std::optional<double> bound;  ///< proven lower bound of the program in its file
+    std::optional<double> best;          ///< objective of a point; present if optimal
+    std::optional<double> bound;         ///< proven lower bound of the program in its file
+    std::optional<double> path_pair_ms;  ///< time of the proof by path-pair; absent if it did not finish
+    std::optional<double> milp_ms;       ///< time of the proof by CBC; absent if it did not finish
 };
+
+/// How hard a program is for the two engines of this project: easy if each proves its optimum within
+/// kEasy_ms, open if neither does within the time limit, else hard. It depends on the machine.
+enum class InstanceClass { easy, hard, open };
+inline constexpr double kEasy_ms = 1000.0;
+[[nodiscard]] InstanceClass class_of(const KnownOptimum& optimum);
+[[nodiscard]] std::string_view to_string(InstanceClass instance_class);
 
 /// A cone set that programs are made of, and its name, without blanks and slashes.
 struct InstanceScene {
     std::string name;
-    Scene scene;
+    Scene scene;                         ///< the cone set
+    std::optional<std::size_t> nearest;  ///< absent: all visible cones
+    std::string track;
+    std::string condition;  ///< empty without a named condition
+    std::optional<double> false_positive_rate;
+    std::optional<double> range_m;
 };
 
-/// Every scene with every size. A size that is not below the scene's number of cones is left out.
+/// For every size, the scenes with more cones than that, at most `limit` of them; in the order of the scenes.
 [[nodiscard]] std::vector<InstanceScene> instance_scenes(const InstanceOptions& options);
 
 /// How a formulation's files end, before `.mps.gz`: ".printed" or ".tight".
@@ -63,20 +91,24 @@ struct Instance {
 /// one. Nothing if there is no program: without columns, or with more entries than kMaxProgramEntries. Throws
 /// std::logic_error if the engines contradict each other.
 [[nodiscard]] std::optional<Instance> make_instance(const Scene& scene, const std::string& name,
-                                                    Formulation formulation, const InstanceOptions& options);
+                                                    Formulation formulation, const RldParameters& parameters,
+                                                    double time_limit_ms);
 
 /// The result of writing.
 struct InstanceCounts {
     std::size_t written = 0;
     std::size_t optimal = 0;
     std::size_t infeasible = 0;
-    std::size_t too_large = 0;  ///< number of programs left out
+    std::size_t too_large = 0;              ///< number of programs left out
+    std::array<std::size_t, 3> of_class{};  ///< by InstanceClass
 };
 
-/// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each of the scenes into the folder, then
-/// conelane.test, the list of these files, and conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for an
-/// open optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known. The same scenes
-/// give the same files, except open ones, which depend on the clock. `advance` is called after each program.
+/// Writes NAME.printed.mps.gz and NAME.tight.mps.gz for each scene and objective into the folder, then
+/// conelane.test, the list of these files, conelane.solu: `=opt= NAME VALUE`, `=inf= NAME`, or for an
+/// open optimum `=best= NAME VALUE` and `=bestdual= NAME VALUE`, as far as they are known, and index.csv: a
+/// line for each file, with its scene, objective, class and features. The same scenes
+/// give the same files, except open ones and the classes, which depend on the clock. `advance` is called
+/// after each program.
 /// A library in the folder is replaced when all files of the new one are complete; until then it stays.
 /// Throws InputError, also if the folder holds a program that no list names, or another process writes there.
 [[nodiscard]] InstanceCounts write_instances(const std::filesystem::path& folder,

@@ -1,6 +1,5 @@
 #include "experiments/studies/instance_features.hpp"
 
-#include "conelane/lane_graph_problem.hpp"
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/relaxation/linear_relaxation.hpp"
@@ -19,6 +18,28 @@ double pairs_of(std::size_t count) {
     const auto n = static_cast<double>(count);
     return n * (n - 1.0) / 2.0;
 }
+
+std::optional<InstanceFeatures::Relaxation> relaxation_features(const LaneGraphProblem& problem) {
+    if (problem.edges.empty()) return std::nullopt;
+    const LaneGraphModel model(problem, Formulation::tight);
+    const BinaryProgram& program = model.program();
+    const auto shape = relaxation_shape(program);
+    if (!shape) return std::nullopt;
+    InstanceFeatures::Relaxation features;
+    features.columns = program.columns.size();
+    features.rows = program.rows.size();
+    features.entries = program.entry_columns.size();
+    features.optimum = shape->optimum;
+    const auto share = [](std::size_t part, std::size_t whole) {
+        return share_of(static_cast<double>(part), static_cast<double>(whole));
+    };
+    features.fractional = share(shape->fractional, problem.edges.size());
+    features.degenerate = share(shape->degenerate, features.rows);
+    features.dual_degenerate = share(shape->dual_degenerate, features.columns);
+    return features;
+}
+
+}  // namespace
 
 InstanceFeatures::Problem problem_features(const LaneGraphProblem& problem) {
     InstanceFeatures::Problem features;
@@ -49,28 +70,6 @@ InstanceFeatures::Problem problem_features(const LaneGraphProblem& problem) {
     if (!degree.empty()) features.max_degree = std::ranges::max(degree);
     return features;
 }
-
-std::optional<InstanceFeatures::Relaxation> relaxation_features(const LaneGraphProblem& problem) {
-    if (problem.edges.empty()) return std::nullopt;
-    const LaneGraphModel model(problem, Formulation::tight);
-    const BinaryProgram& program = model.program();
-    const auto shape = relaxation_shape(program);
-    if (!shape) return std::nullopt;
-    InstanceFeatures::Relaxation features;
-    features.columns = program.columns.size();
-    features.rows = program.rows.size();
-    features.entries = program.entry_columns.size();
-    features.optimum = shape->optimum;
-    const auto share = [](std::size_t part, std::size_t whole) {
-        return share_of(static_cast<double>(part), static_cast<double>(whole));
-    };
-    features.fractional = share(shape->fractional, problem.edges.size());
-    features.degenerate = share(shape->degenerate, features.rows);
-    features.dual_degenerate = share(shape->dual_degenerate, features.columns);
-    return features;
-}
-
-}  // namespace
 
 InstanceFeatures features_of(const Scene& cones, const RldParameters& parameters) {
     InstanceFeatures features;

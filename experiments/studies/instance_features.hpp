@@ -1,5 +1,6 @@
 #pragma once
 
+#include "conelane/lane_graph_problem.hpp"
 #include "conelane/rld_parameters.hpp"
 #include "conelane/scene.hpp"
 
@@ -42,6 +43,9 @@ struct InstanceFeatures {
     std::optional<Relaxation> relaxation;  ///< absent if it is infeasible, or without candidates
     double relaxation_ms = 0.0;            ///< building the program included
 };
+
+/// The features of a problem.
+[[nodiscard]] InstanceFeatures::Problem problem_features(const LaneGraphProblem& problem);
 
 /// Throws InvalidInput if scene or parameters are invalid.
 [[nodiscard]] InstanceFeatures features_of(const Scene& cones, const RldParameters& parameters);

@@ -1,14 +1,17 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/instances/instance_library.hpp"
 #include "experiments/options/shared_options.hpp"
+#include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -22,7 +25,8 @@ struct InstancesOptions {
     std::string out;
     std::vector<std::string> sizes{"12", "18", "24", "36", "all"};
     InstanceOptions instances;
-    ParameterSource parameters;
+    std::vector<std::string> costs{"default"};
+    std::vector<std::string> pairings{"near_far"};
 };
 
 std::optional<std::size_t> size_of(const std::string& text) {
@@ -42,11 +46,23 @@ void run(InstancesOptions& options) {
             throw InvalidInput("--nearest", "'" + size + "' is there twice");
         instances.nearest.push_back(nearest);
     }
-    instances.parameters = options.parameters.load();
+    instances.objectives.clear();
+    std::set<std::string> suffixes;
+    for (const std::string& costs : options.costs) {
+        for (const std::string& pairing : options.pairings) {
+            // A file counts by its name without folder and ending.
+            InstanceObjective objective{std::filesystem::path(costs).stem().string(),
+                                        ParameterSource{costs == "default" ? "" : costs, pairing}.load()};
+            if (!suffixes.insert(objective.suffix()).second)
+                throw InvalidInput("--params",
+                                   fmt::format("two objectives are called '{}'", objective.costs));
+            instances.objectives.push_back(std::move(objective));
+        }
+    }
     InstanceCounts counts;
     {
         const std::vector<InstanceScene> scenes = instance_scenes(instances);
-        Progress progress("instances", 2 * scenes.size());
+        Progress progress("instances", 2 * scenes.size() * instances.objectives.size());
         counts = write_instances(options.out, scenes, instances, [&] { progress.advance(); });
     }
     fmt::print(
@@ -54,6 +70,8 @@ void run(InstancesOptions& options) {
         "out, too large or without an edge\n",
         counts.written, options.out, counts.optimal, counts.infeasible,
         counts.written - counts.optimal - counts.infeasible, counts.too_large);
+    const auto [easy, hard, open] = counts.of_class;
+    fmt::print("classes: {} easy, {} hard, {} open\n", easy, hard, open);
 }
 
 }  // namespace
@@ -62,7 +80,8 @@ void add_instances_command(CLI::App& program) {
     CLI::App& command = *program.add_subcommand(
         "instances",
         "a library of binary programs for other solvers: MPS files of the printed and the tight formulation, "
-        "the list conelane.test, and conelane.solu with the optima that path-pair and CBC both proved");
+        "the list conelane.test, conelane.solu with the optima that path-pair and CBC both proved, and "
+        "index.csv with classes and features");
     auto options = std::make_shared<InstancesOptions>();
     InstanceOptions& instances = options->instances;
     instances.tracks = {"generated:straight", "generated:circle", "generated:curvy"};
@@ -77,7 +96,22 @@ void add_instances_command(CLI::App& program) {
         ->delimiter(',')
         ->capture_default_str();
     add_scene_options(command, instances.scenes);
-    add_parameter_options(command, options->parameters, "the defaults");
+    command.add_option("--limit", instances.limit, "scenes at most, of each size, evenly spread")
+        ->check(whole_number(1, 1'000'000));
+    command
+        .add_option("--params", options->costs,
+                    "RLD parameters, separated by commas, each an objective: default for (29), n12, context, "
+                    "shape, full, learned or a file (JSON)")
+        ->delimiter(',')
+        ->capture_default_str();
+    command.add_option("--pairing", options->pairings, "pairings, each with each objective")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"near_far", "paper"}))
+        ->capture_default_str();
+    command
+        .add_option("--max-printed-cones", instances.max_printed_cones,
+                    "cone sets of more cones have no printed formulation")
+        ->check(whole_number(1, 1'000'000));
     add_time_limit_option(command, instances.time_limit_ms);
     command.callback([options] { run(*options); });
 }

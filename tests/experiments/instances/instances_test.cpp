@@ -9,6 +9,7 @@
 #include "tests/support/solver_cases.hpp"
 #include "tests/support/test_paths.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -126,7 +127,7 @@ TEST_F(Instances, NoBoundOfAHardSceneIsAboveTheBestKnownLaneGraph) {
         SCOPED_TRACE(set.name);
         EXPECT_EQ(known->second.mark, "=best=");
         const RldReport report =
-            solve_scene(*solver, set.scene, options.parameters, {50.0 * tests::kSlowness}).report;
+            solve_scene(*solver, set.scene, RldParameters{}, {50.0 * tests::kSlowness}).report;
         ASSERT_NE(report.status, SolveStatus::error) << report.message;
         ASSERT_NE(report.status, SolveStatus::infeasible);
         EXPECT_LE(report.bound.value(), known->second.value + kSameObjective);
@@ -147,7 +148,7 @@ TEST_F(Instances, EverySolverFindsTheStoredOptima) {
             // The printed program takes seconds without CBC's full machinery.
             if (solver_case.formulation == Formulation::paper && entry.name != "cbc-main") continue;
             const auto solver = entry.make(solver_case.formulation);
-            const RldReport report = solve_scene(*solver, set.scene, options.parameters, {}).report;
+            const RldReport report = solve_scene(*solver, set.scene, RldParameters{}, {}).report;
             ASSERT_EQ(report.status, SolveStatus::optimal) << report.message;
             const std::string name = set.name + std::string(ending_of(solver_case.formulation));
             EXPECT_NEAR(*report.objective, stored[name].value, kSameObjective);
@@ -174,7 +175,7 @@ Scene lane_and_ring() {
 // Without the rows of (5), the program of a scene also takes the ring's edges, which are not in a lane.
 TEST_F(Instances, RowsAreAddedUntilTheOptimumIsThatOfTheScene) {
     const std::optional<Instance> instance =
-        make_instance(lane_and_ring(), "ring", Formulation::tight, InstanceOptions{});
+        make_instance(lane_and_ring(), "ring", Formulation::tight, RldParameters{}, 10'000.0);
     ASSERT_TRUE(instance);
     ASSERT_EQ(instance->optimum.status, KnownOptimum::Status::optimal);
     const MilpReport report = make_clp_bb_solver()->load(instance->program)->solve({});
@@ -216,6 +217,56 @@ TEST_F(Instances, TheProgramWritesFilesThatUnpack) {
     EXPECT_EQ(lines_of(path("made") / "conelane.test").size(), 4u);
 }
 
+TEST_F(Instances, EachObjectiveHasProgramsAndLinesInTheIndex) {
+    const Outcome outcome =
+        run("instances --tracks generated:curvy --fp 0.5 --every 1000 --nearest 12,all --limit 1 --seed 3 "
+            "--params default,shape --pairing near_far,paper --max-printed-cones 20 --out made");
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("12 programs in made: "));
+    const std::string scene = "curvy_pose_0000_fp_0.50_range_30_";
+    std::set<std::string> wanted;
+    for (const std::string costs : {"", "_shape", "_paper", "_shape_paper"}) {
+        wanted.insert(scene + "n12" + costs + ".printed.mps.gz");
+        wanted.insert(scene + "n12" + costs + ".tight.mps.gz");
+        wanted.insert(scene + "all" + costs + ".tight.mps.gz");
+    }
+    EXPECT_EQ(lines_of(path("made") / "conelane.test"), wanted);
+
+    std::ifstream index(path("made") / "index.csv");
+    std::string line;
+    std::getline(index, line);
+    EXPECT_TRUE(line.starts_with("file,track,condition,")) << line;
+    EXPECT_TRUE(line.ends_with(",min_cost,mean_cost")) << line;
+    const auto columns = std::ranges::count(line, ',');
+    std::set<std::string> listed;
+    while (std::getline(index, line)) {
+        EXPECT_EQ(std::ranges::count(line, ','), columns) << line;
+        listed.insert(line.substr(0, line.find(',')));
+        const std::string name = line.substr(0, line.find(".mps.gz"));
+        EXPECT_EQ((line.find(",shape,") != std::string::npos), (name.find("_shape") != std::string::npos))
+            << line;
+        EXPECT_EQ((line.find(",paper,") != std::string::npos), (name.find("_paper") != std::string::npos))
+            << line;
+        EXPECT_EQ((line.find(",all,") != std::string::npos), (name.find("_all") != std::string::npos))
+            << line;
+    }
+    EXPECT_EQ(listed, wanted);
+}
+
+TEST_F(Instances, AClassIsAboutBothEngines) {
+    const auto with = [](std::optional<double> path_pair_ms, std::optional<double> milp_ms) {
+        KnownOptimum optimum;
+        optimum.path_pair_ms = path_pair_ms;
+        optimum.milp_ms = milp_ms;
+        return class_of(optimum);
+    };
+    EXPECT_EQ(with(1.0, 900.0), InstanceClass::easy);
+    EXPECT_EQ(with(1.0, 1100.0), InstanceClass::hard);
+    EXPECT_EQ(with(1.0, std::nullopt), InstanceClass::hard);
+    EXPECT_EQ(with(std::nullopt, 1.0), InstanceClass::hard);
+    EXPECT_EQ(with(std::nullopt, std::nullopt), InstanceClass::open);
+}
+
 TEST_F(Instances, OfAnotherSolverHaveTheSameOptima) {
     if (std::system("command -v cbc >/dev/null") != 0) GTEST_SKIP() << "there is no program cbc";
     ASSERT_EQ(
@@ -240,6 +291,8 @@ TEST_F(Instances, OfAnotherSolverHaveTheSameOptima) {
 TEST_F(Instances, BadOptionsAreRefused) {
     expect_refused("instances --nearest twelve --out made", {"--nearest", "twelve"});
     expect_refused("instances --nearest 12,12 --out made", {"--nearest", "12"});
+    expect_refused("instances --params default,default --out made", {"--params", "default"});
+    expect_refused("instances --pairing both --out made", {"--pairing", "both"});
     expect_refused("instances --tracks generated:nowhere --out made", {"nowhere"});
     std::ofstream(path("file")) << "x";
     expect_refused("instances --out file", {"file"});

@@ -1,0 +1,122 @@
+"""library_scripts_test.py ROOT PROGRAM: run_solver.py and check_solutions.py on a small library, with right answers, and with wrong ones of each kind."""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT, PROGRAM = sys.argv.pop(1), sys.argv.pop(1)
+SCRIPTS = os.path.join(ROOT, "experiments", "instances")
+sys.dont_write_bytecode = True
+sys.path.insert(0, SCRIPTS)
+
+import mps  # noqa: E402
+
+PROGRAM_TEXT = """NAME two FREE
+ROWS
+ N cost
+ L both
+ G one
+COLUMNS
+ MARKER 'MARKER' 'INTORG'
+ x cost -1 both 1
+ x one 1
+ y cost -2 both 1
+ MARKER 'MARKER' 'INTEND'
+RHS
+ RHS both 1
+BOUNDS
+ UP BND x 1
+ UP BND y 1
+ENDATA
+"""
+
+
+def script(name, *arguments):
+    return subprocess.run([sys.executable, "-B", os.path.join(SCRIPTS, name), *arguments], capture_output=True, text=True, check=False)
+
+
+class Scripts(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.library = os.path.join(cls.folder, "library")
+        subprocess.run([PROGRAM, "instances", "--tracks", "generated:circle", "--fp", "0.3", "--range", "30", "--every", "1000", "--nearest", "12",
+                        "--params", "default,shape", "--out", cls.library], check=True, capture_output=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def checked(self, name, command, *options):
+        out = os.path.join(self.folder, name)
+        run = script("run_solver.py", self.library, out, "--limit-s", "20", *options, "--", command)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return script("check_solutions.py", self.library, out)
+
+    def test_a_solver_with_right_answers_passes(self):
+        commands = {"cbc": "cbc {mps} {sol} {limit_s} {gap} {threads} {seed}", "glpsol": "glpsol {mps} {sol} {limit_whole_s}"}
+        there = [program for program in commands if shutil.which(program)]
+        if not there:
+            self.skipTest("there is no cbc and no glpsol")
+        for program in there:
+            check = self.checked(program, os.path.join(ROOT, "experiments", "adapters", commands[program]), "--formulation", "tight")
+            self.assertEqual(check.returncode, 0, check.stdout)
+            self.assertRegex(check.stdout, r"easy +tight +2 +2 +0 +0 +0 +0 ")
+
+    def test_wrong_answers_are_found(self):
+        nothing_chosen = "printf '=status= optimal\\n=obj= 0\\n' > {sol}"
+        self.assertEqual(self.checked("no_point", nothing_chosen).returncode, 0, "no point, no claim")
+        for name, command, said in (
+                ("infeasible", "echo =infeas= > {sol}", "claimed to be infeasible"),
+                ("unknown", "printf 'nothing 1\\n=status= optimal\\n' > {sol}", ""),
+                ("fraction", "awk '/INTORG/{i=1} i && / cost /{print $1, 0.5; exit}' {mps} > {sol}", "not a whole number")):
+            check = self.checked(name, command, "--formulation", "tight")
+            self.assertIn(said, check.stdout)
+            self.assertEqual(check.returncode, 1 if said else 0, check.stdout)
+
+    def test_a_crash_and_a_hang_are_failures(self):
+        check = self.checked("crash", "kill -SEGV $$")
+        self.assertEqual(check.returncode, 0, check.stdout)
+        self.assertRegex(check.stdout, r"failed: .*exit code -11")
+
+    def test_a_program_is_read(self):
+        path = os.path.join(self.folder, "two.mps")
+        with open(path, "w", encoding="ascii") as stream:
+            stream.write(PROGRAM_TEXT)
+        program = mps.read_mps(path)
+        self.assertEqual(program.cost, {"x": -1.0, "y": -2.0})
+        self.assertEqual(program.bounds, {"x": (0.0, 1.0), "y": (0.0, 1.0)})
+        self.assertEqual(program.integer, {"x", "y"})
+        self.assertIsNone(mps.violation(program, {"y": 1.0}))
+        self.assertIn("row both", mps.violation(program, {"x": 1.0, "y": 1.0}))
+        self.assertIn("not a whole number", mps.violation(program, {"y": 0.5}))
+        self.assertIn("outside", mps.violation(program, {"y": 2.0}))
+        self.assertEqual(mps.objective_of(program, {"y": 1.0}), -2.0)
+
+    def test_each_format_of_a_solution_is_read(self):
+        texts = {
+            "cbc": "Optimal - objective value -2.00000000\n      1 y                      1                      -2\n",
+            "cbc stopped": "Stopped on time - objective value -2.0\n** 1 y 1 -2\n",
+            "glpsol": "c Problem: two\ns mip 2 2 o -2\ni 1 1\nj 1 0\nj 2 1\ne o f\n",
+            "highs": "Model status\nOptimal\n\n# Primal solution values\nFeasible\nObjective -2\n# Columns 2\nx 0\ny 1\n# Rows 1\nboth 1\n"
+                     "\n# Dual solution values\nNone\n",
+            "scip": "solution status: optimal solution found\nobjective value:                 -2\ny    1 \t(obj:-2)\n",
+            "gurobi": "# Objective value = -2\nx 0\ny 1\n",
+            "miplib": "=obj= -2\ny 1\n",
+        }
+        for name, text in texts.items():
+            with self.subTest(name):
+                path = os.path.join(self.folder, "a.sol")
+                with open(path, "w", encoding="ascii") as stream:
+                    stream.write(text)
+                solution = mps.read_solution(path, ["x", "y"])
+                self.assertEqual(solution.objective, -2.0)
+                self.assertEqual({column: value for column, value in solution.values.items() if value}, {"y": 1.0})
+                self.assertEqual(solution.status, "optimal" if name in ("cbc", "glpsol", "highs", "scip") else "feasible")
+
+
+if __name__ == "__main__":
+    unittest.main()
