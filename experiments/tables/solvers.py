@@ -171,7 +171,8 @@ def collect(folder):
         stored["rows"] += backend_rows(lines(name))
     for name, keys in (("formulations", ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap",
                                          "median_gap", "mean_nodes", "median_ms"]),
-                       ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"])):
+                       ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"]),
+                       ("confidence", ["known", "false_positive_rate", "scenes", "accurate", "success"])):
         stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in keys} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
     for name in CLAIMS:
@@ -238,6 +239,16 @@ def proven_table(rows):
     return table(["cones and costs, limit", "30 m, no false cones", "30 %", "50 %", "50 m, none", "30 %", "50 %"], lines)
 
 
+def confidence_table(rows):
+    rates = sorted({row["false_positive_rate"] for row in rows})
+    lines = []
+    for known in dict.fromkeys(row["known"] for row in rows):
+        cells = [next(row for row in rows if row["known"] == known and row["false_positive_rate"] == rate) for rate in rates]
+        lines.append([known] + [percent(cell["accurate"]) for cell in cells] + [percent(cells[-1]["success"])])
+    header = [f"accurate at {percent(rate, 0 if rate in (0.0, 0.5) else 1)} %" for rate in rates]
+    return table(["", *header, f"success at {percent(rates[-1], 0)} %"], lines)
+
+
 def exactness_table(rows):
     labels = [("scenes with both", lambda row: f"{row['scenes']} of {row['of']}"), ("the candidate is the optimum, % of these", lambda row: percent(row["equal"])),
               ("success of the optimum, %", lambda row: percent(row["optimum"])), ("success of that candidate, %", lambda row: percent(row["candidate"])),
@@ -267,7 +278,7 @@ def gap_table(rows):
 
 TABLES = {"solvers": ("backends", solver_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "proven by path-pair": ("proven", proven_table),
-          "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
+          "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}
 
 

@@ -14,6 +14,7 @@ import re
 import sys
 
 import held_out
+import parameter_sets
 import solvers
 from cells import table
 
@@ -52,7 +53,7 @@ def all_tables():
         stored = json.loads(read(stored_file(kind)))
         texts |= module.tables(stored)
         runs |= stored["runs"]
-    return texts | {"runs": runs_table(runs)}
+    return texts | parameter_sets.tables(ROOT) | {"runs": runs_table(runs)}
 
 
 def filled(text, tables, page):
