@@ -178,6 +178,16 @@ TEST_P(DetectorContract, InvalidInputIsAnErrorThatNamesIt) {
         {"cones[9].confidence", [](Scene& s, DetectionLimits&) { s.cones[9].confidence = kNaN; }},
         {"cones[8].confidence", [](Scene& s, DetectionLimits&) { s.cones[8].confidence = 1.1; }},
         {"cones[7].confidence", [](Scene& s, DetectionLimits&) { s.cones[7].confidence = -0.1; }},
+        {"cones[5].position_covariance",
+         [](Scene& s, DetectionLimits&) {
+             s.cones[5].position_covariance = {kNaN, 0.0, 0.01};
+         }},
+        {"cones[2].position_covariance",
+         [](Scene& s, DetectionLimits&) {
+             s.cones[2].position_covariance = {0.01, 0.02, 0.01};
+         }},
+        {"cones[1].color_probabilities",
+         [](Scene& s, DetectionLimits&) { s.cones[1].color_probabilities = ColorProbabilities{}; }},
         {"cones[6].id", [](Scene& s, DetectionLimits&) { s.cones[6].id = s.cones[2].id; }},
         {"pose.yaw", [](Scene& s, DetectionLimits&) { s.pose.yaw_rad = kNaN; }},
         {"pose.x", [](Scene& s, DetectionLimits&) { s.pose.position.x() = -kInfinity; }},
@@ -255,6 +265,25 @@ TEST_P(DetectorContract, AConeTwiceAtOnePlaceIsNoObstacle) {
     Scene scene = straight(4);
     scene.cones.push_back({100, scene.cones[2].position});
     EXPECT_EQ(detect(scene).status, LaneStatus::found);
+}
+
+/// See Cone::position_covariance.
+TEST_P(DetectorContract, ACovarianceOfZeroChangesNothingAndALargeOneIsNoError) {
+    const std::unique_ptr<LaneDetector> detector = make();
+    const auto with = [](Scene scene, const PositionCovariance& covariance) {
+        for (Cone& cone : scene.cones) cone.position_covariance = covariance;
+        return scene;
+    };
+    for (const Scene& scene : random_scenes()) {
+        detector->reset();
+        const LaneAnswer unknown = detect(*detector, scene, tests::kNoTimeLimit);
+        detector->reset();
+        expect_same(detect(*detector, with(scene, {}), tests::kNoTimeLimit), unknown);
+        detector->reset();
+        const LaneAnswer uncertain = detect(*detector, with(scene, {4.0, 1.0, 1.0}), tests::kNoTimeLimit);
+        EXPECT_NE(uncertain.status, LaneStatus::error) << uncertain.message;
+        if (!GetParam().starts_with("front")) expect_same(uncertain, unknown);
+    }
 }
 
 TEST_P(DetectorContract, LanesAreTheSameFarFromTheOrigin) {
