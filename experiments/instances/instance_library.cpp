@@ -9,7 +9,7 @@
 #include "evaluation/files/input_error.hpp"
 #include "evaluation/files/program_files.hpp"
 #include "evaluation/scenes/scene_set.hpp"
-#include "experiments/studies/instance_features.hpp"
+#include "experiments/instances/instance_features.hpp"
 #include "model/lane_graph_model.hpp"
 #include "solvers/milp/cbc_main_solver.hpp"
 #include "solvers/milp/cbc_solver.hpp"

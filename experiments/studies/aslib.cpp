@@ -3,7 +3,7 @@
 #include "conelane/invalid_input.hpp"
 #include "evaluation/files/atomic_file.hpp"
 #include "evaluation/files/input_error.hpp"
-#include "experiments/studies/instance_features.hpp"
+#include "experiments/instances/instance_features.hpp"
 
 #include <algorithm>
 #include <cmath>

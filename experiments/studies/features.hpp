@@ -1,8 +1,8 @@
 #pragma once
 
 #include "evaluation/scenes/annotated_scene.hpp"
+#include "experiments/instances/instance_features.hpp"
 #include "experiments/studies/cone_sets.hpp"
-#include "experiments/studies/instance_features.hpp"
 
 #include <cstddef>
 #include <memory>

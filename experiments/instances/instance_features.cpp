@@ -1,4 +1,4 @@
-#include "experiments/studies/instance_features.hpp"
+#include "experiments/instances/instance_features.hpp"
 
 #include "model/deadline.hpp"
 #include "model/lane_graph_model.hpp"
