@@ -39,6 +39,15 @@ def backend_rows(lines):
     return rows
 
 
+def size_rows(lines):
+    """The measures that the study itself prints, see docs/benchmark-measures.md."""
+    versions = {line["backend"]: line.get("version", "") for line in lines if line.get("row") == "block"}
+    return [{"table": "sizes", "backend": line["backend"], "nearest": line["nearest"], "version": versions.get(line["backend"], ""),
+             "scenes": line["scenes"], "runs": line["runs"], "solved": line["solved"], "errors": line["errors"],
+             "geometric_ms": rounded(line["geometric_ms"]), "par10_ms": rounded(line["par10_ms"])}
+            for line in lines if line.get("row") == "summary"]
+
+
 def proven_rows(name, lines):
     """Shares proven within 50 ms and within the limit of 1 s, by range and rate, with and without the dense course."""
     cells = defaultdict(list)
@@ -169,6 +178,7 @@ def collect(folder):
 
     for name in ("backends", "backends_main"):
         stored["rows"] += backend_rows(lines(name))
+    stored["rows"] += size_rows(lines("backends_sizes"))
     for name, keys in (("formulations", ["cones", "formulation", "solver", "scenes", "optimal", "columns", "rows", "entries", "mean_gap",
                                          "median_gap", "mean_nodes", "median_ms"]),
                        ("relaxations", ["cones", "solver", "scenes", "optimal", "feasible", "median_ms"]),
@@ -203,6 +213,17 @@ def solver_table(rows):
         lines.append([label] + ["" if cell is None else " / ".join(milliseconds(cell[key]) for key in ("median_ms", "p95_ms", "max_ms")) +
                                 f" ({cell['proven']} of {cell['scenes']})" for cell in cells])
     return table(["solver", "n = 12", "n = 30"], lines + [["RLD paper (Mosek, its own machine)", "mean 71.8, p95 156", ""]])
+
+
+def size_table(rows):
+    sizes = sorted({row["nearest"] for row in rows})
+    lines = []
+    for backend in dict.fromkeys(row["backend"] for row in rows):
+        cells = [next((row for row in rows if row["backend"] == backend and row["nearest"] == size), None) for size in sizes]
+        lines.append([f"`{backend}`", next(cell["version"] for cell in cells if cell)] +
+                     ["–" if cell is None else f"{milliseconds(cell['geometric_ms'])} / {milliseconds(cell['par10_ms'])} ({percent(cell['solved'] / cell['runs'])} %)"
+                      for cell in cells])
+    return table(["solver, formulation", "version", *(f"n = {size}" for size in sizes)], lines)
 
 
 def formulation_table(rows):
@@ -276,7 +297,7 @@ def gap_table(rows):
                  lines)
 
 
-TABLES = {"solvers": ("backends", solver_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
+TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
           "growth of path-pair": ("growth", growth_table), "proven by path-pair": ("proven", proven_table),
           "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}
