@@ -45,7 +45,7 @@ def size_rows(lines):
     return [{"table": "sizes", "backend": line["backend"], "nearest": line["nearest"], "version": versions.get(line["backend"], ""),
              "scenes": line["scenes"], "runs": line["runs"], "solved": line["solved"], "errors": line["errors"],
              "geometric_ms": rounded(line["geometric_ms"]), "par10_ms": rounded(line["par10_ms"])}
-            for line in lines if line.get("row") == "summary"]
+            for line in lines if line.get("row") == "summary" and "condition" not in line]
 
 
 def proven_rows(name, lines):
