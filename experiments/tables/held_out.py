@@ -228,6 +228,31 @@ def certainty_table(figures):
     return table(["at 0 % / 50 % false positives", "off", "sure", "usable if sure", "trusted", "right if trusted"], lines)
 
 
+def peer_table(figures):
+    return table(columns("usable / IoU, %"),
+                 [[label] + [both(figures.row(None, method, condition, rate, 30.0)) for condition in CONDITIONS for rate in RATES]
+                  for method, label in (("ft-fsd-path-planning", "ft-fsd-path-planning, sorting of cones"), ("front", "`front`"))
+                  if figures.row(None, method, "paper", 0.0, 30.0)])
+
+
+def certainty_in_words(figures):
+    """Over all rates and both ranges, weighted by scenes, what is said of sure lanes by their number."""
+    def over(condition, key, weight=None):
+        cells = [(row["certainty"], row["scenes"]) for row in figures.stored["rows"]
+                 if row["run"] == "front" and row["method"] == "front" and row["condition"] == condition]
+        weights = [scenes * (1.0 if weight is None else certainty[weight]) for certainty, scenes in cells]
+        return percent(sum(certainty[key] * share for (certainty, _), share in zip(cells, weights)) / sum(weights))
+    def each(key, weight=None):
+        return [over(condition, key, weight) for condition in CONDITIONS]
+    off, sure, right = each("off"), each("usable_if_sure", "sure"), each("right_if_trusted")
+    trusted = each("trusted")
+    return table(["number", "meaning", "held out, 30 and 50 m, 0 to 50 % false cones"], [
+        ["`confidence`", "probability that the lane is usable: right for 20 m and long enough",
+         f"off by {off[0]} % (`paper`) and {off[1]} % (`car`) on average; of the lanes with 99 % and more, {sure[0]} and {sure[1]} % are usable"],
+        ["`trusted_m`", "distance up to which the lane can be trusted",
+         f"right in {right[0]} % (`paper`) and {right[1]} % (`car`) of the scenes; covers {trusted[0]} and {trusted[1]} % of the lane"]])
+
+
 def latency_table(figures):
     lines = []
     for method in ("front", "clc"):
@@ -258,6 +283,8 @@ TABLES = {
     "conditions of front": conditions_table,
     "errors": error_table,
     "certainty of front": certainty_table,
+    "certainty of front in words": certainty_in_words,
+    "front and ft-fsd-path-planning": peer_table,
     "latency": latency_table,
     "races": race_table,
 }

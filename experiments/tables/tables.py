@@ -20,7 +20,7 @@ from cells import table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
-PAGES = ["README.md", "docs/results.md", "docs/race.md", "docs/path-pair.md", "docs/benchmarks/0.5.md"]
+PAGES = ["README.md", "docs/results.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
 KINDS = {"held_out": held_out, "solvers": solvers}
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
