@@ -119,7 +119,7 @@ TEST_F(WholeOutputs, OfInterruptedInstancesAreNotWritten) {
     }
     ASSERT_EQ(run(kInstances).exit_code, 0);
     const auto before = contents("made");
-    EXPECT_EQ(before.size(), 4U);
+    EXPECT_EQ(before.size(), 5U);
     interrupt(kMoreInstances, SIGINT, "made", "curvy");
     EXPECT_EQ(contents("made"), before) << "the old library";
 }
