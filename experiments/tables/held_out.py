@@ -101,6 +101,29 @@ def race_rows(record):
     return rows
 
 
+def twelve_rows(folder):
+    """How often RLD's lane among 12 cones is accurate, by costs and rate, over all families. Scenes without annotated boundaries have no
+    accuracy."""
+    right, scenes = defaultdict(float), defaultdict(int)
+    for name in sorted(os.listdir(folder)):
+        if not name.endswith((".default.json", ".shape.json", ".learned.json")):
+            continue
+        for line in lines_of(os.path.join(folder, name)):
+            if line.get("accurate_share") is not None:
+                cell = name.split(".")[1], line["false_positive_rate"]
+                right[cell] += line["accurate_share"] * line["accuracy_scenes"]
+                scenes[cell] += line["accuracy_scenes"]
+    return [{"costs": costs, "rate": rate, "scenes": scenes[costs, rate], "accurate": rounded(right[costs, rate] / scenes[costs, rate])}
+            for costs, rate in sorted(right)]
+
+
+def version_of(path):
+    """The commit and the compiler that `conelane --version` names."""
+    with open(path, encoding="utf-8") as stream:
+        words = dict(line.strip().split(" ", 1) for line in stream if " " in line)
+    return {"commit": words["commit"], "compiler": words["compiler"], "machine": ""}
+
+
 def collect(folder):
     stored = {"runs": {}, "rows": [], "parts": [], "races": []}
     family_of = {}
@@ -124,6 +147,8 @@ def collect(folder):
             record = json.load(stream)
         stored["runs"][name] = provenance(record)
         stored["races"] += [{"run": name} | row for row in race_rows(record)]
+    stored["twelve"] = twelve_rows(os.path.join(folder, "twelve"))
+    stored["runs"]["twelve"] = version_of(os.path.join(folder, "twelve", "version.txt"))
     return stored
 
 
@@ -274,6 +299,15 @@ def race_table(figures):
     return table(["finished, %", "0 %", "30 %", "50 %"], lines)
 
 
+def twelve_table(figures):
+    names = {"default": "(29)", "shape": "costs of the shape", "learned": "learned costs"}
+    lines = []
+    for costs, label in names.items():
+        cells = sorted((row for row in figures.stored["twelve"] if row["costs"] == costs), key=lambda row: row["rate"])
+        lines.append([label] + [percent(row["accurate"]) for row in cells])
+    return table(["accurate, %", "0 %", "16.7 % (1 : 5)", "50 % (1 : 1)"], lines + [["RLD paper (its generated scenes)", "", "96.4", "above 90"]])
+
+
 TABLES = {
     "usable": usable_table,
     "quality at 30 m": lambda figures: quality_table(figures, 30.0),
@@ -287,6 +321,7 @@ TABLES = {
     "front and ft-fsd-path-planning": peer_table,
     "latency": latency_table,
     "races": race_table,
+    "twelve cones": twelve_table,
 }
 
 
