@@ -39,7 +39,8 @@ def judged(program, solution, known):
         if "=inf=" in known:
             return "proven", ""
         return ("wrong", f"claimed to be infeasible, has a point of {best:.9g}") if best is not None else ("none", "infeasible, not known to the library")
-    if solution.status not in ("optimal", "feasible") or not solution.values:
+    # A claimed optimum without values is the point where all columns are 0.
+    if solution.status != "optimal" and not (solution.status == "feasible" and solution.values):
         return "none", ""
     if broken := mps.violation(program, solution.values):
         return "wrong", broken

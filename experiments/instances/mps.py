@@ -73,6 +73,7 @@ class Solution:
     values: dict = field(default_factory=dict)   # column -> value; columns not named are 0
 
 
+_NUMBER = r"[-+]?(\d|\.\d|inf|nan)"
 _STATUS = [("infeasible", "infeasible"), ("optimal", "optimal"), ("stopped", "feasible"), ("feasible", "feasible"), ("limit", "feasible")]
 
 
@@ -129,21 +130,11 @@ def read_solution(path, columns):
         word = line.split()
         if found := re.match(r"(?:# Objective value =|objective value:)\s*(\S+)", line):
             solution.objective = float(found[1])
-        elif len(word) >= 2 and word[0] in program_names(names):
+        elif len(word) >= 2 and word[0][0] not in "#=" and re.match(_NUMBER, word[1]):
             solution.values[word[0]] = float(word[1])
     if solution.status == "unknown" and (solution.values or solution.objective is not None):
         solution.status = "feasible"
     return solution
-
-
-_sets = {}
-
-
-def program_names(names):
-    """The names as a set, made once for a list."""
-    if _sets.get("of") is not names:
-        _sets["of"], _sets["set"] = names, set(names)
-    return _sets["set"]
 
 
 def violation(program, values, tolerance=1e-6):

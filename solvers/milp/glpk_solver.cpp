@@ -44,7 +44,7 @@ void look(glp_tree* tree, void* data) {
 /// until no better point can use them: see solve().
 constexpr double kMaxCostAtFirst = 1e3;
 constexpr double kCostStep = 1e3;
-/// The limit of Clp. A point of such a cost is of no use.
+/// The limit of Clp: a search that needs a column of this cost or more ends with an error.
 constexpr double kMaxCostTaken = 1e25;
 
 /// GLPK keeps an environment for each thread that has used it, and never frees it.

@@ -10,7 +10,7 @@
 namespace conelane {
 namespace {
 
-/// Keeps the slope finite; steeper chains are of no use.
+/// Two points of a chain are at least this far apart along the path, so that the slope is finite.
 constexpr double kMinAdvance_m = 0.1;
 
 /// A point in the frame of the path.
