@@ -23,7 +23,7 @@ def score_rows(path):
 
 def collect(folder):
     runs = os.path.join(folder, "shipped")
-    stored = {"runs": {"scenes": version_of(os.path.join(runs, "version.txt"))}, "rows": [], "races": []}
+    stored = {"runs": {"colours": version_of(os.path.join(runs, "version.txt"))}, "rows": [], "races": []}
     for name in [f"colours_{name}" for name in COLOURS] + [f"{known}_{noise}" for noise in NOISES for known in ("unknown", "known")]:
         for drawn in SETS:
             stored["rows"] += [{"run": name, "set": drawn} | row for row in score_rows(os.path.join(runs, f"{name}.{drawn}.json"))]

@@ -48,8 +48,11 @@ def stored_file(kind):
 def runs_table(runs):
     """The runs of each commit, compiler and machine."""
     by_origin = {}
-    for name, run in runs.items():
-        by_origin.setdefault((run["commit"], run["compiler"], run["machine"]), []).append(f"`{name}`")
+    for name, run in sorted(runs.items(), key=lambda item: item[1]["machine"] == ""):
+        origin = (run["commit"], run["compiler"], run["machine"])
+        if run["machine"] == "":  # no record of it, so that of another run of the program
+            origin = next((known for known in by_origin if known[:2] == origin[:2]), origin)
+        by_origin.setdefault(origin, []).append(f"`{name}`")
     return table(["commit", "compiler", "machine", "runs"], [[*origin, ", ".join(names)] for origin, names in by_origin.items()])
 
 

@@ -218,6 +218,11 @@ class Pages(unittest.TestCase):
         with self.assertRaises(SystemExit):
             tables.filled(page, {"two": ""}, "page")
 
+    def test_runs_of_one_origin_share_a_row(self):
+        run = {"commit": "c", "compiler": "g", "machine": "m"}
+        text = tables.runs_table({"a": run | {"machine": ""}, "b": run, "d": run | {"commit": "e"}, "f": run | {"commit": "h", "machine": ""}})
+        self.assertEqual(text.splitlines()[2:], ["| c | g | m | `b`, `a` |", "| e | g | m | `d` |", "| h | g |  | `f` |"])
+
     def test_the_stored_file_is_json_with_a_row_on_each_line(self):
         stored = {"runs": {"a": {"commit": "c"}}, "rows": [{"x": 1}, {"x": 2}]}
         text = tables.text_of(stored)
