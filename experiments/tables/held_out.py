@@ -238,6 +238,9 @@ def certainty_in_words(figures):
     def over(condition, key, weight=None):
         cells = [(row["certainty"], row["scenes"]) for row in figures.stored["rows"]
                  if row["run"] == "front" and row["method"] == "front" and row["condition"] == condition]
+        cells = [(certainty, scenes) for certainty, scenes in cells if certainty[key] is not None]  # None: no lane was sure
+        if not cells:
+            return percent(None)
         weights = [scenes * (1.0 if weight is None else certainty[weight]) for certainty, scenes in cells]
         return percent(sum(certainty[key] * share for (certainty, _), share in zip(cells, weights)) / sum(weights))
     def each(key, weight=None):

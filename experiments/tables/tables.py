@@ -57,8 +57,8 @@ def runs_table(runs):
 
 
 def stored_figures():
-    """By kind. There may be figures without a whole run."""
-    return {kind: json.loads(read(stored_file(kind))) if kind != "reproduce" or os.path.exists(stored_file(kind)) else {} for kind in KINDS}
+    """By kind; nothing for a file that is missing, as there may be figures without a whole run."""
+    return {kind: json.loads(read(stored_file(kind))) if os.path.exists(stored_file(kind)) else {} for kind in KINDS}
 
 
 def all_tables(stored):
@@ -93,12 +93,13 @@ def text_of(stored):
                                for key, value in stored.items()) + "\n}\n")
 
 
-def write_pages():
-    stored = stored_figures()
+def write_pages(files):
+    """The figures of the files by their kind, then the pages; nothing is written if they do not make all tables."""
+    stored = stored_figures() | {kind: json.loads(text) for kind, text in files.items()}
     tables = all_tables(stored)
-    for page in PAGES:
-        path = os.path.join(ROOT, page)
-        write(path, filled(read(path), tables, page))
+    pages = {os.path.join(ROOT, page): filled(read(os.path.join(ROOT, page)), tables, page) for page in PAGES}
+    for path, text in [(stored_file(kind), text) for kind, text in files.items()] + list(pages.items()):
+        write(path, text)
     if beam_picture.has_figures(stored["solvers"]):
         write(BEAM_PICTURE, beam_picture.picture(stored["solvers"]))
 
@@ -123,12 +124,11 @@ def main(arguments):
         case ["collect", kind, folder] if kind in KINDS:
             write(os.path.join(folder, f"{kind}.json"), text_of(KINDS[kind].collect(folder)))
         case ["write", *files]:
-            for file in files:
-                kind = os.path.basename(file).removesuffix(".json")
+            named = {os.path.basename(file).removesuffix(".json"): file for file in files}
+            for kind, file in named.items():
                 if kind not in KINDS:
                     raise SystemExit(f"tables.py: {file}: its name has to be one of {', '.join(f'{kind}.json' for kind in KINDS)}")
-                write(stored_file(kind), read(file))
-            write_pages()
+            write_pages({kind: read(file) for kind, file in named.items()})
         case ["check"]:
             return check()
         case _:
