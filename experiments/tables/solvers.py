@@ -263,14 +263,14 @@ def solver_table(rows):
 
 
 def size_table(rows):
-    sizes = sorted({row["nearest"] for row in rows})
+    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or float("inf"))  # 0: all visible cones
     lines = []
     for backend in dict.fromkeys(row["backend"] for row in rows):
         cells = [next((row for row in rows if row["backend"] == backend and row["nearest"] == size), None) for size in sizes]
         lines.append([f"`{backend}`", next(cell["version"] for cell in cells if cell)] +
                      ["–" if cell is None else f"{milliseconds(cell['geometric_ms'])} / {milliseconds(cell['par10_ms'])} ({percent(cell['solved'] / cell['runs'])} %)"
                       for cell in cells])
-    return table(["solver, formulation", "version", *(f"n = {size}" for size in sizes)], lines)
+    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)], lines)
 
 
 def formulation_table(rows):

@@ -148,6 +148,17 @@ class Solvers(unittest.TestCase):
                  {"row": "gap", "backend": "b", "nearest": 12}]
         self.assertEqual([(row["scenes"], row["proven"], row["max_ms"]) for row in solvers.backend_rows(lines)], [(1, 1, 2.0)])
 
+    def test_all_visible_cones_are_the_last_size(self):
+        def summary(nearest):
+            return {"row": "summary", "backend": "b", "nearest": nearest, "scenes": 2, "runs": 4, "solved": 3, "errors": 0, "geometric_ms": 2.0,
+                    "par10_ms": 30.0}
+        rows = solvers.size_rows([{"row": "block", "backend": "b", "version": "b 1"}, summary(0), summary(12), summary(60),
+                                  summary(12) | {"condition": "car"}])
+        self.assertEqual(len(rows), 3)
+        head, _, line = solvers.size_table(rows).splitlines()
+        self.assertEqual([cell.strip() for cell in head.split("|")[2:-1]], ["version", "n = 12", "n = 60", "all visible"])
+        self.assertEqual(line.count("2.0 / 30 (75.0 %)"), 3)
+
     def test_a_lane_that_is_missing_is_not_usable(self):
         optimum = {"usable": True, "iou": 1.0, "category": "ground_truth"}
         line = {"track": "x", "costs": "default", "condition": "car", "status": "optimal", "optimum": optimum}
