@@ -2,6 +2,8 @@
 
 import json
 import os
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -219,6 +221,74 @@ class BeamPicture(unittest.TestCase):
         self.assertIn('<polyline points="210.0,170.0 470.0,170.0"', text)
         self.assertIn('<polyline points="210.0,60.0 470.0,60.0"', text)
         self.assertIn(">10</text>", text)
+
+
+@unittest.skipUnless(shutil.which("git"), "there is no git")
+class OneCommit(unittest.TestCase):
+    """experiments/reproduce in a project of its own, whose setup ends it with exit code 7: what comes before is whether DIR may be used."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.project, self.runs = os.path.join(folder.name, "project"), os.path.join(folder.name, "runs")
+        os.makedirs(os.path.join(self.project, "experiments", "tables"))
+        os.makedirs(os.path.join(self.project, ".ci"))
+        os.makedirs(os.path.join(self.project, "docs"))
+        os.mkdir(self.runs)
+        for name in ("reproduce", "tables/steps"):
+            shutil.copy(os.path.join(ROOT, "experiments", name), os.path.join(self.project, "experiments", name))
+        self.executable(os.path.join(self.project, ".ci", "setup"), "exit 7")
+        self.write("docs/page.md", "a page")
+        self.write("code.py", "code")
+        self.git("init", "--quiet")
+        self.git("add", "--all")
+        self.git("-c", "user.name=name", "-c", "user.email=mail", "commit", "--quiet", "--message", "all")
+        self.commit = self.git("rev-parse", "--short=12", "HEAD").strip()
+
+    def git(self, *arguments):
+        return subprocess.run(["git", "-C", self.project, *arguments], check=True, capture_output=True, text=True).stdout
+
+    def write(self, name, text):
+        with open(os.path.join(self.project, name), "w", encoding="utf-8") as stream:
+            stream.write(text)
+
+    def executable(self, path, command):
+        with open(path, "w", encoding="utf-8") as stream:
+            stream.write(f"#!/bin/sh\n{command}\n")
+        os.chmod(path, 0o755)
+
+    def program_of(self, commit):
+        self.executable(os.path.join(self.runs, "conelane"), f"echo 'commit {commit}'")
+
+    def expect(self, code, words=""):
+        run = subprocess.run(["bash", os.path.join(self.project, "experiments", "reproduce"), self.runs, self.project], capture_output=True, text=True, check=False)
+        self.assertEqual(run.returncode, code, run.stderr)
+        self.assertIn(words, run.stderr)
+
+    def test_an_empty_folder_and_one_of_this_commit_are_used(self):
+        self.expect(7)
+        self.program_of(self.commit)
+        self.expect(7)
+
+    def test_runs_of_another_commit_are_refused(self):
+        self.program_of("0123456789ab")
+        self.expect(2, f"holds runs of commit 0123456789ab, but this checkout is {self.commit}")
+
+    def test_other_files_are_refused(self):
+        self.executable(os.path.join(self.runs, "held_out.json"), "")
+        self.expect(2, "holds other files")
+
+    def test_changes_in_no_commit_are_refused(self):
+        self.write("code.py", "other code")
+        self.expect(2, "code.py")
+        self.program_of(self.commit)
+        self.expect(2, "code.py")
+
+    def test_a_later_call_may_find_pages_that_the_first_one_wrote(self):
+        self.write("docs/page.md", "a table")
+        self.expect(2, "docs/page.md")
+        self.program_of(self.commit)
+        self.expect(7)
 
 
 class Pages(unittest.TestCase):
