@@ -56,6 +56,12 @@ class Scripts(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stderr)
         return script("check_solutions.py", self.library, out)
 
+    def test_the_public_library_has_no_part_of_another_name(self):
+        out = os.path.join(self.folder, "public")
+        done = subprocess.run([os.path.join(SCRIPTS, "public_library"), out, self.folder, "whole", "hole"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (2, "public_library: there is no part 'hole'\n"))
+        self.assertFalse(os.path.exists(out))
+
     def test_a_solver_with_right_answers_passes(self):
         commands = {"cbc": "cbc {mps} {sol} {limit_s} {gap} {threads} {seed}", "glpsol": "glpsol {mps} {sol} {limit_whole_s}"}
         there = [program for program in commands if shutil.which(program)]
