@@ -73,6 +73,11 @@ def size_name(nearest):
     return str(nearest) if nearest else "all"
 
 
+def size_order(nearest):
+    """What tables sort sizes by: all visible cones are the last."""
+    return nearest or 10**6
+
+
 def disagreements(solves):
     """Scenes of one size in which two backends prove different optima, or one proves that there is none where
     another proves an optimum; and the number of scenes that two of them decided."""

@@ -25,6 +25,7 @@ struct BackendSummary {
     std::size_t errors = 0;  ///< with refuted claims
     std::size_t refuted = 0;
     double geometric_ms = 0.0;  ///< shifted by 1 ms, failures at the limit
+    double par1_ms = 0.0;       ///< mean, failures at the limit
     double par2_ms = 0.0;
     double par10_ms = 0.0;
     std::size_t common = 0;                     ///< runs that every backend solved

@@ -10,6 +10,7 @@
 #include "evaluation/seeded_random.hpp"
 #include "experiments/comparison/pinning.hpp"
 #include "experiments/comparison/runner.hpp"
+#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "experiments/studies/aslib.hpp"
@@ -258,8 +259,10 @@ class BackendsStudy : public Study {
             ->delimiter(',')
             ->check(CLI::IsMember({"tight", "paper"}))
             ->capture_default_str();
-        add_sizes_option(command, options_.sizes);
-        command.add_flag("--all-visible", all_visible_, "all cones of each scene too");
+        command
+            .add_option("--sizes", sizes_, "cones of a scene, the nearest ahead; `all` for all visible cones")
+            ->delimiter(',')
+            ->capture_default_str();
         command
             .add_option_function<std::size_t>(
                 "--limit", [this](std::size_t count) { options_.limit = count; },
@@ -292,7 +295,9 @@ class BackendsStudy : public Study {
             throw InvalidInput("--gap-limits", "must be in ascending order");
         options_.parameters = input_.parameters.load();
         options_.backends = backends_asked_for();
-        if (all_visible_) options_.sizes.push_back(kAllVisible);
+        options_.sizes.clear();
+        for (const std::optional<std::size_t>& size : cone_set_sizes("--sizes", sizes_))
+            options_.sizes.push_back(size.value_or(kAllVisible));
         const std::vector<AnnotatedScene> scenes = read_scenes(input_.scenes);
         const BackendResults results = backend_results(scenes, options_);
         const BackendMeasures measures = measures_of(results.rows, options_.time_limit_ms);
@@ -383,9 +388,9 @@ class BackendsStudy : public Study {
 
     StudyInput input_;
     BackendOptions options_;
+    std::vector<std::string> sizes_{"12", "30"};
     std::vector<std::string> solvers_{"all"};
     std::vector<std::string> formulations_{"tight"};
-    bool all_visible_ = false;
     bool warm_start_ = false;
     bool all_rows_ = false;
     std::string aslib_;

@@ -12,6 +12,13 @@ def provenance(record):
     return {key: record[key] for key in ("commit", "compiler", "machine")}
 
 
+def version_of(path):
+    """The commit and the compiler that `conelane --version` names."""
+    with open(path, encoding="utf-8") as stream:
+        words = dict(line.strip().split(" ", 1) for line in stream if " " in line)
+    return {"commit": words["commit"], "compiler": words["compiler"], "machine": ""}
+
+
 def rounded(value):
     return round(value, 6) if isinstance(value, float) else value
 

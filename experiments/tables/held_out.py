@@ -2,13 +2,13 @@
 
 import json
 import os
-import statistics
 from collections import defaultdict
 
-from cells import both, lines_of, percent, provenance, rounded, table
+from cells import both, lines_of, percent, provenance, rounded, table, version_of
+from races import MEASURES, mean, measure_cells, race_rows
 
 COMPARISONS = ["front", "front_no_persist", "front_lap", "clc", "others", "peers"]
-RACES = ["race", "race_harsh"]
+RACES = ["race", "race_harsh", "race_ten"]
 OWN_SCENES = {"front", "clc", "others", "peers"}  # runs on the scenes of the first table
 
 CONDITIONS = ["paper", "car"]
@@ -35,10 +35,6 @@ README_METHODS = METHODS | {
     "rld-cbc": "`rld-cbc`: RLD among 12 cones",
     "ft-fsd-path-planning": "ft-fsd-path-planning",
 }
-
-
-def mean(values):
-    return rounded(statistics.fmean(values)) if values else None
 
 
 def row_of(line):
@@ -85,22 +81,6 @@ def families_of(folds, tracks):
     return family_of
 
 
-def race_rows(record):
-    cells = defaultdict(list)
-    for heat in record["races"]:
-        cells[heat["method"], heat["false_positive_rate"]].append(heat)
-    rows = []
-    for (method, rate), heats in sorted(cells.items()):
-        def median(key):
-            known = [heat[key] for heat in heats if heat[key] is not None]
-            return rounded(statistics.median(known)) if known else None
-        rows.append({"method": method, "condition": record["condition"], "rate": rate, "races": len(heats),
-                     "finished": mean([float(heat["finished"]) for heat in heats]),
-                     "lateral_error_p95_m": median("lateral_error_p95_m"),
-                     "not_finished": sorted(f"{heat['track']} {heat['seed']}" for heat in heats if not heat["finished"])})
-    return rows
-
-
 def twelve_rows(folder, kinds=("default", "shape", "learned")):
     """How often a lane of 12 cones is accurate, by costs of RLD (or another kind of answer) and rate, over all families. Scenes without
     annotated boundaries have no accuracy."""
@@ -131,13 +111,6 @@ def ceiling_rows(folder):
         rows.append({"family": "all", "rate": rate, "scenes": scenes} | together |
                     {key: sum(row[key] for row in cells) for key in ("start", "inside", "ends")})
     return rows
-
-
-def version_of(path):
-    """The commit and the compiler that `conelane --version` names."""
-    with open(path, encoding="utf-8") as stream:
-        words = dict(line.strip().split(" ", 1) for line in stream if " " in line)
-    return {"commit": words["commit"], "compiler": words["compiler"], "machine": ""}
 
 
 def collect(folder):
@@ -307,14 +280,30 @@ def latency_table(figures):
     return table(["median / p95 / longest, ms", "0 %, 30 m", "50 m", "30 %, 30 m", "50 m", "50 %, 30 m", "50 m"], lines)
 
 
+DRIVERS = [("`front-warm`, frame by frame", "`car`", "race", "front-warm"), ("through a planner", "`car`", "race", "front-warm+planner"),
+           ("through a planner", "`harsh`", "race_harsh", "front-warm+planner")]
+
+
+def races_of(figures, run, method):
+    cells = [row for row in figures.stored["races"] if row["run"] == run and row["method"] == method]
+    return sorted(cells, key=lambda row: row["rate"])
+
+
 def race_table(figures):
-    rows = [("`front-warm`, frame by frame, `car`", "race", "front-warm"), ("through a planner, `car`", "race", "front-warm+planner"),
-            ("through a planner, `harsh`", "race_harsh", "front-warm+planner")]
-    lines = []
-    for label, run, method in rows:
-        cells = [row for row in figures.stored["races"] if row["run"] == run and row["method"] == method]
-        lines.append([label] + [percent(row["finished"]) for row in sorted(cells, key=lambda row: row["rate"])])
-    return table(["finished, %", "0 %", "30 %", "50 %"], lines)
+    return table(["finished, %", "0 %", "30 %", "50 %"],
+                 [[f"{label}, {condition}"] + [percent(row["finished"]) for row in races_of(figures, run, method)] for label, condition, run, method in DRIVERS])
+
+
+def race_measure_table(figures):
+    return table(["who drives", "condition", "false positives", "races", *MEASURES],
+                 [[label, condition, f"{100 * row['rate']:.0f} %", str(row["races"]), *measure_cells(row)]
+                  for label, condition, run, method in DRIVERS for row in races_of(figures, run, method)])
+
+
+def ten_laps_table(figures):
+    return table(["false positives", "races", *MEASURES, "not finished"],
+                 [[f"{100 * row['rate']:.0f} %", str(row["races"]), *measure_cells(row),
+                   ", ".join(f"`{race.split()[0]}`" for race in row["not_finished"]) or "none"] for row in races_of(figures, "race_ten", "front-warm+planner")])
 
 
 def twelve_table(figures):
@@ -356,6 +345,8 @@ TABLES = {
     "front and ft-fsd-path-planning": peer_table,
     "latency": latency_table,
     "races": race_table,
+    "races by measure": race_measure_table,
+    "ten laps": ten_laps_table,
     "twelve cones": twelve_table,
     "ceiling of twelve cones": ceiling_table,
 }

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import statistics
 from collections import defaultdict
 
@@ -11,6 +12,12 @@ RATES = [0.0, 0.1, 0.3, 0.5]
 LANES = ["beam", "candidate", "choice", "beside"]
 SUCCESSES = {"ground_truth", "near_ground_truth", "too_short", "diverging_from_20"}
 GAPS = [("none", 1e-6), ("to 1 %", 0.01), ("to 10 %", 0.1), ("above", float("inf"))]
+AGREEMENTS = {"same optimum": "the same optimum", "both infeasible": "no lane graph by both", "undecided": "undecided within 10 s",
+              "differ": "differ", "refused": "refused by the checker"}
+DENSITIES = [4, 5, 6, 7, 10]
+EDGES = [100, 200, 300, 500, 1000]
+BEAM_KEYS = ["beam", "drop", "scenes", "best_score", "first_usable", "usable", "any_usable", "iou", "median_ms", "p95_ms", "worst_ms"]
+BEAM = 15  # what front takes
 DENSE = "eufs_comp_2021"  # a course whose cones are 1.7 m apart
 CLAIMS = {"proven_default": "all visible", "proven_shape": "with the costs of the lane's shape", "proven_learned": "with learned costs",
           "proven_paper": "pairing `paper`", "proven_60": "60 nearest"}
@@ -65,22 +72,57 @@ def proven_rows(name, lines):
     return rows
 
 
+def growth_row(lines):
+    # A scene that is not proven has taken longer than any that is.
+    times = [line["cpu_ms"] if line["proven"] else float("inf") for line in lines]
+
+    def known(share):
+        value = quantile(times, share) if max(times) < float("inf") else sorted(times)[min(len(times) - 1, round(share * (len(times) - 1)))]
+        return rounded(value) if value < float("inf") else None
+    return {"scenes": len(lines), "edges": statistics.median(line["edges"] for line in lines), "median_ms": known(0.5), "p95_ms": known(0.95),
+            "nodes": rounded(statistics.fmean(line["nodes"] for line in lines)),
+            "proven": rounded(statistics.fmean(float(line["proven"]) for line in lines))}
+
+
 def growth_rows(lines):
+    """By number of cones; all visible cones by density and by edges, in classes from one bound up to the next."""
     cells = defaultdict(list)
     for line in lines:
         if not line["all_visible"]:
             cells[line["cones"]].append(line)
-    rows = []
-    for cones, cell in sorted(cells.items()):
-        # A scene that is not proven has taken longer than any that is.
-        times = [line["cpu_ms"] if line["proven"] else float("inf") for line in cell]
-        def known(share):
-            value = quantile(times, share) if max(times) < float("inf") else sorted(times)[min(len(times) - 1, round(share * (len(times) - 1)))]
-            return rounded(value) if value < float("inf") else None
-        rows.append({"table": "growth", "nearest": cones, "scenes": len(cell), "edges": statistics.median(line["edges"] for line in cell),
-                     "median_ms": known(0.5), "p95_ms": known(0.95), "nodes": rounded(statistics.fmean(line["nodes"] for line in cell)),
-                     "proven": rounded(statistics.fmean(float(line["proven"]) for line in cell))})
+    rows = [{"table": "growth", "nearest": cones} | growth_row(cell) for cones, cell in sorted(cells.items())]
+    whole = [line for line in lines if line["all_visible"]]
+    for name, key, bounds in (("growth by density", "density", DENSITIES), ("growth by edges", "edges", EDGES)):
+        for low, high in zip([None, *bounds], [*bounds, None]):
+            cell = [line for line in whole if (low is None or line[key] >= low) and (high is None or line[key] < high)]
+            if cell:
+                rows.append({"table": name, "from": low, "below": high} | growth_row(cell))
     return rows
+
+
+def anytime_rows(lines):
+    """The study's own table: what is known when a limit ends the search."""
+    cells = defaultdict(list)
+    for line in lines:
+        cells[line["limit_ms"]].append(line)
+    rows = []
+    for limit, cell in sorted(cells.items()):
+        def close(line):
+            return "objective" in line and line["objective"] - line["best_known"] <= 0.01 * max(1.0, abs(line["best_known"]))
+        unproven = [line for line in cell if not line["proven"]]
+        gaps = [line["gap"] for line in unproven if "gap" in line]
+        rows.append({"table": "anytime", "limit_ms": limit, "scenes": len(cell), "open": len(unproven), "open_close": sum(map(close, unproven)), "gap": rounded(statistics.median(gaps)) if gaps else None})
+    return rows
+
+
+def differential_row(lines):
+    return {"table": "differential", "cases": len(lines)} | {kind: sum(line["agreement"] == kind for line in lines) for kind in AGREEMENTS}
+
+
+def certificate_row(text):
+    """From the last line of `conelane certify --verify`."""
+    numbers = re.search(r"^verified: (\d+) optima, (\d+) infeasible, (\d+) lower bounds; (\d+) refused; (\d+) not verified within (\d+) steps$", text, flags=re.M)
+    return {"table": "certificates"} | dict(zip(("optima", "infeasible", "bounds", "refused", "beyond", "steps"), map(int, numbers.groups())))
 
 
 # Exactness. A lane that was not found is not usable, and its IoU is 0.
@@ -185,6 +227,11 @@ def collect(folder):
                        ("confidence", ["known", "false_positive_rate", "scenes", "accurate", "success"])):
         stored["rows"] += [{"table": name} | {key: rounded(line[key]) for key in keys} for line in lines(name)]
     stored["rows"] += growth_rows(lines("growth"))
+    stored["rows"] += anytime_rows(lines("anytime"))
+    stored["rows"].append(differential_row(lines("differential")))
+    with open(os.path.join(runs, "verified.txt"), encoding="utf-8") as stream:
+        stored["rows"].append(certificate_row(stream.read()))
+    stored["rows"] += [{"table": "beam"} | {key: rounded(value) for key, value in line.items() if key in BEAM_KEYS} for line in lines("front_beam")]
     for name in CLAIMS:
         stored["rows"] += proven_rows(name, lines(name + ".solutions"))
     stored["rows"] += exactness_rows(lines("optimality"))
@@ -216,14 +263,14 @@ def solver_table(rows):
 
 
 def size_table(rows):
-    sizes = sorted({row["nearest"] for row in rows})
+    sizes = sorted({row["nearest"] for row in rows}, key=lambda size: size or float("inf"))  # 0: all visible cones
     lines = []
     for backend in dict.fromkeys(row["backend"] for row in rows):
         cells = [next((row for row in rows if row["backend"] == backend and row["nearest"] == size), None) for size in sizes]
         lines.append([f"`{backend}`", next(cell["version"] for cell in cells if cell)] +
                      ["–" if cell is None else f"{milliseconds(cell['geometric_ms'])} / {milliseconds(cell['par10_ms'])} ({percent(cell['solved'] / cell['runs'])} %)"
                       for cell in cells])
-    return table(["solver, formulation", "version", *(f"n = {size}" for size in sizes)], lines)
+    return table(["solver, formulation", "version", *(f"n = {size}" if size else "all visible" for size in sizes)], lines)
 
 
 def formulation_table(rows):
@@ -247,6 +294,41 @@ def growth_table(rows):
     return table(["nearest cones", "scenes", "edges", "median ms", "p95 ms", "nodes", "proven, %"],
                  [[str(row["nearest"]), str(row["scenes"]), f"{row['edges']:.0f}", milliseconds(row["median_ms"]), milliseconds(row["p95_ms"]),
                    f"{row['nodes']:.2f}", percent(row["proven"])] for row in rows])
+
+
+def class_table(rows, name):
+    def label(row):
+        low, high = row["from"], row["below"]
+        return f"below {high}" if low is None else f"{low} and more" if high is None else f"{low} to {high}"
+    return table([name, "scenes", "edges", "median ms", "p95 ms", "nodes", "proven, %"],
+                 [[label(row), str(row["scenes"]), f"{row['edges']:.0f}", milliseconds(row["median_ms"]), milliseconds(row["p95_ms"]),
+                   f"{row['nodes']:.2f}", percent(row["proven"])] for row in rows])
+
+
+def anytime_table(rows):
+    return table(["limit", "proven", "proven or within 1 % of the best known, %", "of the open ones", "gap of the open ones, median"],
+                 [[f"{row['limit_ms']:.0f} ms", f"{row['scenes'] - row['open']} of {row['scenes']}", percent((row["scenes"] - row["open"] + row["open_close"]) / row["scenes"]),
+                   f"{row['open_close']} of {row['open']}", "–" if row["gap"] is None else f"{percent(row['gap'], 0)} %"] for row in rows])
+
+
+def differential_table(rows):
+    return table(["cases", *AGREEMENTS.values()], [[str(row["cases"]), *(str(row[kind]) for kind in AGREEMENTS)] for row in rows])
+
+
+def certificate_table(rows):
+    return table(["claimed and verified", "scenes"],
+                 [[label, str(row[key])] for row in rows for key, label in
+                  (("optima", "the optimum"), ("infeasible", "no lane graph"), ("bounds", "a lower bound"), ("beyond", f"not within {row['steps']} steps"),
+                   ("refused", "refused"))])
+
+
+def beam_table(rows):
+    def label(row):
+        text = f"{row['beam']}, {row['drop']:.0f}"
+        return f"**{text}**" if row["beam"] == BEAM else text
+    return table(["beam, drop", "best score, %", "usable by score, %", "usable, judged, %", "any of 20 usable, %", "IoU, %", "median / p95 / longest ms"],
+                 [[label(row)] + [percent(row[key]) for key in ("best_score", "first_usable", "usable", "any_usable", "iou")] +
+                  [" / ".join(milliseconds(row[key]) for key in ("median_ms", "p95_ms", "worst_ms"))] for row in rows])
 
 
 def proven_table(rows):
@@ -298,7 +380,10 @@ def gap_table(rows):
 
 
 TABLES = {"solvers": ("backends", solver_table), "solvers by size": ("sizes", size_table), "formulations": ("formulations", formulation_table), "relaxations": ("relaxations", relaxation_table),
-          "growth of path-pair": ("growth", growth_table), "proven by path-pair": ("proven", proven_table),
+          "growth of path-pair": ("growth", growth_table), "growth by density": ("growth by density", lambda rows: class_table(rows, "density")),
+          "growth by edges": ("growth by edges", lambda rows: class_table(rows, "edges")), "within a limit": ("anytime", anytime_table),
+          "against CBC": ("differential", differential_table), "certificates": ("certificates", certificate_table), "width of the beam": ("beam", beam_table),
+          "proven by path-pair": ("proven", proven_table),
           "confidence and colour": ("confidence", confidence_table), "exactness": ("exactness", exactness_table), "exactness by objective": ("objectives", objective_table),
           "exactness by gap": ("gaps", gap_table)}
 

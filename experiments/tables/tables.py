@@ -4,8 +4,8 @@
     tables.py write FILE...       the tables between their markers, and a copy of each file in docs/benchmarks/
     tables.py check               whether the pages say what the files in docs/benchmarks/ say; exit code 1 if not
 
-KIND is held_out or solvers; experiments/tables/KIND makes the runs. A table stands between `<!-- table NAME -->` and
-`<!-- end of table -->`.
+KIND is held_out, shipped or solvers; experiments/tables/KIND makes the runs. The KIND reproduce is about the whole run of experiments/reproduce.
+A table stands between `<!-- table NAME -->` and `<!-- end of table -->`. All figures are to be of one commit, that of the whole run.
 """
 
 import json
@@ -13,15 +13,19 @@ import os
 import re
 import sys
 
+import beam_picture
 import held_out
 import parameter_sets
+import reproduce
+import shipped
 import solvers
 from cells import table
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 STORED = os.path.join(ROOT, "docs", "benchmarks")
-PAGES = ["README.md", "docs/results.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
-KINDS = {"held_out": held_out, "solvers": solvers}
+PAGES = ["README.md", "docs/results.md", "docs/front.md", "docs/race.md", "docs/path-pair.md", "docs/faq.md", "docs/benchmarks/0.5.md"]
+KINDS = {"held_out": held_out, "shipped": shipped, "solvers": solvers, "reproduce": reproduce}
+BEAM_PICTURE = os.path.join(ROOT, "docs", "learned-costs.svg")
 
 BLOCK = re.compile(r"(<!-- table (?P<name>[^>]*?) -->\n).*?(<!-- end of table -->)", flags=re.S)
 
@@ -42,18 +46,35 @@ def stored_file(kind):
 
 
 def runs_table(runs):
-    return table(["run", "commit", "compiler", "machine"],
-                 [[f"`{name}`", run["commit"], run["compiler"], run["machine"]] for name, run in runs.items()])
+    """The runs of each commit, compiler and machine."""
+    by_origin = {}
+    for name, run in sorted(runs.items(), key=lambda item: item[1]["machine"] == ""):
+        origin = (run["commit"], run["compiler"], run["machine"])
+        if run["machine"] == "":  # no record of it, so that of another run of the program
+            origin = next((known for known in by_origin if known[:2] == origin[:2]), origin)
+        by_origin.setdefault(origin, []).append(f"`{name}`")
+    return table(["commit", "compiler", "machine", "runs"], [[*origin, ", ".join(names)] for origin, names in by_origin.items()])
 
 
-def all_tables():
+def stored_figures():
+    """By kind. There may be figures without a whole run."""
+    return {kind: json.loads(read(stored_file(kind))) if kind != "reproduce" or os.path.exists(stored_file(kind)) else {} for kind in KINDS}
+
+
+def all_tables(stored):
     """The text of each table by its name, from the stored files."""
     texts, runs = {}, {}
     for kind, module in KINDS.items():
-        stored = json.loads(read(stored_file(kind)))
-        texts |= module.tables(stored)
-        runs |= stored["runs"]
+        texts |= module.tables(stored[kind])
+        runs |= stored[kind].get("runs", {})
     return texts | parameter_sets.tables(ROOT) | {"runs": runs_table(runs)}
+
+
+def strangers(stored):
+    """The runs that are not of the commit of the whole run, where there was a whole run."""
+    commit = stored["reproduce"].get("commit")
+    return [f"docs/benchmarks/{kind}.json: the run '{name}' is of commit {run['commit']}, the whole run of {commit}: experiments/reproduce makes all again"
+            for kind in KINDS for name, run in stored[kind].get("runs", {}).items() if commit is not None and run["commit"] != commit]
 
 
 def filled(text, tables, page):
@@ -73,19 +94,26 @@ def text_of(stored):
 
 
 def write_pages():
-    tables = all_tables()
+    stored = stored_figures()
+    tables = all_tables(stored)
     for page in PAGES:
         path = os.path.join(ROOT, page)
         write(path, filled(read(path), tables, page))
+    if beam_picture.has_figures(stored["solvers"]):
+        write(BEAM_PICTURE, beam_picture.picture(stored["solvers"]))
 
 
 def check():
-    tables = all_tables()
+    stored = stored_figures()
+    tables = all_tables(stored)
     pages = {page: read(os.path.join(ROOT, page)) for page in PAGES}
     named = {match["name"] for text in pages.values() for match in BLOCK.finditer(text)}
     wrong = [f"{page}: a table is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again"
              for page, text in pages.items() if filled(text, tables, page) != text]
     wrong += [f"no page has the table '{name}'" for name in tables if name not in named]
+    if beam_picture.has_figures(stored["solvers"]) and read(BEAM_PICTURE) != beam_picture.picture(stored["solvers"]):
+        wrong.append("docs/learned-costs.svg is not what docs/benchmarks/ says; `experiments/tables/tables.py write` makes it again")
+    wrong += strangers(stored)
     print("\n".join(wrong) or f"{len(named)} tables are what docs/benchmarks/ says")
     return 1 if wrong else 0
 

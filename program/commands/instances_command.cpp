@@ -1,19 +1,16 @@
 #include "conelane/invalid_input.hpp"
 #include "experiments/instances/instance_library.hpp"
+#include "experiments/options/cone_set_sizes.hpp"
 #include "experiments/options/shared_options.hpp"
 #include "experiments/options/whole_number.hpp"
 #include "experiments/progress/progress.hpp"
 #include "program/commands/commands.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <set>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,23 +26,9 @@ struct InstancesOptions {
     std::vector<std::string> pairings{"near_far"};
 };
 
-std::optional<std::size_t> size_of(const std::string& text) {
-    if (text == "all") return std::nullopt;
-    std::size_t size = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), size);
-    if (error != std::errc{} || rest != text.data() + text.size() || size < 1)
-        throw InvalidInput("--nearest", "'" + text + "' is neither a number of cones nor all");
-    return size;
-}
-
 void run(InstancesOptions& options) {
     InstanceOptions& instances = options.instances;
-    for (const std::string& size : options.sizes) {
-        const std::optional<std::size_t> nearest = size_of(size);
-        if (std::ranges::find(instances.nearest, nearest) != instances.nearest.end())
-            throw InvalidInput("--nearest", "'" + size + "' is there twice");
-        instances.nearest.push_back(nearest);
-    }
+    instances.nearest = cone_set_sizes("--nearest", options.sizes);
     instances.objectives.clear();
     std::set<std::string> suffixes;
     for (const std::string& costs : options.costs) {

@@ -1,5 +1,6 @@
 """commands_test.py ROOT PROGRAM: the tutorial's commands run as they stand, one after the other in an empty folder. Those
-of its last section need the sources and have a test of their own. Exit code 77 where a program that it calls is missing."""
+of its last section need the sources and have a test of their own. The way from a clone to the page has at most ten commands;
+those of the program run here, with the comparison of the other sections. Exit code 77 where a program that it calls is missing."""
 
 import os
 import shutil
@@ -12,18 +13,33 @@ from tutorial_pages import tutorial_blocks
 ROOT, PROGRAM = sys.argv[1:]
 
 
+MOST_COMMANDS = 10
+
+
+def short_way():
+    """The commands from a clone to a page with a row of the reader's solver."""
+    (block,) = [block for block in tutorial_blocks(ROOT, "bash") if block.startswith("git clone ")]
+    return block.replace("\\\n", "").splitlines()
+
+
 def main():
     if not shutil.which("cbc"):
         print("skipped: there is no cbc (Debian: apt-get install coinor-cbc)")
         return 77
+    short = short_way()
+    assert len(short) <= MOST_COMMANDS, f"{len(short)} commands from a clone to the page"
+    of_program = [command for command in short if command.startswith("conelane ")]
+    assert len(of_program) >= 3, "the short way has lost its commands"
     commands = tutorial_blocks(ROOT, "sh")
     assert len(commands) >= 5, "the tutorial has lost its commands"
+    commands += of_program
     with tempfile.TemporaryDirectory() as folder:
         programs = os.path.join(folder, "programs")
         work = os.path.join(folder, "work")
         os.mkdir(programs)
         os.mkdir(work)
         os.symlink(PROGRAM, os.path.join(programs, "conelane"))
+        os.symlink(os.path.join(ROOT, "experiments"), os.path.join(work, "experiments"))
         environment = os.environ | {"PATH": programs + os.pathsep + os.environ["PATH"]}
         for block in commands:
             done = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=work, env=environment, capture_output=True,
@@ -34,6 +50,12 @@ def main():
         for name in ("exact.certificates.jsonl", "cbc.solutions.jsonl", "results/report.html", "again.html", "scene.svg"):
             if os.path.getsize(os.path.join(work, name)) == 0:
                 print(f"{name} is empty")
+                return 1
+        with open(os.path.join(work, "page.html"), encoding="utf-8") as stream:
+            page = stream.read()
+        for table in ("backends", "solver-measures"):
+            if "mine/tight" not in page.partition(f'<div class="table" id="{table}">')[2].partition("</table>")[0]:
+                print(f"the table {table} of the page has no row of the reader's solver")
                 return 1
     print(f"{len(commands)} blocks of commands")
     return 0

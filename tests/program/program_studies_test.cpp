@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -106,10 +107,29 @@ TEST_F(Program, ExactnessIsMeasuredOnStoredScenes) {
     ASSERT_EQ(printed.exit_code, 0) << printed.errors;
     EXPECT_THAT(printed.output, HasSubstr("cbc-main/paper"));
     EXPECT_THAT(printed.output, HasSubstr("exhaustive takes at most 9 cones: left out at n = 10"));
+    const Outcome all = run(
+        "study backends --scenes s.scenes.jsonl --sizes 6,all --solvers path-pair --limit 3 --out all.jsonl");
+    ASSERT_EQ(all.exit_code, 0) << all.errors;
+    EXPECT_THAT(all.output, HasSubstr("all path-pair"));
+    std::map<std::string, std::size_t> visible;
+    for (const AnnotatedScene& scene : read_scenes(path("s.scenes.jsonl")))
+        visible[scene.scene.id] = scene.scene.cones.size();
+    std::size_t with_all = 0;
+    std::ifstream all_lines(path("all.jsonl"));
+    for (std::string line; std::getline(all_lines, line);) {
+        const auto row = nlohmann::json::parse(line);
+        if (!row.contains("scene")) continue;
+        const bool is_all = row.at("nearest") == 0;
+        EXPECT_EQ(row.at("cones"), is_all ? visible.at(row.at("scene")) : 6U) << line;
+        with_all += is_all ? 1 : 0;
+    }
+    EXPECT_EQ(with_all, 3U);
     expect_refused("study optimality --scenes s.scenes.jsonl --method rld-cbc --out x.jsonl",
                    {"method", "enumerate"});
     expect_refused("study optimality --scenes nowhere.scenes.jsonl --out x.jsonl", {"nowhere.scenes.jsonl"});
-    expect_refused("study backends --scenes s.scenes.jsonl --sizes 0 --out x.jsonl", {"--sizes"});
+    for (const char* sizes : {"0", "six", "6,6", "6,all,all"})
+        expect_refused("study backends --scenes s.scenes.jsonl --out x.jsonl --sizes " + std::string(sizes),
+                       {"--sizes"});
     expect_refused("study backends --scenes s.scenes.jsonl --solvers magic --out x.jsonl",
                    {"--solvers", "magic"});
     const Outcome list = run("study");

@@ -6,7 +6,7 @@ memory to the lane graph in memory, the program's building included. Every lane 
 or counts as an error. Time-outs count in every figure with the time that they took.
 Source: this project; the RLD paper runs Mosek on the printed formulation.
 Published: mean 71.79 ms, 95 % within 155.88 ms at n = 12, on another machine.
-Command: conelane study backends --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
+Command: conelane study backends --sizes 12,20,30,60,all --scenes RESULTS/scenes.scenes.jsonl --out RESULTS/backends.jsonl
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ from .performance_profiles import profile_figure
 def _rows(of_size):
     rows = []
     for one in of_size:
-        rows.append([Cell(solves.size_name(one.nearest), one.nearest), text(one.backend), Cell(str(len(one)), len(one)),
+        rows.append([Cell(solves.size_name(one.nearest), solves.size_order(one.nearest)), text(one.backend), Cell(str(len(one)), len(one)),
                      percent(one.is_decided.mean()),
                      Cell(str(int(np.sum(one.status == "error"))), int(np.sum(one.status == "error"))),
                      milliseconds(float(np.median(one.latency)),
@@ -54,7 +54,7 @@ def html(results, published):
             columns.append([times[scene] for scene in scenes])
         figure = profile_figure([one.backend for one in of_size], [series_style(i) for i in range(len(of_size))],
                                 np.array(columns).T)
-        figures.append(drawn(f"backends-profile-{size}", f"The upper left curve is the fastest backend on most scenes. Share of {len(scenes)} scenes proven (optimum or no lane) "
+        figures.append(drawn(f"backends-profile-{solves.size_name(size)}", f"The upper left curve is the fastest backend on most scenes. Share of {len(scenes)} scenes proven (optimum or no lane) "
                              "within a multiple of the fastest backend's time.", figure, f"n = {solves.size_name(size)}"))
     columns = [Column("n"), Column("backend", "text"), Column("scenes"), Column("proven %"), Column("errors"),
                Column("median ms"), Column("mean ms"), Column("standard deviation ms"), Column("geometric mean ms"),

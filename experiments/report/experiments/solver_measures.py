@@ -3,13 +3,13 @@
 Claim: Which solver is fastest overall, how steady is it, and what is gained by choosing a solver for each scene?
 Protocol: a run is a scene in one order of its cones, and of the rows and columns of its program. Solved: proven \
 within the limit, accepted by the checker, and refuted by no other backend. Geometric mean shifted by 1 ms, failures at the \
-limit. PAR 2 and PAR 10: mean time, failures at 2 and 10 times the limit. By all: over the runs that every backend \
+limit. PAR 1, PAR 2 and PAR 10: mean time, failures at 1, 2 and 10 times the limit. By all: over the runs that every backend \
 solved. Variation: standard deviation over mean of a scene's times over its orders, median over scenes. Integrals: of the \
 gap to the best lane graph known, over time. Memory: growth of the process; for a program from outside, all its \
 memory. Pairs: Wilcoxon's signed-rank test on a scene's geometric mean times, corrected by Holm. Definitions and sources: \
 docs/benchmark-measures.md.
 Source: this project.
-Command: conelane study backends --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out \
+Command: conelane study backends --sizes 12,20,30,60,all --permutations 5 --gap-limits 1,3,10,30,100 --scenes RESULTS/scenes.scenes.jsonl --out \
 RESULTS/backends.jsonl
 """
 
@@ -39,6 +39,10 @@ def _group_name(row):
     return f"{solves.size_name(row['nearest'])} {row.get('condition', '')}".strip()
 
 
+def _group(row):
+    return Cell(_group_name(row), solves.size_order(row["nearest"]))
+
+
 def _share(value):
     return percent(value) if value is not None else text("")
 
@@ -53,9 +57,9 @@ def _summaries(summaries, blocks):
     for row in summaries:
         memory = peak.get((row["nearest"], row["backend"]))
         spread = row.get("spread")
-        rows.append([Cell(_group_name(row), row["nearest"]), text(row["backend"]), Cell(str(row["runs"]), row["runs"]),
+        rows.append([_group(row), text(row["backend"]), Cell(str(row["runs"]), row["runs"]),
                      percent(row["solved"] / row["runs"]), Cell(str(row["errors"]), row["errors"]),
-                     milliseconds(row["geometric_ms"]), milliseconds(row["par2_ms"]), milliseconds(row["par10_ms"]),
+                     milliseconds(row["geometric_ms"]), _milliseconds(row.get("par1_ms")), milliseconds(row["par2_ms"]), milliseconds(row["par10_ms"]),
                      Cell(str(row["common"]), row["common"]), _milliseconds(row.get("common_geometric_ms")),
                      _milliseconds(row.get("median_engine_ms")), _share(row.get("variability")),
                      Cell(f"{spread:.2f}", spread) if spread is not None else text(""),
@@ -63,7 +67,7 @@ def _summaries(summaries, blocks):
                      Cell(str(row["won"]), row["won"]),
                      Cell(f"{memory / 2**20:.1f}", memory) if memory is not None else text("")])
     columns = [Column("n"), Column("backend", "text"), Column("runs"), Column("solved %"), Column("errors"),
-               Column("geometric mean ms"), Column("PAR 2 ms"), Column("PAR 10 ms"), Column("solved by all"),
+               Column("geometric mean ms"), Column("PAR 1 ms"), Column("PAR 2 ms"), Column("PAR 10 ms"), Column("solved by all"),
                Column("geometric mean ms, by all"), Column("own time, median ms"), Column("variation %"),
                Column("max / min"), Column("primal integral ms"), Column("dual integral ms"), Column("first"),
                Column("peak MiB")]
@@ -79,7 +83,7 @@ def _summaries(summaries, blocks):
 
 
 def _pairs(pairs):
-    rows = [[Cell(_group_name(row), row["nearest"]), text(row["first"]), text(row["second"]),
+    rows = [[_group(row), text(row["first"]), text(row["second"]),
              Cell(f"{row['ratio']:.3g}", row["ratio"]), Cell(str(row["scenes"]), row["scenes"]),
              Cell(f"{row['p_value']:.2g}", row["p_value"]),
              Cell(f"{row['corrected_p_value']:.2g}", row["corrected_p_value"])] for row in pairs]
@@ -92,7 +96,7 @@ def _selections(selections):
     rows = []
     for row in selections:
         factor = row["single_par10_ms"] / max(row["virtual_par10_ms"], 1e-9)
-        rows.append([Cell(_group_name(row), row["nearest"]), text(row["single_best"]),
+        rows.append([_group(row), text(row["single_best"]),
                      milliseconds(row["single_par10_ms"]), milliseconds(row["virtual_par10_ms"]),
                      Cell(f"{factor:.2f}", factor)])
     return table("solver-selection", "Single best and virtual best solver",
@@ -118,21 +122,25 @@ def _profiles(summaries):
     return figures
 
 
+_GAPS = {"primal": "The faster a curve falls, the sooner a good lane graph is found. Solved again with each limit.",
+         "dual": "The faster a curve falls, the sooner the bound is close to the optimum. Solved again with each limit."}
+
+
 def _gaps(gaps):
     figures = []
     for size in dict.fromkeys(row["nearest"] for row in gaps):
-        figure, axes = new_figure()
         of_size = [row for row in gaps if row["nearest"] == size]
-        for index, backend in enumerate(dict.fromkeys(row["backend"] for row in of_size)):
-            of_one = [row for row in of_size if row["backend"] == backend]
-            axes.step([row["time_ms"] for row in of_one], [100.0 * row["mean_primal_gap"] for row in of_one], where="post",
-                      label=backend, **series_style(index) | {"marker": ""})
-        axes.set(xscale="log", xlabel="time [ms]", ylabel="mean primal gap [%]", ylim=(-2, 103))
-        logarithmic(axes.xaxis)
-        legend(axes)
         name = solves.size_name(size)
-        figures.append(drawn(f"solver-gap-{name}", "The faster a curve falls, the sooner a good lane graph is found. Solved "
-                             "again with each limit.", figure, f"Gap over time, n = {name}"))
+        for side, says in _GAPS.items():
+            figure, axes = new_figure()
+            for index, backend in enumerate(dict.fromkeys(row["backend"] for row in of_size)):
+                of_one = [row for row in of_size if row["backend"] == backend]
+                axes.step([row["time_ms"] for row in of_one], [100.0 * row[f"mean_{side}_gap"] for row in of_one],
+                          where="post", label=backend, **series_style(index) | {"marker": ""})
+            axes.set(xscale="log", xlabel="time [ms]", ylabel=f"mean {side} gap [%]", ylim=(-2, 103))
+            logarithmic(axes.xaxis)
+            legend(axes)
+            figures.append(drawn(f"solver-{side}-gap-{name}", says, figure, f"{side.capitalize()} gap over time, n = {name}"))
     return figures
 
 
@@ -149,7 +157,7 @@ def html(results, published):
     selections = _read(results, "selection", [("nearest", (int,)), ("single_best", (str,)),
                                               ("single_par10_ms", _NUMBER), ("virtual_par10_ms", _NUMBER)])
     gaps = _read(results, "gap", [("nearest", (int,)), ("backend", (str,)), ("time_ms", _NUMBER),
-                                  ("mean_primal_gap", _NUMBER)])
+                                  ("mean_primal_gap", _NUMBER), ("mean_dual_gap", _NUMBER)])
     parts = group(_profiles(summaries) + _gaps(gaps)) + _summaries(summaries, blocks)
     if pairs:
         parts += _pairs(pairs)

@@ -258,6 +258,32 @@ class ReportPage(unittest.TestCase):
         scenes = {line["scene"] for line in lines("backends.jsonl") if "scene" in line}
         self.assertIn(f"n = 6: 0 of {len(scenes)} scenes", self.text)
 
+    def test_solves_of_all_visible_cones_are_a_size(self):
+        def article(text, title):
+            return next(part for part in re.findall(r'<article class="experiment.*?</article>', text, flags=re.S) if f"<h3>{title}</h3>" in part)
+        with tempfile.TemporaryDirectory() as folder:
+            copy, page = os.path.join(folder, "copy"), os.path.join(folder, "page.html")
+            shutil.copytree(RESULTS, copy)
+            stored = lines("backends.jsonl")
+            with open(os.path.join(copy, "backends.jsonl"), "w", encoding="utf-8") as stream:
+                for line in stored + [line | {"nearest": 0} for line in stored]:
+                    stream.write(json.dumps(line) + "\n")
+            self.assertEqual(report(copy, page).returncode, 0)
+            with open(page, encoding="utf-8") as stream:
+                text = stream.read()
+        ids = Page(text).ids
+        for name in ("backends-profile", "solver-profile", "solver-primal-gap", "solver-dual-gap"):
+            self.assertTrue({f"{name}-6", f"{name}-all"} <= set(ids), name)
+        measures = article(text, "Measures of solvers")
+        summaries = [line for line in stored if line.get("row") == "summary"]
+        for group in {f"all {line.get('condition', '')}".strip() for line in summaries}:
+            self.assertGreaterEqual(len(re.findall(rf">{group}</t[dh]>", measures)), 2, group)
+        for title in ("geometric mean ms", "PAR 1 ms", "PAR 2 ms", "PAR 10 ms", "variation %", "primal integral ms", "dual integral ms",
+                      "peak MiB", "p, Holm", "coefficient of variation"):
+            self.assertIn(title, measures)
+        for block in (line for line in stored if line.get("row") == "block"):
+            self.assertIn(f"{block['backend']}: {block['version'] or 'version unknown'}", measures)
+
     def test_pictures_are_whole_and_the_same_again(self):
         with tempfile.TemporaryDirectory() as folder:
             seen = []

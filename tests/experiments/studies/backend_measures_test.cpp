@@ -89,6 +89,7 @@ TEST(BackendMeasuresOfRows, AreOfTheRunsThatAllHave) {
     EXPECT_EQ(b.refuted, 1U);
     EXPECT_NEAR(a.geometric_ms, std::pow(3.0 * 5.0 * 5.0 * 5.0, 0.25) - 1.0, 1e-9);
     EXPECT_NEAR(b.geometric_ms, std::pow(2.0 * 2.0 * 101.0 * 101.0, 0.25) - 1.0, 1e-9);
+    EXPECT_DOUBLE_EQ(b.par1_ms, (1.0 + 1.0 + 100.0 + 100.0) / 4.0);
     EXPECT_DOUBLE_EQ(b.par2_ms, (1.0 + 1.0 + 200.0 + 200.0) / 4.0);
     EXPECT_DOUBLE_EQ(b.par10_ms, (1.0 + 1.0 + 1000.0 + 1000.0) / 4.0);
     EXPECT_EQ(a.common, 2U);

@@ -10,7 +10,11 @@ ROOT = sys.argv.pop(1)
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(ROOT, "experiments", "tables"))
 
+import beam_picture  # noqa: E402
 import held_out  # noqa: E402
+import races  # noqa: E402
+import reproduce  # noqa: E402
+import shipped  # noqa: E402
 import solvers  # noqa: E402
 import tables  # noqa: E402
 
@@ -37,12 +41,91 @@ class HeldOut(unittest.TestCase):
         self.assertAlmostEqual(rows[0]["usable"], 2 / 3, places=6)
         self.assertAlmostEqual(rows[0]["iou"], 0.75)
 
+
+def heat(method="a", finished=True, **values):
+    return {"track": "x", "seed": 1, "method": method, "false_positive_rate": 0.3, "finished": finished, "finished_laps": int(finished), "cones_hit": 0,
+            "lateral_error_p95_m": 0.2, "stop_said_m": None, "frames": 100, "wrong_unflagged": 0, "unsteady_share": 0.0} | values
+
+
+class Races(unittest.TestCase):
     def test_races_are_counted_by_method_and_rate(self):
-        def race(method, finished, error):
-            return {"track": "x", "seed": 1, "method": method, "false_positive_rate": 0.3, "finished": finished, "lateral_error_p95_m": error}
-        rows = held_out.race_rows({"condition": "car", "races": [race("a", True, 0.2), race("a", False, None), race("b", True, 0.4)]})
+        rows = races.race_rows({"condition": "car", "races": [heat(), heat(finished=False, lateral_error_p95_m=None), heat("b")]})
         self.assertEqual([(row["method"], row["races"], row["finished"], row["not_finished"]) for row in rows],
                          [("a", 2, 0.5, ["x 1"]), ("b", 1, 1.0, [])])
+
+    def test_measures_are_those_of_the_program(self):
+        row = races.race_rows({"condition": "car", "races": [
+            heat(finished_laps=10, cones_hit=5, wrong_unflagged=1, unsteady_share=0.2, stop_said_m=1.0),
+            heat(finished=False, finished_laps=2, cones_hit=3, frames=300, unsteady_share=None, lateral_error_p95_m=0.4, stop_said_m=3.0)]})[0]
+        self.assertEqual((row["hit_a_lap"], row["wrong"], row["unsteady"], row["stop_said_m"]), (0.75, 0.0025, 0.2, [1.0, 2.0, 3.0]))
+        self.assertAlmostEqual(row["lateral_error_p95_m"], 0.3)
+        self.assertEqual(races.measure_cells(row), ["50.0", "0.75", "0.30", "20.0", "0.25"])
+
+    def test_no_races_without_a_figure_are_a_dash(self):
+        self.assertEqual(races.measure_cells({"finished": 1.0, "lateral_error_p95_m": None}), ["100.0", "–", "–", "–", "–"])
+
+    def test_ten_laps_name_the_courses_that_were_not_finished(self):
+        rows = races.race_rows({"condition": "car", "races": [heat("front-warm+planner"), heat("front-warm+planner", finished=False, track="y")]})
+        text = held_out.ten_laps_table(held_out.Figures({"races": [{"run": "race_ten"} | row for row in rows]}))
+        self.assertIn("| 30 % | 2 | 50.0 |", text)
+        self.assertIn("| `y` |", text)
+
+
+class Shipped(unittest.TestCase):
+    def row(self, run, drawn, rate, scenes, usable):
+        return {"run": run, "set": drawn, "rate": rate, "range": 30.0, "scenes": scenes, "usable": usable, "iou": 0.5, "trusted": 0.8, "right_if_trusted": 1.0}
+
+    def test_shares_are_weighted_by_scenes(self):
+        whole = shipped.together([self.row("a", 31, 0.0, 1, 1.0), self.row("a", 41, 0.0, 3, 0.0)])
+        self.assertEqual((whole["scenes"], whole["usable"], whole["iou"]), (4, 0.25, 0.5))
+
+    def test_colours_have_a_row_each_and_uncertain_positions_one_for_each_set(self):
+        rows = [self.row(f"colours_{name}", drawn, rate, 10, 0.9) for name in shipped.COLOURS for drawn in shipped.SETS for rate in shipped.RATES]
+        rows += [self.row(f"{known}_{noise}", drawn, 0.0, 10 + drawn, 0.7) for known in ("known", "unknown") for noise in shipped.NOISES for drawn in shipped.SETS]
+        colours = shipped.colour_table({"rows": rows}).splitlines()
+        self.assertEqual(colours[2], "| none | 90.0 / 50.0 | 90.0 / 50.0 | 90.0 / 50.0 | 90.0 / 50.0 | 100.0, 80 |")
+        self.assertEqual(len(colours), 2 + len(shipped.COLOURS))
+        uncertain = shipped.uncertainty_table({"rows": rows}).splitlines()
+        self.assertEqual(uncertain[4], "| @41, @42, 51 | 0.01 | unknown | 70.0 | 50.0 | 100.0 | 80 |")
+        self.assertEqual(len(uncertain), 2 + 2 * len(shipped.NOISES) * len(shipped.SETS))
+
+    def test_missions_count_the_finished(self):
+        def rows(mission, run):
+            return [{"mission": mission, "run": run, "rate": rate, "races": 50, "finished": 0.98, "stop_said_m": [1.0, 2.0, 3.0 + rate]} for rate in (0.0, 0.5)]
+        text = shipped.mission_table({"races": [row for mission in shipped.MISSIONS for run in shipped.CONDITIONS for row in rows(mission, run)]})
+        self.assertIn("| `harsh` | 49 / 49 | 49 / 49 | 1.0 to 3.5 | 1.0 to 3.5 |", text)
+
+
+class Reproduce(unittest.TestCase):
+    def events(self, *events):
+        return [{"part": part, "event": event, "time": f"2026-01-01T00:{minute:02}:00Z"} for part, event, minute in events]
+
+    def test_a_part_that_was_killed_counts_from_its_last_begin(self):
+        events = self.events(("held_out", "begin", 0), ("held_out", "begin", 5), ("held_out", "end", 15), ("shipped", "begin", 15), ("shipped", "end", 16),
+                             ("solvers", "begin", 16), ("solvers", "end", 18), ("pictures", "begin", 18), ("pictures", "end", 18))
+        rows = reproduce.part_rows(events)
+        self.assertEqual([(row["part"], row["minutes"], row["calls"]) for row in rows],
+                         [("held_out", 10.0, 2), ("shipped", 1.0, 1), ("solvers", 2.0, 1), ("pictures", 0.0, 1)])
+        with self.assertRaises(SystemExit):
+            reproduce.part_rows(events[:-1])
+
+    def test_the_record_has_commit_and_dates(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "held_out.json"), "w", encoding="utf-8") as stream:
+                json.dump({"runs": {"front": {"commit": "c", "compiler": "g", "machine": "m"}}}, stream)
+            with open(os.path.join(folder, "parts.jsonl"), "w", encoding="utf-8") as stream:
+                for event in self.events(*((part, event, minute) for minute, part in enumerate(reproduce.WHAT) for event in ("begin", "end"))):
+                    stream.write(json.dumps(event) + "\n")
+            stored = reproduce.collect(folder)
+        self.assertEqual((stored["commit"], stored["begun"], stored["ended"]), ("c", "2026-01-01 00:00", "2026-01-01 00:03"))
+        self.assertIn("| commit | c |", reproduce.run_table(stored))
+
+    def test_a_run_of_another_commit_is_found(self):
+        stored = {kind: {} for kind in tables.KINDS} | {"solvers": {"runs": {"a": {"commit": "c"}, "b": {"commit": "d"}}}}
+        self.assertEqual(tables.strangers(stored), [])
+        found = tables.strangers(stored | {"reproduce": {"commit": "c"}})
+        self.assertEqual(len(found), 1)
+        self.assertIn("the run 'b' is of commit d", found[0])
 
 
     def test_families_of_the_ceiling_add_up_by_their_scenes(self):
@@ -77,6 +160,17 @@ class Solvers(unittest.TestCase):
                  {"row": "gap", "backend": "b", "nearest": 12}]
         self.assertEqual([(row["scenes"], row["proven"], row["max_ms"]) for row in solvers.backend_rows(lines)], [(1, 1, 2.0)])
 
+    def test_all_visible_cones_are_the_last_size(self):
+        def summary(nearest):
+            return {"row": "summary", "backend": "b", "nearest": nearest, "scenes": 2, "runs": 4, "solved": 3, "errors": 0, "geometric_ms": 2.0,
+                    "par10_ms": 30.0}
+        rows = solvers.size_rows([{"row": "block", "backend": "b", "version": "b 1"}, summary(0), summary(12), summary(60),
+                                  summary(12) | {"condition": "car"}])
+        self.assertEqual(len(rows), 3)
+        head, _, line = solvers.size_table(rows).splitlines()
+        self.assertEqual([cell.strip() for cell in head.split("|")[2:-1]], ["version", "n = 12", "n = 60", "all visible"])
+        self.assertEqual(line.count("2.0 / 30 (75.0 %)"), 3)
+
     def test_a_lane_that_is_missing_is_not_usable(self):
         optimum = {"usable": True, "iou": 1.0, "category": "ground_truth"}
         line = {"track": "x", "costs": "default", "condition": "car", "status": "optimal", "optimum": optimum}
@@ -92,6 +186,53 @@ class Solvers(unittest.TestCase):
         self.assertEqual(counts, {"none": 1, "to 1 %": 2, "to 10 %": 1, "above": 1, "forbidden": 1})
 
 
+    def test_classes_take_all_visible_cones_from_one_bound_up_to_the_next(self):
+        def line(edges, proven=True, whole=True):
+            return {"all_visible": whole, "cones": 12, "density": 4, "edges": edges, "proven": proven, "nodes": 1, "cpu_ms": edges / 100}
+        rows = solvers.growth_rows([line(99), line(100), line(199, False), line(5000, False), line(30, whole=False)])
+        classes = [(row["from"], row["below"], row["scenes"], row["proven"]) for row in rows if row["table"] == "growth by edges"]
+        self.assertEqual(classes, [(None, 100, 1, 1.0), (100, 200, 2, 0.5), (1000, None, 1, 0.0)])
+        self.assertEqual([(row["from"], row["below"]) for row in rows if row["table"] == "growth by density"], [(4, 5)])
+        self.assertEqual([row["nearest"] for row in rows if row["table"] == "growth"], [12])
+        self.assertIn("| 1000 and more | 1 | 5000 |  |  | 1.00 | 0.0 |", solvers.class_table([row for row in rows if row["table"] == "growth by edges"], "edges"))
+
+    def test_what_is_known_when_a_limit_ends_the_search(self):
+        def line(proven, objective=None, gap=None):
+            values = {"limit_ms": 5.0, "proven": proven, "objective": objective, "best_known": -10.0, "gap": gap}
+            return {key: value for key, value in values.items() if value is not None}
+        rows = solvers.anytime_rows([line(True, -10.0), line(True), line(False, -9.95, 0.4), line(False, -8.0, 0.2), line(False)])
+        self.assertEqual((rows[0]["scenes"], rows[0]["open"], rows[0]["open_close"], rows[0]["gap"]), (5, 3, 1, 0.3))
+        self.assertIn("| 5 ms | 2 of 5 | 60.0 | 1 of 3 | 30 % |", solvers.anytime_table(rows))
+
+    def test_agreements_are_counted_by_kind(self):
+        row = solvers.differential_row([{"agreement": kind} for kind in ("same optimum", "same optimum", "undecided")])
+        self.assertEqual((row["cases"], row["same optimum"], row["undecided"], row["differ"]), (3, 2, 1, 0))
+        self.assertEqual(solvers.differential_table([row]).splitlines()[2], "| 3 | 2 | 0 | 1 | 0 | 0 |")
+
+    def test_certificates_are_read_off_the_last_line(self):
+        row = solvers.certificate_row("a: a reason\nverified: 5 optima, 1 infeasible, 2 lower bounds; 0 refused; 3 not verified within 200000 steps\n")
+        self.assertEqual((row["optima"], row["infeasible"], row["bounds"], row["refused"], row["beyond"]), (5, 1, 2, 0, 3))
+        self.assertIn("| not within 200000 steps | 3 |", solvers.certificate_table([row]))
+
+    def test_the_width_of_front_stands_out(self):
+        row = {"beam": 15, "drop": 4.0, "best_score": 0.9, "first_usable": 0.8, "usable": 0.8, "any_usable": 0.95, "iou": 0.85, "median_ms": 1.0, "p95_ms": 2.0,
+               "worst_ms": 30.0}
+        self.assertEqual(solvers.beam_table([row, row | {"beam": 30}]).splitlines()[2:],
+                         ["| **15, 4** | 90.0 | 80.0 | 80.0 | 95.0 | 85.0 | 1.0 / 2.0 / 30 |", "| 30, 4 | 90.0 | 80.0 | 80.0 | 95.0 | 85.0 | 1.0 / 2.0 / 30 |"])
+
+
+class BeamPicture(unittest.TestCase):
+    def test_a_point_lies_at_its_share(self):
+        self.assertFalse(beam_picture.has_figures({"rows": []}))
+        row = {"table": "beam", "beam": 5, "best_score": 0.8, "first_usable": 0.9, "iou": 1.0}
+        text = beam_picture.picture({"rows": [row, row | {"beam": 10}]})
+        # The lowest line is of 80 %, the highest of 100 %.
+        self.assertIn('<polyline points="210.0,280.0 470.0,280.0"', text)
+        self.assertIn('<polyline points="210.0,170.0 470.0,170.0"', text)
+        self.assertIn('<polyline points="210.0,60.0 470.0,60.0"', text)
+        self.assertIn(">10</text>", text)
+
+
 class Pages(unittest.TestCase):
     def test_a_table_goes_between_its_markers(self):
         page = "before\n<!-- table one -->\nold\n<!-- end of table -->\nafter\n"
@@ -99,6 +240,11 @@ class Pages(unittest.TestCase):
                          "before\n<!-- table one -->\n| new |\n<!-- end of table -->\nafter\n")
         with self.assertRaises(SystemExit):
             tables.filled(page, {"two": ""}, "page")
+
+    def test_runs_of_one_origin_share_a_row(self):
+        run = {"commit": "c", "compiler": "g", "machine": "m"}
+        text = tables.runs_table({"a": run | {"machine": ""}, "b": run, "d": run | {"commit": "e"}, "f": run | {"commit": "h", "machine": ""}})
+        self.assertEqual(text.splitlines()[2:], ["| c | g | m | `b`, `a` |", "| e | g | m | `d` |", "| h | g |  | `f` |"])
 
     def test_the_stored_file_is_json_with_a_row_on_each_line(self):
         stored = {"runs": {"a": {"commit": "c"}}, "rows": [{"x": 1}, {"x": 2}]}
@@ -108,7 +254,7 @@ class Pages(unittest.TestCase):
 
     def test_a_changed_figure_is_found(self):
         self.assertEqual(tables.check(), 0)
-        all_tables = tables.all_tables()
+        all_tables = tables.all_tables(tables.stored_figures())
         name = "usable"
         changed = all_tables | {name: all_tables[name].replace("9", "8", 1)}
         self.assertNotEqual(changed[name], all_tables[name])

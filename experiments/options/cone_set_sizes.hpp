@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace conelane::experiments {
+
+/// Sizes of cone sets as an option gives them: a number of cones, or `all` for all visible ones (absent).
+/// Throws InvalidInput if a text is neither, or a size is there twice.
+[[nodiscard]] std::vector<std::optional<std::size_t>> cone_set_sizes(const std::string& option,
+                                                                     std::span<const std::string> texts);
+
+}  // namespace conelane::experiments
